@@ -1,0 +1,56 @@
+# Two commands: `make replicate` regenerates the whole paper, `make test` verifies it.
+# Options: CORES=4, PRESET=draft|paper|reference, OVERLAY=mine.yaml, TARGET=results/figures/fig05_scaling.png
+
+SHELL := /bin/sh
+PYTHON ?= python3
+CORES ?= 2
+PRESET ?=
+OVERLAY ?=
+TARGET ?=
+VENV := .venv
+READY := $(VENV)/.ready
+BIN := $(VENV)/bin
+INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
+
+.PHONY: help setup lock replicate test check clean distclean
+
+help:
+	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
+	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
+	@echo "make check       format and lint"
+	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
+	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
+
+setup: $(READY)
+
+$(READY): requirements-build.lock requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
+	@echo "Setting up $(VENV) from requirements.lock (once; about 500 MB)"
+	@rm -rf "$(VENV)"
+	@$(PYTHON) -m venv "$(VENV)"
+	@$(INSTALL) --only-binary :all: -r requirements-build.lock
+	@$(INSTALL) --only-binary :all: --no-binary connection-pool --no-build-isolation -r requirements.lock
+	@"$(BIN)/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch "$(READY)"
+
+lock:
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
+	    --group build --quiet -o requirements-build.lock
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
+	    --group dev --quiet pyproject.toml -o requirements.lock
+
+replicate: $(READY)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores $(CORES) \
+	    $(if $(PRESET),--config preset=$(PRESET)) $(if $(OVERLAY),--configfile "$(OVERLAY)") -- $(TARGET)
+
+test: $(READY)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest
+
+check: $(READY)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check
+
+clean:
+	rm -rf results .snakemake
+
+distclean: clean
+	rm -rf "$(VENV)"

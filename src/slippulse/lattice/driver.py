@@ -1,0 +1,297 @@
+"""Runs one scene on the lattice: allocation, growth, samples, energy. Arrays in, arrays out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..model import Scene
+from . import fixed_step, localised
+
+# Steps between two returns to Python: progress, interruption.
+CALL_STEPS = 20_000
+# Blocks on each side at first; the lattice doubles whenever a front comes near its end.
+FIRST_BLOCKS = 512
+# Blocks at rest that are kept beyond the outermost released one.
+MARGIN = 16
+
+
+class UnstableRun(RuntimeError):
+    """A run blew up or met a value that is not finite."""
+
+
+@dataclass
+class Samples:
+    """Where and when slip and slip velocity are recorded.
+
+    Parameters
+    ----------
+    times : increasing times, shape (n_times,)
+    positions : positions, shape (n_positions,); the nearest block answers
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+
+    def __post_init__(self) -> None:
+        self.times = np.asarray(self.times, dtype=float)
+        self.positions = np.asarray(self.positions, dtype=float)
+        if self.times.ndim != 1 or self.positions.ndim != 1:
+            raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
+        if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
+            raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")
+
+
+@dataclass
+class LatticeRun:
+    """What a run leaves behind; arrays over the whole lattice, left to right, the mirrored half restored."""
+
+    x: np.ndarray
+    prestress: np.ndarray
+    release_time: np.ndarray
+    stick_time: np.ndarray
+    slip: np.ndarray
+    slip_velocity: np.ndarray
+    slip_acceleration: np.ndarray
+    sample_slip: np.ndarray | None
+    sample_velocity: np.ndarray | None
+    numbers: dict = field(default_factory=dict)
+
+
+class Lattice:
+    """State of one run, in arrays with one ghost block at each end."""
+
+    def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
+        self.scene = scene
+        self.beta = beta
+        self.leaf = scene.gamma if scene.boundary == "displacement" else 0.0
+        self.mirror = scene.symmetric
+        self.localised = scene.scheme == "localised"
+        self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
+        size = FIRST_BLOCKS + 2 if self.mirror else 2 * FIRST_BLOCKS + 3
+        rows = scene.order + 2 if self.localised else 3
+        self.w = np.zeros((rows, size))
+        self.strain = np.zeros(size)
+        self.release_time = np.full(size, np.nan)
+        self.stick_time = np.full(size, np.nan)
+        self.counts = np.zeros(8, dtype=np.int64)
+        self.totals = np.zeros(7)
+        self.totals[localised.FIRST_STICK] = np.nan
+        self.samples = samples
+        n_times, n_positions = (samples.times.size, samples.positions.size) if samples else (0, 0)
+        self.sample_times = samples.times if samples else np.zeros(0)
+        self.sample_slip = np.zeros((n_times, n_positions))
+        self.sample_velocity = np.zeros((n_times, n_positions))
+        self._fit()
+        # Blocks outside the first lattice are looked at too, for a second nucleation point far away.
+        while np.any(self._reach_of_release() > size - 8):
+            self._grow()
+            size = self.w.shape[1]
+        self._release_at_start()
+
+    def _reach_of_release(self) -> np.ndarray:
+        """Array positions that the bumps need, so that all that is released at t = 0 lies on the lattice."""
+        reach = [abs(c) + 4.0 * w for c, _, w in self.scene.prestress.bumps] or [0.0]
+        blocks = np.ceil(np.array(reach) / self.scene.dx).astype(np.int64)
+        return blocks + 8 if self.mirror else 2 * blocks + 16
+
+    def _fit(self) -> None:
+        """Scratch arrays and the pre-stress for the present size."""
+        size = self.w.shape[1]
+        self.tau = self.scene.prestress((np.arange(size) + self.first_block) * self.scene.dx)
+        if self.mirror:
+            self.tau[0] = self.tau[2]
+        self.velocity = np.zeros(size)
+        self.edge_block = np.zeros(size + 2, dtype=np.int64)
+        self.edge_time = np.zeros(size + 2)
+        self.stopping_block = np.zeros(size, dtype=np.int64)
+        self.stopping_time = np.zeros(size)
+        self.largest_force = float(np.max(np.abs(self.tau)))
+        blocks = np.full(0, -1, dtype=np.int64)
+        if self.samples:
+            # Half away from zero, so that mirrored positions stay mirrored.
+            scaled = self.samples.positions / self.scene.dx
+            number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
+            blocks = (np.abs(number) if self.mirror else number) - self.first_block
+            blocks = np.where((blocks < 1) | (blocks > size - 2), -1, blocks)
+        self.sample_blocks = blocks
+
+    def _release_at_start(self) -> None:
+        size = self.w.shape[1]
+        inside = np.arange(size)
+        start = (self.tau >= 1.0) & (inside >= 1) & (inside <= size - 2)
+        self.release_time[start] = 0.0
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], start, [False]]).astype(np.int8)))
+        self.starts = np.zeros(size, dtype=np.int64)
+        self.ends = np.zeros(size, dtype=np.int64)
+        n = edges.size // 2
+        self.starts[:n], self.ends[:n] = edges[0::2], edges[1::2]
+        self.counts[localised.RUNS] = n
+        self.counts[localised.RELEASES] = int(start.sum())
+        self.sliding = start.copy()
+
+    def _grow(self) -> None:
+        """Double the lattice, on both sides unless it is a mirrored half."""
+        size = self.w.shape[1]
+        right = size
+        left = 0 if self.mirror else size
+        pad = (left, right)
+        self.w = np.pad(self.w, ((0, 0), pad))
+        self.strain = np.pad(self.strain, pad)
+        self.release_time = np.pad(self.release_time, pad, constant_values=np.nan)
+        self.stick_time = np.pad(self.stick_time, pad, constant_values=np.nan)
+        self.first_block -= left
+        if hasattr(self, "starts"):
+            n = self.counts[localised.RUNS]
+            self.starts, self.ends = (np.pad(a, (0, left + right)) for a in (self.starts, self.ends))
+            self.starts[:n] += left
+            self.ends[:n] += left
+            self.sliding = np.pad(self.sliding, pad)
+            self.counts[localised.FIRST_STUCK] += left
+        self._fit()
+
+    def _advance(self) -> int:
+        scene = self.scene
+        shared = (self.release_time, self.stick_time, self.counts, self.totals)
+        recorded = (self.sample_times, self.sample_blocks, self.sample_slip, self.sample_velocity)
+        rules = (self.mirror, scene.release == "total", scene.dx, self.leaf, self.beta)
+        step = scene.max_step * scene.dx
+        if self.localised:
+            return localised.advance(
+                self.w, self.strain, self.velocity, self.tau, self.starts, self.ends, self.edge_block,
+                self.edge_time, self.stopping_block, self.stopping_time, *shared, *recorded, *rules,
+                scene.order, step, scene.duration, self.largest_force, CALL_STEPS,
+            )  # fmt: skip
+        return fixed_step.advance_fixed(
+            self.w[0], self.w[1], self.w[2], self.sliding, self.tau, *shared, *recorded, *rules,
+            step, scene.duration, self.largest_force, CALL_STEPS,
+        )  # fmt: skip
+
+    def run(self, progress: Callable[[float], None] | None) -> int:
+        """Advance to the end of the scene. Returns why the kernel stopped."""
+        while True:
+            # A failed run overflows before it is noticed; the exception below says so in one line.
+            status = self._advance()
+            if status == localised.GROW:
+                self._grow()
+            elif status == localised.UNSTABLE:
+                raise UnstableRun(
+                    f"the run became unstable at t = {self.totals[localised.TIME]:.6g}: slip velocity is not finite or"
+                    f" beyond anything the pre-stress can drive (dx = {self.scene.dx:g}, beta = {self.beta:g},"
+                    f" max_step = {self.scene.max_step:g})"
+                )
+            elif status != localised.CONTINUE:
+                return status
+            if progress is not None:
+                progress(min(1.0, self.totals[localised.TIME] / self.scene.duration))
+
+    def _energies(self) -> dict:
+        """Energy balance per unit depth of the whole lattice, and its residual relative to the total."""
+        dx = self.scene.dx
+        size = self.w.shape[1]
+        u, v = self.w[0], self.w[1]
+        if self.localised:
+            strain = self.strain
+        else:
+            strain = np.zeros(size)
+            strain[:-1] = np.diff(u) / dx
+        weight = np.full(size, 2.0 if self.mirror else 1.0)
+        bond = weight.copy()
+        if self.mirror:
+            weight[0], weight[1] = 0.0, 1.0
+            bond[0] = 0.0
+        parts = {
+            "work_of_prestress": float(np.sum(weight * self.tau * u) * dx),
+            "kinetic_energy": float(0.5 * np.sum(weight * v * v) * dx),
+            "elastic_energy": float(0.5 * np.sum(bond * strain * strain) * dx),
+            "leaf_spring_energy": float(0.5 * self.leaf * np.sum(weight * u * u) * dx),
+            "viscous_loss": float(self.totals[localised.VISCOUS_LOSS]),
+            "event_loss": float(self.totals[localised.STICK_LOSS]),
+        }
+        stored = sum(value for key, value in parts.items() if key != "work_of_prestress")
+        largest = max(abs(value) for value in parts.values())
+        parts["energy_residual"] = abs(parts["work_of_prestress"] - stored) / largest if largest else 0.0
+        return parts
+
+    def result(self, status: int) -> LatticeRun:
+        """Close the run: last samples, energies, flags, and the lattice unfolded and trimmed."""
+        scene = self.scene
+        n = int(self.counts[localised.RUNS])
+        if self.localised:
+            localised.finish(
+                self.w, self.strain, self.tau, self.starts, self.ends, self.counts, self.totals,
+                self.mirror, scene.dx, self.leaf, self.beta,
+            )  # fmt: skip
+            self.sliding[:] = False
+            for a, b in zip(self.starts[:n], self.ends[:n], strict=True):
+                self.sliding[a:b] = True
+        acceleration = np.where(self.sliding, self.w[2], 0.0)
+        for s in range(int(self.counts[localised.NEXT_SAMPLE]), self.sample_times.size):
+            inside = self.sample_blocks >= 0
+            self.sample_slip[s, inside] = self.w[0, self.sample_blocks[inside]]
+            self.sample_velocity[s, inside] = self.w[1, self.sample_blocks[inside]]
+
+        numbers = self._energies()
+        released = np.isfinite(self.release_time)
+        quiet = np.concatenate([self.tau[1:-1][~released[1:-1]], [np.inf]])
+        lowest = float(min(self.totals[localised.MIN_STUCK_STRESS], np.min(quiet)))
+        numbers |= {
+            "end_time": float(self.totals[localised.TIME]),
+            "stopped_because": "everything is stuck" if status == localised.ALL_STUCK else "duration reached",
+            "steps": int(self.counts[localised.STEPS]),
+            "block_updates": int(self.counts[localised.BLOCK_UPDATES]),
+            "releases": int(self.counts[localised.RELEASES]),
+            "sticks": int(self.counts[localised.STICKS]),
+            "re_releases": int(self.counts[localised.RE_RELEASES]),
+            "min_velocity": float(self.totals[localised.MIN_VELOCITY]),
+            "min_stuck_stress": lowest,
+            "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
+            "first_stick_time": float(self.totals[localised.FIRST_STICK]),
+            "first_stick_position": (
+                float((self.counts[localised.FIRST_STUCK] + self.first_block) * scene.dx)
+                if self.counts[localised.STICKS]
+                else math.nan
+            ),
+            "half_lattice_used": int(self.mirror),
+        }
+        blocks = np.arange(self.w.shape[1]) + self.first_block
+        keep = (blocks >= 0) if self.mirror else np.ones(blocks.size, dtype=bool)
+        keep[0] = keep[-1] = False
+        if released.any():
+            outermost = blocks[released]
+            keep &= (blocks >= outermost.min() - MARGIN) & (blocks <= outermost.max() + MARGIN)
+        else:
+            keep &= np.abs(blocks) <= MARGIN
+
+        def unfold(values: np.ndarray) -> np.ndarray:
+            kept = values[keep]
+            return np.concatenate([kept[:0:-1], kept]) if self.mirror else kept.copy()
+
+        kept_blocks = blocks[keep]
+        numbers_of_blocks = np.concatenate([-kept_blocks[:0:-1], kept_blocks]) if self.mirror else kept_blocks
+        return LatticeRun(
+            x=numbers_of_blocks * scene.dx,
+            prestress=unfold(self.tau),
+            release_time=unfold(self.release_time),
+            stick_time=unfold(self.stick_time),
+            slip=unfold(self.w[0]),
+            slip_velocity=unfold(self.w[1]),
+            slip_acceleration=unfold(acceleration),
+            sample_slip=self.sample_slip if self.samples else None,
+            sample_velocity=self.sample_velocity if self.samples else None,
+            numbers=numbers,
+        )
+
+
+def run_scene(
+    scene: Scene,
+    samples: Samples | None = None,
+    progress: Callable[[float], None] | None = None,
+    damping_sign: int = 1,
+) -> LatticeRun:
+    """Run a scene; ``damping_sign = -1`` is the sign as printed in the paper, which blows up."""
+    lattice = Lattice(scene, samples, damping_sign * scene.beta)
+    return lattice.result(lattice.run(progress))

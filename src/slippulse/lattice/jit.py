@@ -1,0 +1,44 @@
+"""The one home of the compiler's flags and of its cache."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from pathlib import Path
+
+import numba
+
+SOURCES = Path(__file__).resolve().parent
+
+
+def source_digest(folder: Path = SOURCES) -> str:
+    """Digest of every kernel source: an edited helper must never meet the machine code of its caller's old self.
+
+    numba's own cache looks only at the file that holds the compiled function, not at the files it calls into.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(folder.glob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels live: SLIPPULSE_CACHE, or the user's cache folder, under a digest of the sources."""
+    base = os.environ.get("SLIPPULSE_CACHE")
+    if not base:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
+    return Path(base) / f"kernels-{source_digest()}"
+
+
+if not os.environ.get("NUMBA_CACHE_DIR"):
+    numba.config.CACHE_DIR = str(cache_folder())
+
+# Sums may be reordered so that they vectorise; NaN keeps its meaning, since it is how a failed run is noticed.
+REORDER = {"reassoc", "contract", "nsz"}
+
+
+def compiled(*, reorder: bool = False):
+    """Decorator: machine code without the interpreter's lock, cached; ``reorder`` lets sums vectorise."""
+    return numba.njit(
+        cache=True, nogil=True, error_model="numpy", fastmath=REORDER if reorder else {"contract"}
+    )

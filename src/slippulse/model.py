@@ -1,0 +1,132 @@
+"""What is modelled: one scene, its parameters, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .checks import check_choice, check_number
+from .prestress import Prestress
+
+BOUNDARIES = ("displacement", "stress")
+RELEASES = ("total", "elastic")
+SCHEMES = ("localised", "fixed_step")
+ORDERS = (3, 4, 5, 6, 7, 8)
+
+# A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width
+# carries an error of about one block in this many.
+RESOLVED_BLOCKS = 8
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One rupture: the equation's parameters, the pre-stress, the lattice and the scheme.
+
+    The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
+
+        dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2.
+
+    A block is released when its stress reaches 1 and sticks when its velocity reaches 0.
+
+    Parameters
+    ----------
+    boundary : "displacement" or "stress"
+        Condition at the top of the layer: Gamma = 1 or Gamma = 0.
+    prestress : Prestress
+        Non-dimensional pre-stress tau(x).
+    duration : float
+        Time to simulate (units of H / wave speed), > 0.
+    dx : float
+        Block spacing (units of H), > 0; dx = 1 is the Burridge-Knopoff model.
+    gamma : float
+        Elasticity ratio 2G/(lambda + 2G); > 0 under "displacement", left at 0 under "stress".
+    beta : float
+        Damping, >= 0. What selects the front speed is beta/dx.
+    release : "total" or "elastic"
+        Whether the released stress includes the damping force.
+    scheme : "localised" or "fixed_step"
+        Taylor steps that end at each release and stick, or symplectic Euler with events checked once a step.
+    max_step : float
+        Largest time step in units of dx; the step itself under "fixed_step".
+    order : int
+        Order of the Taylor step, 3 to 8; not used by "fixed_step".
+    half_lattice : bool
+        Simulate x >= 0 only when the pre-stress is symmetric.
+    friction_ratio : float
+        mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio).
+    resolved_blocks : int
+        A pulse of fewer sliding blocks is flagged as unresolved.
+
+    Raises
+    ------
+    ValueError
+        One line naming the key, the value and what is allowed.
+
+    Source: equation (5) of the paper with the damping's sign corrected, its section II A, and its appendix B.
+    """
+
+    boundary: str
+    prestress: Prestress
+    duration: float
+    dx: float
+    gamma: float = 0.0
+    beta: float = 0.0
+    release: str = "total"
+    scheme: str = "localised"
+    max_step: float = 0.2
+    order: int = 4
+    half_lattice: bool = True
+    friction_ratio: float = 5.0
+    resolved_blocks: int = RESOLVED_BLOCKS
+
+    def __post_init__(self) -> None:
+        check_choice("boundary", self.boundary, BOUNDARIES)
+        check_choice("release", self.release, RELEASES)
+        check_choice("scheme", self.scheme, SCHEMES)
+        check_choice("order", self.order, ORDERS)
+        if not isinstance(self.prestress, Prestress):
+            raise ValueError(f"prestress: {self.prestress!r}; allowed: a Prestress")
+        check_number("duration", self.duration, above=0.0)
+        check_number("dx", self.dx, above=0.0)
+        check_number("beta", self.beta, at_least=0.0)
+        check_number("friction_ratio", self.friction_ratio, at_least=0.0)
+        check_number("resolved_blocks", self.resolved_blocks, at_least=1)
+        if self.boundary == "stress":
+            if self.gamma != 0.0:
+                raise ValueError(
+                    f"gamma: {self.gamma!r}; allowed: 0 (or left out) under boundary 'stress', which has no leaf springs"
+                )
+        else:
+            check_number("gamma", self.gamma, above=0.0)
+        if self.prestress.width < self.dx:
+            raise ValueError(
+                f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, or the lattice misses the peak"
+            )
+        check_number("max_step", self.max_step, above=0.0)
+        bound = self.largest_stable_step
+        if self.max_step > bound:
+            raise ValueError(
+                f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
+                f" {self.scheme!r} at beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {self.gamma * self.dx**2:.4g}"
+            )
+
+    @property
+    def damping_ratio(self) -> float:
+        """beta/dx, which selects the front speed."""
+        return self.beta / self.dx
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the scene is simulated on half the lattice."""
+        return self.half_lattice and self.prestress.symmetric
+
+    @property
+    def reverse_threshold(self) -> float:
+        """Stress at which a block would slide backwards, -(1 + 2 mu_k/(mu_s - mu_k))."""
+        return -(1.0 + 2.0 * self.friction_ratio)
+
+    @property
+    def largest_stable_step(self) -> float:
+        """Largest stable time step in units of dx."""
+        from .lattice.stability import largest_step
+
+        return largest_step(self.scheme, self.order, self.damping_ratio, self.gamma * self.dx**2)
