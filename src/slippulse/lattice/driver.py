@@ -10,6 +10,7 @@ import numpy as np
 
 from ..model import Scene
 from . import fixed_step, localised
+from .samples import Samples
 
 # Steps between two returns to Python: progress, interruption.
 CALL_STEPS = 20_000
@@ -21,28 +22,6 @@ MARGIN = 16
 
 class UnstableRun(RuntimeError):
     """A run blew up or met a value that is not finite."""
-
-
-@dataclass
-class Samples:
-    """Where and when slip and slip velocity are recorded.
-
-    Parameters
-    ----------
-    times : increasing times, shape (n_times,)
-    positions : positions, shape (n_positions,); the nearest block answers
-    """
-
-    times: np.ndarray
-    positions: np.ndarray
-
-    def __post_init__(self) -> None:
-        self.times = np.asarray(self.times, dtype=float)
-        self.positions = np.asarray(self.positions, dtype=float)
-        if self.times.ndim != 1 or self.positions.ndim != 1:
-            raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
-        if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
-            raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")
 
 
 @dataclass

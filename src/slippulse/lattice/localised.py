@@ -17,7 +17,7 @@ from .runs import release_block, stick_block
 from .stencils import (
     advance_slip,
     advance_strain,
-    count_negative,
+    count_below,
     crossing,
     first_acceleration,
     next_derivative,
@@ -35,6 +35,8 @@ TIME, VISCOUS_LOSS, PENDING_STEP, MIN_VELOCITY, MIN_STUCK_STRESS, FIRST_STICK, S
 
 # Events closer than this share of the largest step are one event: the two fronts of a mirror-symmetric scene.
 SIMULTANEOUS = 1e-11
+# A velocity this little below zero at the instant of a stick is the rounding of the root, not another stick.
+ROUNDING = 1e-12
 # Velocities beyond this many times the largest that any pre-stress could have driven by now mean a blow-up.
 BLOW_UP = 100.0
 
@@ -206,21 +208,25 @@ def advance(
             w, strain, tau, starts, ends, n, edge_block, edge_time, totals, mirror, dx, leaf, beta, total, top,
             whole, same,
         )  # fmt: skip
-        negative = 0
-        for r in range(n):
-            velocity_after(velocity, w, starts[r], ends[r], h, order)
-            negative += count_negative(velocity[starts[r] : ends[r]])
         n_stopping = 0
-        if negative > 0:
+        floor = 0.0
+        while True:
+            negative = 0
+            for r in range(n):
+                velocity_after(velocity, w, starts[r], ends[r], h, order)
+                negative += count_below(velocity[starts[r] : ends[r]], floor)
+            if negative == 0:
+                break
             n_stopping, earliest = find_sticks(
                 w, velocity, starts, ends, n, stopping_block, stopping_time, top, h
             )
             if n_stopping < 0:
                 return UNSTABLE
-            if earliest < h:
-                h = earliest
-                for r in range(n):
-                    velocity_after(velocity, w, starts[r], ends[r], h, order)
+            if not earliest < h:
+                break
+            # The shorter step may end inside a dip that the longer one stepped over, so look again.
+            h = earliest
+            floor = -ROUNDING
 
         end = end_time if h == end_time - t else t + h
         while counts[NEXT_SAMPLE] < sample_times.shape[0] and sample_times[counts[NEXT_SAMPLE]] <= end:

@@ -86,12 +86,12 @@ def velocity_after(out, w, first, last, step, order):
 
 
 @compiled()
-def count_negative(values):
-    """How many entries are below zero or not a number."""
+def count_below(values, floor):
+    """How many entries are below ``floor`` or not a number."""
     n = values.shape[0]
     count = 0
     for i in range(n):
-        count += not (values[i] >= 0.0)
+        count += not (values[i] >= floor)
     return count
 
 

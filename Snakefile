@@ -1,0 +1,22 @@
+# The whole paper from one configuration: simulate, measure, draw.
+#   snakemake --cores 2                                        everything
+#   snakemake --cores 2 results/figures/fig05_scaling.png      one figure and only what it needs
+#   snakemake --cores 2 --config preset=draft                  coarse and quick
+#   snakemake --cores 2 --configfile mine.yaml                 any part of the configuration overlaid
+
+
+configfile: "config/config.yaml"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/simulate.smk"
+include: "workflow/rules/measure.smk"
+include: "workflow/rules/figures.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        figure_files(FIGURES),
+    message:
+        "Done: every figure is in results/figures, as PDF, PNG and the CSV that it is drawn from"

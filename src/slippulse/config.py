@@ -1,0 +1,212 @@
+"""The configuration: validated, then expanded into scenes. Plain builtins in, scenes out."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import yaml
+
+from .lattice.samples import Samples
+from .model import Scene
+from .prestress import Prestress
+from .theory.transition import prestress_balance_position
+
+
+class ConfigError(ValueError):
+    """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
+
+
+def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping) -> dict:
+    """One simulation block with everything that its data depend on, as builtins: what a rule passes as params."""
+    block = {key: value for key, value in simulation.items()}
+    for key, value in model.items():
+        block.setdefault(key, [value] if key == "damping_ratio" else value)
+    return block | {"accuracy": dict(accuracy)}
+
+
+def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
+    """Scenes of a resolved simulation block, in the order of its lists, and what each records.
+
+    Parameters
+    ----------
+    block : as `resolve` returns it
+
+    Raises
+    ------
+    ValueError
+        If a scene is refused, naming the key, the value and what is allowed.
+    """
+    scenes, samples = [], []
+    for profile, gamma, ratio in itertools.product(
+        _profiles(block), block.get("gamma", [0.0]), block["damping_ratio"]
+    ):
+        dx = _spacing(block, profile.width, gamma)
+        duration = _duration(block["duration"], profile, gamma)
+        scene = Scene(
+            boundary=block["boundary"],
+            prestress=profile,
+            duration=duration,
+            dx=dx,
+            gamma=gamma,
+            beta=ratio * dx,
+            release=block["release"],
+            scheme=block["scheme"],
+            max_step=_step(block, gamma * dx**2, ratio),
+            order=block["accuracy"]["order"],
+            friction_ratio=block["friction_ratio"],
+            resolved_blocks=block["resolved_blocks"],
+        )
+        scenes.append(scene)
+        samples.append(_samples(block.get("samples"), scene))
+    return scenes, samples
+
+
+def _profiles(block: Mapping) -> list[Prestress]:
+    if "profiles" in block:
+        return [Prestress(**{"width": 1.0, **profile}) for profile in block["profiles"]]
+    profiles = []
+    rights = block["right"]
+    for left in block["left"]:
+        for right in [left] if rights == "same" else rights:
+            for width in block.get("width", [1.0]):
+                for steps in _steps_beyond(block.get("beyond")):
+                    profiles.append(Prestress(left=left, right=right, width=width, steps=steps))
+    return profiles
+
+
+def _steps_beyond(rule: Mapping | None) -> list[tuple]:
+    """One step a level, at the position from which the level holds."""
+    return [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
+
+
+def _spacing(block: Mapping, width: float, gamma: float) -> float:
+    rule = block.get("spacing", {})
+    if "fixed" in rule:
+        return float(rule["fixed"])
+    scale = rule.get("scale", 1.0) * width ** rule.get("width_power", 0.0)
+    if "gamma_power" in rule:
+        scale *= gamma ** rule["gamma_power"]
+    # Twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label.
+    return float(f"{block['accuracy']['dx'] * scale:.12g}")
+
+
+def _step(block: Mapping, gamma_dx2: float, ratio: float) -> float:
+    """The block's own step, or the preset's, or nine tenths of the bound where strong damping allows less."""
+    from .lattice.stability import largest_step
+
+    if "max_step" in block:
+        return float(block["max_step"])
+    bound = largest_step(block["scheme"], block["accuracy"]["order"], ratio, gamma_dx2)
+    return float(min(block["accuracy"]["max_step"], 0.9 * bound))
+
+
+def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
+    ((unit, value),) = rule.items()
+    if unit == "half_periods":
+        return float(value * math.pi / math.sqrt(gamma))
+    if unit == "balance_distances":
+        return float(value * abs(prestress_balance_position(profile)))
+    return float(value)
+
+
+def _samples(rule: Mapping | None, scene: Scene) -> Samples | None:
+    if rule is None:
+        return None
+    positions = np.linspace(-rule["extent"], rule["extent"], rule["positions"]) if rule["positions"] > 1 else [0.0]
+    return Samples(times=np.linspace(0.0, scene.duration, rule["times"]), positions=positions)
+
+
+def validate(config: Mapping, schema_path: str | Path) -> None:
+    """Refuse a configuration that the schema does not allow, or whose scenes are refused.
+
+    Raises
+    ------
+    ConfigError
+        One line a problem: the key, the value, what is allowed.
+    """
+    schema = yaml.safe_load(Path(schema_path).read_text(encoding="utf-8"))
+    validator = jsonschema.Draft202012Validator(schema)
+    problems = [line for error in validator.iter_errors(_builtins(config)) for line in _describe(error)]
+    if problems:
+        raise ConfigError("\n".join(sorted(set(problems))))
+    if config["preset"] not in config["presets"]:
+        raise ConfigError(f"preset: {config['preset']!r}; allowed: {', '.join(config['presets'])}")
+    for name, simulation in config["simulations"].items():
+        try:
+            _check_simulation(simulation)
+            expand(resolve(simulation, config["model"], config["presets"][config["preset"]]))
+        except ValueError as error:
+            problems.append(f"simulations.{name}.{error}")
+    if problems:
+        raise ConfigError("\n".join(problems))
+
+
+def _check_simulation(simulation: Mapping) -> None:
+    """What a schema cannot say: keys that exclude or need each other."""
+    displacement = simulation["boundary"] == "displacement"
+    if displacement and "gamma" not in simulation:
+        raise ValueError("gamma: missing; allowed: a list of numbers > 0 under boundary 'displacement'")
+    if not displacement and "gamma" in simulation:
+        raise ValueError(
+            f"gamma: {simulation['gamma']!r}; allowed: left out under boundary 'stress', which has no leaf springs"
+        )
+    if "profiles" in simulation and any(
+        key in simulation for key in ("left", "right", "width", "beyond")
+    ):
+        raise ValueError("profiles: given with left, right, width or beyond; allowed: one or the other")
+    if "profiles" not in simulation and not ("left" in simulation and "right" in simulation):
+        raise ValueError("left, right: missing; allowed: lists of levels (right may be 'same'), or profiles")
+    if "half_periods" in simulation["duration"] and not displacement:
+        raise ValueError("duration.half_periods: given; allowed: only under boundary 'displacement'")
+    if "gamma_power" in simulation.get("spacing", {}) and not displacement:
+        raise ValueError("spacing.gamma_power: given; allowed: only under boundary 'displacement'")
+    if "samples" in simulation.get("record", []) and "samples" not in simulation:
+        raise ValueError("samples: missing; allowed: times, positions and extent when record has 'samples'")
+
+
+def _describe(error: jsonschema.ValidationError) -> list[str]:
+    key = ".".join(str(part) for part in error.absolute_path)
+    if error.validator == "additionalProperties":
+        known = list(error.schema.get("properties", {}))
+        lines = []
+        for name in error.instance:
+            patterns = error.schema.get("patternProperties", {})
+            if name in known or any(re.search(pattern, str(name)) for pattern in patterns):
+                continue
+            near = difflib.get_close_matches(str(name), known, n=1)
+            hint = f" (did you mean {near[0]!r}?)" if near else ""
+            full = f"{key}.{name}" if key else str(name)
+            lines.append(f"{full}: unknown key{hint}; allowed: {', '.join(known)}")
+        return lines
+    allowed = error.schema.get("description") or _allowed(error)
+    value = repr(error.instance)
+    value = value if len(value) <= 60 else value[:57] + "..."
+    remedy = ""
+    if isinstance(error.instance, str) and re.fullmatch(r"[-+]?\d+[eE][-+]?\d+", error.instance.strip()):
+        mantissa, exponent = re.split("[eE]", error.instance.strip())
+        remedy = f" (YAML reads {error.instance} as text: write {mantissa}.0e{exponent})"
+    if error.validator == "required":
+        missing = [name for name in error.validator_value if name not in error.instance]
+        return [f"{key}.{name}".lstrip(".") + ": missing; it is required" for name in missing]
+    return [f"{key}: {value}; allowed: {allowed}{remedy}"]
+
+
+def _allowed(error: jsonschema.ValidationError) -> str:
+    if error.validator == "enum":
+        return ", ".join(map(str, error.validator_value))
+    return error.message
+
+
+def _builtins(value):
+    if isinstance(value, Mapping):
+        return {str(key): _builtins(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_builtins(entry) for entry in value]
+    return value

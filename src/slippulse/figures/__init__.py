@@ -1,0 +1,1 @@
+"""One module a figure: ``table(data, measured, settings)`` collects what is drawn, ``plot(table)`` draws it."""

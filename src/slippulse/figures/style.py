@@ -1,0 +1,69 @@
+"""The look of every figure, in one place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+from matplotlib.figure import Figure
+
+from ..store import write_whole
+
+matplotlib.use("Agg")
+
+# Widths of one and two columns of the journal, in inches.
+COLUMN = 3.4
+PAGE = 7.05
+
+# Okabe and Ito's colours, which readers with any colour vision can tell apart.
+BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
+SKY, YELLOW, BLACK, GREY = "#56B4E9", "#E69F00", "#000000", "#7f7f7f"
+CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
+# One map for slip velocity, two for the face and the rim of a scaling marker.
+VELOCITY_MAP, FACE_MAP, RIM_MAP = "viridis", "cividis", "plasma"
+
+RC = {
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 6.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 3.5,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": True,
+    "axes.spines.right": True,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "mathtext.fontset": "dejavusans",
+    "axes.prop_cycle": matplotlib.cycler(color=CYCLE),
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 300,
+    "pdf.fonttype": 42,
+    # Names of objects in a PDF would otherwise be random.
+    "svg.hashsalt": "slippulse",
+}
+matplotlib.rcParams.update(RC)
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """An empty figure in the house style, ``width`` by ``height`` inches."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def panel_letter(axes, letter: str) -> None:
+    """Mark a panel (a), (b), ... above its upper left corner."""
+    axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=8.0)
+
+
+def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
+    """Write PNG and PDF with no clock in them."""
+    write_whole(png, lambda part: figure.savefig(part, format="png", metadata={"Software": None}))
+    write_whole(
+        pdf,
+        lambda part: figure.savefig(
+            part, format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None}
+        ),
+    )

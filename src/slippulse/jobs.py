@@ -1,0 +1,112 @@
+"""What a job of the pipeline does: files in, files out. The pipeline's scripts call these and nothing else."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import time
+import traceback
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
+from pathlib import Path
+
+
+@contextlib.contextmanager
+def logged(path: str | Path) -> Iterator[None]:
+    """Copy what a job says to its log; a failure is one line on the terminal and a traceback in the log."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", encoding="utf-8") as log:
+        terminal = sys.stderr
+        sys.stderr = _Both(terminal, log)
+        try:
+            yield
+        except Exception as error:
+            log.write(traceback.format_exc())
+            terminal.write(f"{type(error).__name__}: {error} (details: {path})\n")
+            raise SystemExit(1) from None
+        finally:
+            sys.stderr = terminal
+
+
+class _Both:
+    """A stream that writes to two."""
+
+    def __init__(self, *streams) -> None:
+        self.streams = streams
+
+    def write(self, text: str) -> int:
+        for stream in self.streams:
+            stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        for stream in self.streams:
+            stream.flush()
+
+
+def compile_kernels(output: str | Path) -> None:
+    """Compile every kernel by running a small scene in each scheme, and note the digest of their sources."""
+    from .lattice.jit import source_digest
+    from .model import Scene
+    from .prestress import Prestress
+    from .simulation import simulate
+    from .store import write_whole
+
+    for scheme in ("localised", "fixed_step"):
+        scene = Scene(
+            boundary="displacement", gamma=0.5, prestress=Prestress(0.5, 0.5), duration=1.0, dx=0.5, scheme=scheme
+        )
+        simulate(scene)
+    digest = source_digest()
+    write_whole(output, lambda part: part.write_text(f"{digest}\n", encoding="utf-8"))
+
+
+def simulate_block(name: str, block: Mapping, threads: int, output: str | Path) -> None:
+    """Run the scenes of one simulation block and write their data."""
+    from .config import expand
+    from .store import save_dataset
+    from .sweep import run_sweep
+
+    scenes, samples = expand(block)
+    shown = time.monotonic()
+
+    def progress(done: int, total: int) -> None:
+        nonlocal shown
+        if done == total or time.monotonic() - shown > 2.0:
+            shown = time.monotonic()
+            sys.stderr.write(f"  {name}: {done} of {total} runs\n")
+            sys.stderr.flush()
+
+    sweep = run_sweep(scenes, samples, block["record"], threads, progress)
+    flagged = [(i, flags) for i, flags in enumerate(sweep["flags"].values) if flags]
+    for i, flags in flagged:
+        sys.stderr.write(
+            f"  {name}: run {i} is flagged {flags}: left {scenes[i].prestress.left:g}, right"
+            f" {scenes[i].prestress.right:g}, gamma {scenes[i].gamma:g}, beta/dx {scenes[i].damping_ratio:g}\n"
+        )
+    save_dataset(sweep, output)
+
+
+def measure_block(data: str | Path, settings: Mapping, output: str | Path) -> None:
+    """Measure every run of one simulation block and write the table."""
+    from .measure.table import measure
+    from .store import load_dataset, save_table
+
+    save_table(measure(load_dataset(data), settings), output)
+
+
+def draw_figure(
+    figure: str, settings: Mapping, data: Sequence[str], measured: Sequence[str], outputs: Mapping[str, str]
+) -> None:
+    """Write the table of one figure, then draw the figure from that table alone."""
+    from .figures.style import save_figure
+    from .store import load_dataset, load_table, save_table
+
+    module = import_module(f".figures.{figure}", __package__)
+    table = module.table(
+        {Path(path).stem: load_dataset(path) for path in data},
+        {Path(path).stem: load_table(path) for path in measured},
+        settings,
+    )
+    save_table(table, outputs["csv"])
+    save_figure(module.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])

@@ -1,0 +1,34 @@
+"""What a run records on its way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Samples:
+    """Where and when slip and slip velocity are recorded.
+
+    Parameters
+    ----------
+    times : increasing times >= 0, shape (n_times,)
+    positions : positions, shape (n_positions,); the nearest block answers
+
+    Raises
+    ------
+    ValueError
+        If they are not one-dimensional, or the times do not increase.
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+
+    def __post_init__(self) -> None:
+        self.times = np.asarray(self.times, dtype=float)
+        self.positions = np.asarray(self.positions, dtype=float)
+        if self.times.ndim != 1 or self.positions.ndim != 1:
+            raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
+        if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
+            raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")

@@ -1,0 +1,1 @@
+"""From a run to numbers: fronts, pulses, transitions, regimes. No simulation, no drawing."""

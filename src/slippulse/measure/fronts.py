@@ -1,0 +1,79 @@
+"""Where the fronts and the trailing edges are, and how fast."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+
+def path(run: xr.Dataset, side: str = "right", edge: str = "release_time") -> tuple[np.ndarray, np.ndarray]:
+    """Times and distances from x = 0 of a front ("release_time") or trailing edge ("stick_time") on one side.
+
+    Parameters
+    ----------
+    run : one run with release and stick times over x
+    side : "right" or "left"
+    edge : "release_time" or "stick_time"
+
+    Returns
+    -------
+    times, distances : shape (n,), in order of distance; blocks without the event are left out
+    """
+    x, time = run["x"].values, run[edge].values
+    sign = 1.0 if side == "right" else -1.0
+    chosen = np.isfinite(time) & (sign * x >= 0.0)
+    distance, time = sign * x[chosen], time[chosen]
+    order = np.argsort(distance, kind="stable")
+    return time[order], distance[order]
+
+
+def position_at(run: xr.Dataset, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
+    """Distance from x = 0 that a front or trailing edge has reached at given times; NaN before its first event.
+
+    Linear between events; a block that was released out of turn does not take the front back.
+    """
+    times, distances = path(run, side, edge)
+    time = np.asarray(time, dtype=float)
+    if times.size == 0:
+        return np.full(time.shape, np.nan)
+    latest = np.maximum.accumulate(times)
+    # np.interp wants increasing times: of blocks with one time the farthest counts.
+    last = np.concatenate([np.diff(latest) > 0.0, [True]])
+    return np.where(time < latest[0], np.nan, np.interp(time, latest[last], distances[last]))
+
+
+def arrival(run: xr.Dataset, distance: float, side: str = "right") -> float:
+    """Time at which the front on one side reaches a distance; NaN if it never does."""
+    times, distances = path(run, side)
+    if times.size == 0 or distances[-1] < distance:
+        return float("nan")
+    return float(np.interp(distance, distances, np.maximum.accumulate(times)))
+
+
+def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[float, float, float]:
+    """Speed, intercept and standard error of a straight line through the last share of a front's path.
+
+    Parameters
+    ----------
+    run : one run
+    window : share of the path, in (0, 1)
+    side : "right" or "left"
+
+    Returns
+    -------
+    speed (wave speeds), intercept (units of H), standard error of the speed; NaN with fewer than 4 blocks
+    """
+    times, distances = path(run, side)
+    chosen = distances >= (1.0 - window) * distances[-1] if distances.size else np.zeros(0, dtype=bool)
+    n = int(chosen.sum())
+    if n < 4:
+        return float("nan"), float("nan"), float("nan")
+    t, x = times[chosen], distances[chosen]
+    centred = t - t.mean()
+    scatter = float(np.sum(centred**2))
+    if scatter == 0.0:
+        return float("nan"), float("nan"), float("nan")
+    speed = float(np.sum(centred * (x - x.mean())) / scatter)
+    intercept = float(x.mean() - speed * t.mean())
+    rest = x - intercept - speed * t
+    return speed, intercept, float(np.sqrt(np.sum(rest**2) / (n - 2) / scatter))

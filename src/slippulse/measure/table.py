@@ -1,0 +1,64 @@
+"""Every number of every point of a sweep, one row a point."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+import pandas as pd
+import xarray as xr
+
+from ..sweep import point
+from .fronts import front_speed
+from .pulses import leading_pulse
+from .regime import classify
+from .transition import transition_displacement, transition_stress
+
+PARAMETERS = (
+    "boundary", "left", "right", "width", "gamma", "beta", "damping_ratio", "dx", "max_step", "duration",
+    "release", "scheme", "flags", "steps", "block_updates", "energy_residual", "min_velocity", "min_stuck_stress",
+    "friction_ratio_needed", "re_releases", "end_time",
+)  # fmt: skip
+
+
+def measure(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
+    """Measure every point of a sweep.
+
+    Parameters
+    ----------
+    sweep : data of a sweep
+    settings : share, front_window, steady_tolerance, still (see config/README.md)
+
+    Returns
+    -------
+    one row a point: the parameters, then what the recorded data allow; NaN where a quantity does not apply
+    """
+    rows = []
+    for index in range(sweep.sizes["point"]):
+        run = point(sweep, index)
+        row = {name: run.attrs[name] for name in PARAMETERS}
+        steps = json.loads(run.attrs["steps_and_bumps"])["steps"]
+        row["beyond"] = steps[-1][1] if steps else row["right"]
+        for side in ("right", "left"):
+            speed, intercept, error = front_speed(run, settings["front_window"], side)
+            row |= {
+                f"front_speed_{side}": speed,
+                f"front_intercept_{side}": intercept,
+                f"front_speed_error_{side}": error,
+            }
+        if run.attrs["boundary"] == "displacement" and run.attrs["left"] == run.attrs["right"] > 0.0:
+            row |= transition_displacement(run)
+        if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:
+            row |= transition_stress(run, settings["share"])
+        if "slip_velocity" in run:
+            pulse = leading_pulse(run, settings["front_window"])
+            row |= {
+                "pulse_front": pulse.front,
+                "pulse_width": pulse.width,
+                "pulse_peak_velocity": pulse.peak_velocity,
+                "pulse_slip": pulse.slip,
+            }
+        if "sample_velocity" in run and run.sizes["sample_position"] > 1:
+            row |= classify(run, settings["still"], settings["steady_tolerance"])
+        rows.append(row)
+    return pd.DataFrame(rows)

@@ -1,0 +1,89 @@
+"""When and where a crack becomes a pulse: definitions that converge, and the paper's own beside them."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from ..prestress import Prestress
+from ..theory.transition import (
+    paper_transition_displacement,
+    paper_transition_stress,
+    prestress_balance_position,
+)
+from .fronts import arrival, path, position_at
+
+NAN = float("nan")
+
+
+def transition_displacement(run: xr.Dataset) -> dict[str, float]:
+    """Transition under a displacement boundary.
+
+    T_trans is the first stick anywhere (at the nucleation point when the scene is symmetric), L_trans the distance
+    between the fronts then: both converge with dx. The paper defines T_trans by slip 2 tau/gamma at the nucleation
+    point; it is measured with the level's tau_0 and with the tau = 1 that stands there, and is NaN where slip never
+    reaches it.
+    """
+    time = run.attrs["first_stick_time"]
+    length = NAN
+    if np.isfinite(time):
+        length = float(position_at(run, time, "right") + position_at(run, time, "left"))
+    paper_time, paper_length = paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
+    out = {
+        "transition_time": time,
+        "transition_length": length,
+        "paper_transition_time": paper_time,
+        "paper_transition_length": paper_length,
+        "first_stick_position": run.attrs["first_stick_position"],
+    }
+    for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
+        reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
+        out[f"slip_time_{name}"] = reached
+        out[f"slip_length_{name}"] = (
+            float(position_at(run, reached, "right") + position_at(run, reached, "left"))
+            if np.isfinite(reached)
+            else NAN
+        )
+    return out
+
+
+def slip_time(run: xr.Dataset, slip: float) -> float:
+    """When slip at the sampled position nearest x = 0 reaches a value; NaN if never or if nothing was sampled."""
+    if "sample_slip" not in run:
+        return NAN
+    centre = int(np.argmin(np.abs(run["sample_position"].values)))
+    history, times = run["sample_slip"].values[:, centre], run["sample_time"].values
+    beyond = np.flatnonzero(history >= slip)
+    if beyond.size == 0:
+        return NAN
+    i = int(beyond[0])
+    if i == 0:
+        return float(times[0])
+    share = (slip - history[i - 1]) / (history[i] - history[i - 1])
+    return float(times[i - 1] + share * (times[i] - times[i - 1]))
+
+
+def transition_stress(run: xr.Dataset, share: float) -> dict[str, float]:
+    """Transition under a stress boundary, pre-stress 0 on the right and negative on the left.
+
+    T_trans is when the left front has covered ``share`` of |x_minus|, which converges with dx; the arrest (the last
+    release on the left), which the paper draws, does not: in the continuum it never comes.
+    """
+    profile = Prestress(run.attrs["left"], run.attrs["right"], run.attrs["width"], run.attrs["peak"])
+    distance = abs(prestress_balance_position(profile))
+    paper_time, paper_length = paper_transition_stress(profile)
+    time = arrival(run, share * distance, "left")
+    times, distances = path(run, "left")
+    arrest = float(np.max(times)) if times.size else NAN
+    return {
+        "transition_time": time,
+        "transition_length": share * distance + float(position_at(run, time, "right")) if np.isfinite(time) else NAN,
+        "paper_transition_time": paper_time,
+        "paper_transition_length": paper_length,
+        "balance_distance": distance,
+        "last_release_time": arrest,
+        "last_release_distance": float(distances[-1]) if distances.size else NAN,
+        "last_release_length": (
+            float(distances[-1] + position_at(run, arrest, "right")) if distances.size else NAN
+        ),
+    }

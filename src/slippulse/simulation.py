@@ -1,0 +1,153 @@
+"""One scene in, one Dataset out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from .lattice.driver import LatticeRun, UnstableRun, run_scene
+from .lattice.samples import Samples
+from .model import Scene
+from .versions import versions
+
+# Units and long names of every variable that a data file may hold.
+VARIABLES = {
+    "x": ("1", "position, in units of the layer thickness H"),
+    "prestress": ("1", "non-dimensional pre-stress"),
+    "release_time": ("1", "time of the first release, NaN where never"),
+    "stick_time": ("1", "time of the last stick, NaN where never or sliding at the end"),
+    "slip": ("1", "slip at the end"),
+    "slip_velocity": ("1", "slip velocity at the end"),
+    "slip_acceleration": ("1", "slip acceleration at the end"),
+    "sample_time": ("1", "time of a sample"),
+    "sample_position": ("1", "position of a sample, in units of the layer thickness H"),
+    "sample_slip": ("1", "slip at the sampled times and positions"),
+    "sample_velocity": ("1", "slip velocity at the sampled times and positions"),
+}
+
+# A velocity this far below zero, as a share of the largest, means that a stick was stepped over.
+NEGATIVE_VELOCITY = 1e-9
+# An energy balance that misses this share of its largest part means that the step was too long for the damping.
+ENERGY_RESIDUAL = 1e-2
+
+
+class UnresolvedRun(RuntimeError):
+    """A run finished, but its numbers are not those of the model; raised on request, otherwise flagged."""
+
+
+def simulate(
+    scene: Scene,
+    samples: Samples | None = None,
+    progress: Callable[[float], None] | None = None,
+    strict: bool = False,
+) -> xr.Dataset:
+    """Simulate one scene.
+
+    Parameters
+    ----------
+    scene : the scene
+    samples : where and when to record slip and slip velocity during the run; nothing when left out
+    progress : called with the share of the duration done
+    strict : raise instead of flagging a run that meets the reverse-sliding threshold or does not resolve its pulse
+
+    Returns
+    -------
+    Dataset over x with prestress, release_time, stick_time, slip, slip_velocity and slip_acceleration at the end.
+    Attributes: every scene parameter, steps, block_updates, energy balance and energy_residual, min_velocity,
+    re_releases, flags ("" or a comma-separated list), versions.
+
+    Raises
+    ------
+    UnstableRun
+        When slip velocity is not finite or beyond anything the pre-stress can drive.
+    UnresolvedRun
+        With ``strict``, when a flag is set.
+    """
+    run = run_scene(scene, samples, progress)
+    numbers = run.numbers | judge(scene, run)
+    if strict and numbers["flags"]:
+        raise UnresolvedRun(f"the run is flagged: {numbers['flags']} ({describe_flags(scene, numbers)})")
+    data = {
+        name: ("x", getattr(run, name))
+        for name in ("prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
+    }
+    coordinates = {"x": ("x", run.x)}
+    if samples is not None:
+        coordinates["sample_time"] = ("sample_time", samples.times)
+        coordinates["sample_position"] = ("sample_position", samples.positions)
+        data["sample_slip"] = (("sample_time", "sample_position"), run.sample_slip)
+        data["sample_velocity"] = (("sample_time", "sample_position"), run.sample_velocity)
+    dataset = xr.Dataset(data, coords=coordinates)
+    for name in dataset.variables:
+        units, long_name = VARIABLES[name]
+        dataset[name].attrs = {"units": units, "long_name": long_name}
+    dataset.attrs = scene_attributes(scene) | numbers | {"versions": versions()}
+    return dataset
+
+
+def scene_attributes(scene: Scene) -> dict:
+    """Every parameter of a scene as plain attributes of a data file."""
+    profile = scene.prestress.as_dict()
+    return {
+        "boundary": scene.boundary,
+        "gamma": float(scene.gamma),
+        "beta": float(scene.beta),
+        "damping_ratio": float(scene.damping_ratio),
+        "left": profile["left"],
+        "right": profile["right"],
+        "width": profile["width"],
+        "peak": profile["peak"],
+        "steps_and_bumps": json.dumps({"steps": profile["steps"], "bumps": profile["bumps"]}),
+        "duration": float(scene.duration),
+        "dx": float(scene.dx),
+        "release": scene.release,
+        "scheme": scene.scheme,
+        "max_step": float(scene.max_step),
+        "order": int(scene.order),
+        "friction_ratio": float(scene.friction_ratio),
+        "resolved_blocks": int(scene.resolved_blocks),
+    }
+
+
+def judge(scene: Scene, run: LatticeRun) -> dict:
+    """Flags of a finished run: what would make its numbers something else than the model's."""
+    pulse_blocks = narrowest_pulse(scene, run)
+    flags = []
+    if run.numbers["min_stuck_stress"] <= scene.reverse_threshold:
+        flags.append("reverse_sliding")
+    if 0 < pulse_blocks < scene.resolved_blocks:
+        flags.append("unresolved_pulse")
+    # The textbook scheme overshoots zero once a stick by construction: reported as min_velocity, not flagged.
+    overshoot = -NEGATIVE_VELOCITY * max(1.0, float(np.max(run.slip_velocity)))
+    if scene.scheme == "localised" and run.numbers["min_velocity"] < overshoot:
+        flags.append("negative_velocity")
+    if scene.scheme == "localised" and run.numbers["energy_residual"] > ENERGY_RESIDUAL:
+        flags.append("energy")
+    return {"pulse_blocks": pulse_blocks, "flags": ",".join(flags)}
+
+
+def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:
+    """Blocks across the narrowest pulse at the end; under a stress boundary the Gaussian sets the scale."""
+    if scene.boundary == "stress":
+        return int(scene.prestress.width / scene.dx)
+    sliding = np.isfinite(run.release_time) & ~np.isfinite(run.stick_time)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], sliding, [False]]).astype(np.int8)))
+    lengths = edges[1::2] - edges[0::2]
+    # The pulses are the outermost sliding runs; pieces left over behind them are not.
+    return int(min(lengths[0], lengths[-1])) if lengths.size else 0
+
+
+def describe_flags(scene: Scene, numbers: dict) -> str:
+    """The figures behind the flags, in one line."""
+    return (
+        f"lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding at"
+        f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse {numbers['pulse_blocks']}, needed"
+        f" {scene.resolved_blocks}; smallest velocity {numbers['min_velocity']:.3g}; energy residual"
+        f" {numbers['energy_residual']:.2g}, allowed {ENERGY_RESIDUAL:g}"
+    )
+
+
+__all__ = ["Samples", "UnresolvedRun", "UnstableRun", "scene_attributes", "simulate"]

@@ -1,0 +1,53 @@
+"""Files: netCDF data, CSV tables and figures, written whole or not at all and with no clock in them."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import xarray as xr
+
+
+def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
+    """Let ``write`` fill a file beside ``path`` and move it there when it is complete."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+    os.close(handle)
+    part = Path(name)
+    try:
+        write(part)
+        # mkstemp makes private files; results are as readable as anything else the user writes.
+        part.chmod(0o666 & ~_umask())
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
+    """Write a Dataset as netCDF-4; equal data give equal bytes."""
+    write_whole(path, lambda part: dataset.to_netcdf(part, engine="h5netcdf", format="NETCDF4"))
+
+
+def load_dataset(path: str | Path) -> xr.Dataset:
+    """Read a Dataset into memory and close the file."""
+    return xr.load_dataset(path, engine="h5netcdf")
+
+
+def save_table(table: pd.DataFrame, path: str | Path) -> None:
+    """Write a table as CSV, 9 significant digits."""
+    write_whole(path, lambda part: table.to_csv(part, index=False, float_format="%.9g", lineterminator="\n"))
+
+
+def load_table(path: str | Path) -> pd.DataFrame:
+    """Read a table; empty text stays text."""
+    return pd.read_csv(path, keep_default_na=True, na_filter=True)

@@ -1,0 +1,114 @@
+"""The steady slip pulse under a displacement boundary, with damping."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..checks import check_number
+from .front_speed import front_speed_undamped
+
+
+@dataclass(frozen=True)
+class SteadyPulse:
+    """A steady pulse; lengths in units of H, xi = x - v t <= 0 behind the front at xi = 0.
+
+    Attributes
+    ----------
+    speed : front speed v
+    width : distance from the front to where the velocity returns to 0
+    slip : final slip left behind
+    peak_velocity : largest slip velocity
+    stress_drop : gamma times the slip
+    growth, wavenumber : p and q of the complex pair p +- i q
+    """
+
+    tau0: float
+    gamma: float
+    beta: float
+    speed: float
+    width: float
+    slip: float
+    peak_velocity: float
+    stress_drop: float
+    growth: float
+    wavenumber: float
+
+    @property
+    def peak_position(self) -> float:
+        """xi of the largest slip velocity."""
+        return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
+
+    def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Slip, slip velocity and slip acceleration at xi: at rest ahead of the front, stuck behind the pulse."""
+        xi = np.asarray(xi, dtype=float)
+        p, q, v = self.growth, self.wavenumber, self.speed
+        inside = (xi <= 0.0) & (xi >= -self.width)
+        y = np.where(inside, xi, 0.0)
+        size = v * self.tau0 * (p**2 + q**2) / (self.gamma * q)
+        decay = np.exp(p * y)
+        sine, cosine = np.sin(q * y), np.cos(q * y)
+        offset = self.tau0 / self.gamma
+        slip = np.where(inside, offset * (1.0 - decay * (cosine - p / q * sine)), 0.0)
+        slip = np.where(xi < -self.width, self.slip, slip)
+        velocity = np.where(inside, -size * decay * sine, 0.0)
+        acceleration = np.where(inside, v * size * decay * (p * sine + q * cosine), 0.0)
+        return slip, velocity, acceleration
+
+
+def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
+    """Steady pulse in uniform pre-stress behind a front of given speed.
+
+    Parameters
+    ----------
+    tau0 : pre-stress, in (0, 1)
+    gamma : elasticity ratio, > 0
+    beta : damping, >= 0
+    speed : front speed, > 1 (see `front_speed`)
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, naming the value and the range.
+
+    Source: beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of roots; the
+    real root is a layer of width ~ beta v/(v^2 - 1) at the front and is dropped. beta = 0 gives appendix C of the
+    paper before its last step, with any speed.
+    """
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_number("gamma", gamma, above=0.0)
+    check_number("beta", beta, at_least=0.0)
+    check_number("speed", speed, above=1.0)
+    stiffness = (speed - 1.0) * (speed + 1.0)
+    if beta == 0.0:
+        p, q = 0.0, float(np.sqrt(gamma / stiffness))
+    else:
+        roots = np.roots([beta * speed, stiffness, 0.0, gamma])
+        pair = roots[np.argmax(roots.imag)]
+        p, q = float(pair.real), float(pair.imag)
+    width = np.pi / q
+    slip = tau0 / gamma * (1.0 + np.exp(-p * width))
+    modulus = np.hypot(p, q)
+    peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
+    return SteadyPulse(
+        tau0=float(tau0),
+        gamma=float(gamma),
+        beta=float(beta),
+        speed=float(speed),
+        width=float(width),
+        slip=float(slip),
+        peak_velocity=float(peak),
+        stress_drop=float(gamma * slip),
+        growth=p,
+        wavenumber=q,
+    )
+
+
+def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
+    """The paper's pulse: no damping and v = 1/sqrt(1 - tau_0^2), so that the peak velocity is 1/sqrt(gamma).
+
+    Source: section III A and appendix C of the paper.
+    """
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    return steady_pulse(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))

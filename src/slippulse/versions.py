@@ -1,0 +1,12 @@
+"""Versions of what a number depends on."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
+
+
+def versions() -> str:
+    """Names and versions in one line, the same on every machine with the same lock."""
+    return ", ".join(f"{package} {version(package)}" for package in PACKAGES)

@@ -1,0 +1,76 @@
+# What the rules share: the checked configuration, the sources that results depend on, and who draws from what.
+
+from pathlib import Path
+
+from snakemake.exceptions import WorkflowError
+
+from slippulse.config import ConfigError, resolve, validate
+
+try:
+    validate(config, Path(workflow.basedir) / "workflow/schemas/config.schema.yaml")
+except ConfigError as error:
+    raise WorkflowError(f"The configuration is refused:\n{error}") from None
+
+ACCURACY = config["presets"][config["preset"]]
+
+SOURCES = Path(workflow.basedir) / "src/slippulse"
+LOCK = "requirements.lock"
+
+
+def sources(*patterns):
+    """Library files that a result depends on: an edit of one re-runs what uses it, and no more."""
+    found = [path for pattern in patterns for path in sorted(SOURCES.glob(pattern))]
+    return [str(path.relative_to(workflow.basedir)) for path in found]
+
+
+KERNEL_SOURCES = sources("lattice/*.py")
+SIMULATION_SOURCES = KERNEL_SOURCES + sources(
+    "model.py", "prestress.py", "checks.py", "simulation.py", "sweep.py", "versions.py", "theory/transition.py"
+)
+MEASURE_SOURCES = sources("measure/*.py", "theory/*.py")
+
+# Each figure: the simulations whose data it draws and those whose measured numbers it draws.
+FIGURES = {
+    "fig01_system_sketch": {},
+    "fig02_phase_diagram": {
+        "data": ["regimes_displacement", "regimes_stress", "regimes_beyond"],
+        "measured": ["regimes_displacement", "regimes_stress", "regimes_beyond"],
+    },
+    "fig03_steady_state": {
+        "data": ["steady_displacement", "steady_stress"],
+        "measured": ["steady_displacement", "steady_stress"],
+    },
+    "fig04_space_time": {
+        "data": ["space_time_displacement", "space_time_stress"],
+        "measured": ["space_time_displacement", "space_time_stress"],
+    },
+    "fig05_scaling": {"measured": ["scaling_displacement", "scaling_stress"]},
+    "fig06_burridge_knopoff": {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]},
+    "fig07_damage_zone": {},
+    "fig08_steady_state_displacement": {
+        "data": ["steady_displacement"],
+        "measured": ["steady_displacement"],
+    },
+    "fig09_steady_state_stress": {"data": ["steady_stress"], "measured": ["steady_stress"]},
+    "fig10_damping_displacement": {"measured": ["damping_displacement"]},
+    "fig11_damping_stress": {"measured": ["damping_stress"]},
+}
+
+
+def figure_files(names):
+    """PDF, PNG and CSV of each figure."""
+    return [f"results/figures/{name}.{ending}" for name in names for ending in ("pdf", "png", "csv")]
+
+
+def simulation_block(wildcards):
+    """Everything that the data of a simulation depend on, in one dict of builtins."""
+    if wildcards.simulation not in config["simulations"]:
+        raise WorkflowError(
+            f"simulation: {wildcards.simulation!r}; allowed: {', '.join(config['simulations'])}"
+        )
+    return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+
+
+def figure_settings(name):
+    """What a figure takes from the configuration."""
+    return {"measure": config["measure"], **config["figures"].get(name, {})}

@@ -1,0 +1,31 @@
+# One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
+
+for figure, needs in FIGURES.items():
+
+    rule:
+        name:
+            figure
+        input:
+            sources("figures/style.py", f"figures/{figure}.py", "figures/shared/*.py", "theory/*.py"),
+            data=[f"results/data/{name}.nc" for name in needs.get("data", [])],
+            measured=[f"results/measurements/{name}.csv" for name in needs.get("measured", [])],
+        output:
+            png=report(
+                f"results/figures/{figure}.png",
+                caption=f"../report/{figure}.rst",
+                category="Figures of the paper",
+                labels={"figure": figure},
+            ),
+            pdf=f"results/figures/{figure}.pdf",
+            csv=f"results/figures/{figure}.csv",
+        log:
+            f"results/logs/figures/{figure}.log",
+        benchmark:
+            f"results/benchmarks/figures/{figure}.tsv"
+        params:
+            figure=figure,
+            settings=figure_settings(figure),
+        message:
+            f"Drawing {figure}"
+        script:
+            "../scripts/draw_figure.py"

@@ -1,0 +1,37 @@
+# One data file a simulation block of the configuration; its scenes run in a pool of threads.
+
+
+rule compile_kernels:
+    input:
+        KERNEL_SOURCES,
+        LOCK,
+    output:
+        "results/kernels.txt",
+    log:
+        "results/logs/compile_kernels.log",
+    benchmark:
+        "results/benchmarks/compile_kernels.tsv"
+    message:
+        "Compiling the lattice kernels (once)"
+    script:
+        "../scripts/compile_kernels.py"
+
+
+rule simulate:
+    input:
+        SIMULATION_SOURCES,
+        LOCK,
+        kernels="results/kernels.txt",
+    output:
+        "results/data/{simulation}.nc",
+    log:
+        "results/logs/simulate/{simulation}.log",
+    benchmark:
+        "results/benchmarks/simulate/{simulation}.tsv"
+    params:
+        block=simulation_block,
+    threads: 2
+    message:
+        "Simulating {wildcards.simulation}"
+    script:
+        "../scripts/simulate.py"

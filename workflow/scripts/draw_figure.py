@@ -1,0 +1,12 @@
+"""Write the table of one figure and draw the figure from it."""
+
+from slippulse.jobs import draw_figure, logged
+
+with logged(snakemake.log[0]):
+    draw_figure(
+        snakemake.params.figure,
+        snakemake.params.settings,
+        snakemake.input.data,
+        snakemake.input.measured,
+        {key: snakemake.output[key] for key in ("csv", "png", "pdf")},
+    )
