@@ -8,6 +8,10 @@
 configfile: "config/config.yaml"
 
 
+# Read only under `--software-deployment-method apptainer`; otherwise jobs run in the environment of the lock.
+container: "docker://python:3.12-slim"
+
+
 include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/measure.smk"

@@ -119,7 +119,9 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
 def _samples(rule: Mapping | None, scene: Scene) -> Samples | None:
     if rule is None:
         return None
-    positions = np.linspace(-rule["extent"], rule["extent"], rule["positions"]) if rule["positions"] > 1 else [0.0]
+    positions = (
+        np.linspace(-rule["extent"], rule["extent"], rule["positions"]) if rule["positions"] > 1 else [0.0]
+    )
     return Samples(times=np.linspace(0.0, scene.duration, rule["times"]), positions=positions)
 
 
@@ -157,9 +159,7 @@ def _check_simulation(simulation: Mapping) -> None:
         raise ValueError(
             f"gamma: {simulation['gamma']!r}; allowed: left out under boundary 'stress', which has no leaf springs"
         )
-    if "profiles" in simulation and any(
-        key in simulation for key in ("left", "right", "width", "beyond")
-    ):
+    if "profiles" in simulation and any(key in simulation for key in ("left", "right", "width", "beyond")):
         raise ValueError("profiles: given with left, right, width or beyond; allowed: one or the other")
     if "profiles" not in simulation and not ("left" in simulation and "right" in simulation):
         raise ValueError("left, right: missing; allowed: lists of levels (right may be 'same'), or profiles")

@@ -54,7 +54,12 @@ def compile_kernels(output: str | Path) -> None:
 
     for scheme in ("localised", "fixed_step"):
         scene = Scene(
-            boundary="displacement", gamma=0.5, prestress=Prestress(0.5, 0.5), duration=1.0, dx=0.5, scheme=scheme
+            boundary="displacement",
+            gamma=0.5,
+            prestress=Prestress(0.5, 0.5),
+            duration=1.0,
+            dx=0.5,
+            scheme=scheme,
         )
         simulate(scene)
     digest = source_digest()

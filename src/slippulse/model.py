@@ -93,13 +93,13 @@ class Scene:
         if self.boundary == "stress":
             if self.gamma != 0.0:
                 raise ValueError(
-                    f"gamma: {self.gamma!r}; allowed: 0 (or left out) under boundary 'stress', which has no leaf springs"
+                    f"gamma: {self.gamma!r}; allowed: 0 or left out under boundary 'stress' (no leaf springs)"
                 )
         else:
             check_number("gamma", self.gamma, above=0.0)
         if self.prestress.width < self.dx:
             raise ValueError(
-                f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, or the lattice misses the peak"
+                f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
         check_number("max_step", self.max_step, above=0.0)
         bound = self.largest_stable_step

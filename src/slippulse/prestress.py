@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from numbers import Real
 
 import numpy as np
@@ -52,10 +53,14 @@ class Prestress:
             check_number(f"prestress.{name}", getattr(self, name))
         check_number("prestress.width", self.width, above=0.0)
         object.__setattr__(self, "steps", _tuples("prestress.steps", self.steps, ("position", "level")))
-        object.__setattr__(self, "bumps", _tuples("prestress.bumps", self.bumps, ("centre", "amplitude", "width")))
+        object.__setattr__(
+            self, "bumps", _tuples("prestress.bumps", self.bumps, ("centre", "amplitude", "width"))
+        )
         for position, _ in self.steps:
             if position == 0.0:
-                raise ValueError("prestress.steps: position is 0.0; allowed: any other number (use left and right)")
+                raise ValueError(
+                    "prestress.steps: position is 0.0; allowed: any other number (use left and right)"
+                )
         for *_, width in self.bumps:
             check_number("prestress.bumps width", width, above=0.0)
 
@@ -65,7 +70,9 @@ class Prestress:
         mirrored_steps = {(-position, level) for position, level in self.steps}
         mirrored_bumps = {(-centre, amplitude, width) for centre, amplitude, width in self.bumps}
         return (
-            self.left == self.right and set(self.steps) == mirrored_steps and set(self.bumps) == mirrored_bumps
+            self.left == self.right
+            and set(self.steps) == mirrored_steps
+            and set(self.bumps) == mirrored_bumps
         )
 
     def level(self, x: np.ndarray) -> np.ndarray:
@@ -90,7 +97,7 @@ class Prestress:
         inside = sorted({0.0, *(position for position, _ in self.steps)} | {lower, upper})
         edges = [x for x in inside if min(lower, upper) <= x <= max(lower, upper)]
         total = 0.0
-        for a, b in zip(edges[:-1], edges[1:], strict=True):
+        for a, b in pairwise(edges):
             level = float(self.level(np.asarray(0.5 * (a + b))))
             total += level * (b - a) + (self.peak - level) * _gaussian_area(a, b, 0.0, self.width)
         for centre, amplitude, width in self.bumps:

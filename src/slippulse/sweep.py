@@ -76,7 +76,12 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
     for name in out.variables:
         # Parameters and counts carry their meaning in their name; all are non-dimensional.
         out[name].attrs = {"units": "1", "long_name": name.replace("_", " ")}
-    kept = ("x", "prestress", *(FRONTS if "fronts" in record else ()), *(FIELDS if "fields" in record else ()))
+    kept = (
+        "x",
+        "prestress",
+        *(FRONTS if "fronts" in record else ()),
+        *(FIELDS if "fields" in record else ()),
+    )
     if len(kept) > 2:
         out["row_size"] = ("point", np.array([result.sizes["x"] for result in results]))
         out["row_size"].attrs = {
@@ -108,7 +113,9 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     """One run of a sweep as `simulate` returned it, as far as it was recorded."""
     out = xr.Dataset()
     scalars = [
-        name for name, variable in sweep.variables.items() if variable.dims == ("point",) and name != "row_size"
+        name
+        for name, variable in sweep.variables.items()
+        if variable.dims == ("point",) and name != "row_size"
     ]
     if "row_size" in sweep:
         ends = np.cumsum(sweep["row_size"].values)

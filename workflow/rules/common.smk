@@ -25,7 +25,13 @@ def sources(*patterns):
 
 KERNEL_SOURCES = sources("lattice/*.py")
 SIMULATION_SOURCES = KERNEL_SOURCES + sources(
-    "model.py", "prestress.py", "checks.py", "simulation.py", "sweep.py", "versions.py", "theory/transition.py"
+    "model.py",
+    "prestress.py",
+    "checks.py",
+    "simulation.py",
+    "sweep.py",
+    "versions.py",
+    "theory/transition.py",
 )
 MEASURE_SOURCES = sources("measure/*.py", "theory/*.py")
 

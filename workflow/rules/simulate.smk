@@ -28,9 +28,9 @@ rule simulate:
         "results/logs/simulate/{simulation}.log",
     benchmark:
         "results/benchmarks/simulate/{simulation}.tsv"
+    threads: 2
     params:
         block=simulation_block,
-    threads: 2
     message:
         "Simulating {wildcards.simulation}"
     script:

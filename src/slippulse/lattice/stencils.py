@@ -49,7 +49,9 @@ def next_derivative(out, lower, upper, per_dx2, leaf, damping):
             out[i] = per_dx2 * ((lower[i + 2] - lower[i + 1]) - (lower[i + 1] - lower[i]))
     elif damping == 0.0:
         for i in range(n):
-            out[i] = per_dx2 * ((lower[i + 2] - lower[i + 1]) - (lower[i + 1] - lower[i])) - leaf * lower[i + 1]
+            out[i] = (
+                per_dx2 * ((lower[i + 2] - lower[i + 1]) - (lower[i + 1] - lower[i])) - leaf * lower[i + 1]
+            )
     elif leaf == 0.0:
         for i in range(n):
             out[i] = per_dx2 * ((lower[i + 2] - lower[i + 1]) - (lower[i + 1] - lower[i])) + damping * (
@@ -70,7 +72,13 @@ def velocity_after(out, w, first, last, step, order):
     n = last - first
     target = out[first:last]
     if order == 4:
-        v, a, b, c, d = (w[1, first:last], w[2, first:last], w[3, first:last], w[4, first:last], w[5, first:last])
+        v, a, b, c, d = (
+            w[1, first:last],
+            w[2, first:last],
+            w[3, first:last],
+            w[4, first:last],
+            w[5, first:last],
+        )
         h2, h3, h4 = step / 2.0, step / 3.0, step / 4.0
         for i in range(n):
             target[i] = v[i] + step * (a[i] + h2 * (b[i] + h3 * (c[i] + h4 * d[i])))

@@ -77,7 +77,9 @@ def transition_stress(run: xr.Dataset, share: float) -> dict[str, float]:
     arrest = float(np.max(times)) if times.size else NAN
     return {
         "transition_time": time,
-        "transition_length": share * distance + float(position_at(run, time, "right")) if np.isfinite(time) else NAN,
+        "transition_length": share * distance + float(position_at(run, time, "right"))
+        if np.isfinite(time)
+        else NAN,
         "paper_transition_time": paper_time,
         "paper_transition_length": paper_length,
         "balance_distance": distance,

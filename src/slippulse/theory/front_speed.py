@@ -79,7 +79,9 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
         Outside the domain, naming the value and the range.
     """
     check_choice("release", release, RELEASES)
-    speeds, ratio = np.broadcast_arrays(np.asarray(speed, dtype=float), np.asarray(damping_ratio, dtype=float))
+    speeds, ratio = np.broadcast_arrays(
+        np.asarray(speed, dtype=float), np.asarray(damping_ratio, dtype=float)
+    )
     out = np.empty(speeds.shape)
     for index in np.ndindex(speeds.shape):
         check_number("speed", float(speeds[index]), above=1.0)
@@ -129,7 +131,9 @@ def _speed(tau: float, ratio: float, release: str) -> float:
     while mismatch(upper) < 0.0:
         upper += 2.0
         if upper > 60.0:
-            raise ValueError(f"tau0: {tau!r}; allowed: values with a finite speed at damping_ratio = {ratio:g}")
+            raise ValueError(
+                f"tau0: {tau!r}; allowed: values with a finite speed at damping_ratio = {ratio:g}"
+            )
     return 1.0 + float(np.exp(brentq(mismatch, lower, upper, xtol=1e-13, rtol=1e-13)))
 
 
@@ -162,9 +166,8 @@ def _quadrature(excess: float, ratio: float, release: str, periods: int) -> floa
     z = (0.5 * (edges[1:] + edges[:-1])[:, None] + half * NODES).ravel()
     weight = (half * WEIGHTS).ravel()
     bend = np.where(z < 1e-4, z**2 * (1.0 - z**2 / 12.0), 2.0 * (1.0 - np.cos(z)))
-    p = bend / (v * z) ** 2
     q = b * bend / (v * z)
-    # 1 - p without cancellation at small z, where p -> 1/v^2 and v may be close to 1.
+    # Re M = 1 - p, p = bend/(v z)^2, without cancellation at small z, where p -> 1/v^2 and v may be close to 1.
     lag = np.where(z < 1e-2, z**2 / 12.0 * (1.0 - z**2 / 30.0 * (1.0 - z**2 / 56.0)), 1.0 - bend / z**2)
     real = (excess * (2.0 + excess) + lag) / v**2
     argument = np.arctan2(-q, real)
