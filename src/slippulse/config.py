@@ -23,12 +23,18 @@ class ConfigError(ValueError):
     """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
 
 
-def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping) -> dict:
-    """One simulation block with everything that its data depend on, as builtins: what a rule passes as params."""
+def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping, coarser: float = 1.0) -> dict:
+    """One simulation block with everything that its data depend on, as builtins: what a rule passes as params.
+
+    ``coarser`` multiplies the spacing, at fixed beta/dx and step/dx; where the spacing is fixed, it multiplies the step.
+    """
     block = {key: value for key, value in simulation.items()}
     for key, value in model.items():
         block.setdefault(key, [value] if key == "damping_ratio" else value)
-    return block | {"accuracy": dict(accuracy)}
+    return block | {
+        "accuracy": {key: accuracy[key] for key in ("dx", "max_step", "order")},
+        "coarser": coarser,
+    }
 
 
 def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
@@ -44,18 +50,23 @@ def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
         If a scene is refused, naming the key, the value and what is allowed.
     """
     scenes, samples = [], []
-    for profile, gamma, ratio in itertools.product(
-        _profiles(block), block.get("gamma", [0.0]), block["damping_ratio"]
+    damping = [("beta", value) for value in block.get("beta", [])] or [
+        ("damping_ratio", value) for value in block["damping_ratio"]
+    ]
+    for profile, gamma, spacing, (kind, value) in itertools.product(
+        _profiles(block), block.get("gamma", [0.0]), block.get("dx", [None]), damping
     ):
-        dx = _spacing(block, profile.width, gamma)
+        dx = _spacing(block, profile.width, gamma, spacing)
         duration = _duration(block["duration"], profile, gamma)
+        beta = value if kind == "beta" else value * dx
+        ratio = beta / dx
         scene = Scene(
             boundary=block["boundary"],
             prestress=profile,
             duration=duration,
             dx=dx,
             gamma=gamma,
-            beta=ratio * dx,
+            beta=beta,
             release=block["release"],
             scheme=block["scheme"],
             max_step=_step(block, gamma * dx**2, ratio),
@@ -86,11 +97,13 @@ def _steps_beyond(rule: Mapping | None) -> list[tuple]:
     return [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
 
 
-def _spacing(block: Mapping, width: float, gamma: float) -> float:
+def _spacing(block: Mapping, width: float, gamma: float, spacing: float | None) -> float:
+    if spacing is not None:
+        return float(f"{block['coarser'] * spacing:.12g}")
     rule = block.get("spacing", {})
     if "fixed" in rule:
         return float(rule["fixed"])
-    scale = rule.get("scale", 1.0) * width ** rule.get("width_power", 0.0)
+    scale = block["coarser"] * rule.get("scale", 1.0) * width ** rule.get("width_power", 0.0)
     if "gamma_power" in rule:
         scale *= gamma ** rule["gamma_power"]
     # Twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label.
@@ -101,10 +114,9 @@ def _step(block: Mapping, gamma_dx2: float, ratio: float) -> float:
     """The block's own step, or the preset's, or nine tenths of the bound where strong damping allows less."""
     from .lattice.stability import largest_step
 
-    if "max_step" in block:
-        return float(block["max_step"])
     bound = largest_step(block["scheme"], block["accuracy"]["order"], ratio, gamma_dx2)
-    return float(min(block["accuracy"]["max_step"], 0.9 * bound))
+    step = block.get("max_step", min(block["accuracy"]["max_step"], 0.9 * bound))
+    return float(step * block["coarser"] if "fixed" in block.get("spacing", {}) else step)
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
@@ -143,7 +155,9 @@ def validate(config: Mapping, schema_path: str | Path) -> None:
     for name, simulation in config["simulations"].items():
         try:
             _check_simulation(simulation)
-            expand(resolve(simulation, config["model"], config["presets"][config["preset"]]))
+            accuracy = config["presets"][config["preset"]]
+            for coarser in (1.0, *accuracy["coarser"]):
+                expand(resolve(simulation, config["model"], accuracy, coarser))
         except ValueError as error:
             problems.append(f"simulations.{name}.{error}")
     if problems:
@@ -163,6 +177,10 @@ def _check_simulation(simulation: Mapping) -> None:
         raise ValueError("profiles: given with left, right, width or beyond; allowed: one or the other")
     if "profiles" not in simulation and not ("left" in simulation and "right" in simulation):
         raise ValueError("left, right: missing; allowed: lists of levels (right may be 'same'), or profiles")
+    if "dx" in simulation and "spacing" in simulation:
+        raise ValueError("dx: given with spacing; allowed: one or the other")
+    if "beta" in simulation and "damping_ratio" in simulation:
+        raise ValueError("beta: given with damping_ratio; allowed: one or the other")
     if "half_periods" in simulation["duration"] and not displacement:
         raise ValueError("duration.half_periods: given; allowed: only under boundary 'displacement'")
     if "gamma_power" in simulation.get("spacing", {}) and not displacement:

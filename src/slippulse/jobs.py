@@ -83,11 +83,10 @@ def simulate_block(name: str, block: Mapping, threads: int, output: str | Path) 
             sys.stderr.flush()
 
     sweep = run_sweep(scenes, samples, block["record"], threads, progress)
-    flagged = [(i, flags) for i, flags in enumerate(sweep["flags"].values) if flags]
-    for i, flags in flagged:
+    flags = [run for run in sweep["flags"].values if run]
+    for kind in sorted(set(flags)):
         sys.stderr.write(
-            f"  {name}: run {i} is flagged {flags}: left {scenes[i].prestress.left:g}, right"
-            f" {scenes[i].prestress.right:g}, gamma {scenes[i].gamma:g}, beta/dx {scenes[i].damping_ratio:g}\n"
+            f"  {name}: {flags.count(kind)} of {len(scenes)} runs are flagged {kind} (in the data, point by point)\n"
         )
     save_dataset(sweep, output)
 
@@ -98,6 +97,51 @@ def measure_block(data: str | Path, settings: Mapping, output: str | Path) -> No
     from .store import load_dataset, save_table
 
     save_table(measure(load_dataset(data), settings), output)
+
+
+def estimate_uncertainty(
+    finest: str | Path, coarser: Sequence[str], factors: Sequence[float], output: str | Path
+) -> None:
+    """Compare the measured tables of three spacings and write the grid study of every number."""
+    from .measure.table import PARAMETERS
+    from .measure.uncertainty import grid_tables
+    from .store import load_table, save_table
+
+    order = sorted(range(len(factors)), key=lambda i: factors[i])
+    tables = (load_table(finest), *(load_table(coarser[i]) for i in order))
+    save_table(grid_tables(tables, tuple(factors[i] for i in order), PARAMETERS), output)
+
+
+def write_claims(
+    measured: Sequence[str],
+    coarser: Sequence[str],
+    uncertainties: Sequence[str],
+    tolerances: Mapping,
+    share: float,
+    readings: Mapping,
+    output: str | Path,
+) -> None:
+    """Compute every claim's verdict and write the ledger."""
+    import json
+
+    from .claims import Evidence, all_claims
+    from .store import load_table, write_whole
+
+    tables = {Path(path).stem: load_table(path) for path in measured}
+    coarse: dict[str, list] = {name: [] for name in tables}
+    for path in coarser:
+        coarse[Path(path).stem.rpartition("_x")[0]].append(load_table(path))
+    studies = {Path(path).stem: load_table(path) for path in uncertainties}
+    claims = all_claims(Evidence(tables, coarse, studies, tolerances), share, readings)
+    text = json.dumps([_finite(claim.as_dict()) for claim in claims], indent=1, ensure_ascii=False) + "\n"
+    write_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def _finite(entry: dict) -> dict:
+    """JSON has no NaN: what was not measured is null."""
+    return {
+        key: None if isinstance(value, float) and value != value else value for key, value in entry.items()
+    }
 
 
 def draw_figure(

@@ -35,6 +35,25 @@ SIMULATION_SOURCES = KERNEL_SOURCES + sources(
 )
 MEASURE_SOURCES = sources("measure/*.py", "theory/*.py")
 
+CLAIM_SOURCES = sources("claims/*.py", "theory/*.py")
+CLAIM_SIMULATIONS = [
+    "any_prestress",
+    "burridge_knopoff_speed",
+    "damping_displacement",
+    "damping_stress",
+    "pulses_across_a_step",
+    "regimes_beyond",
+    "regimes_displacement",
+    "regimes_stress",
+    "scaling_displacement",
+    "scaling_stress",
+    "space_time_displacement",
+    "space_time_stress",
+    "speed_against_gamma",
+    "steady_displacement",
+    "steady_stress",
+]
+
 # Each figure: the simulations whose data it draws and those whose measured numbers it draws.
 FIGURES = {
     "fig01_system_sketch": {},
@@ -74,7 +93,8 @@ def simulation_block(wildcards):
         raise WorkflowError(
             f"simulation: {wildcards.simulation!r}; allowed: {', '.join(config['simulations'])}"
         )
-    return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+    coarser = float(getattr(wildcards, "coarser", 1.0))
+    return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY, coarser)
 
 
 def figure_settings(name):

@@ -17,6 +17,11 @@ rule compile_kernels:
         "../scripts/compile_kernels.py"
 
 
+wildcard_constraints:
+    simulation="[a-z][a-z0-9_]*",
+    coarser=r"\d+\.\d+",
+
+
 rule simulate:
     input:
         SIMULATION_SOURCES,
@@ -35,3 +40,14 @@ rule simulate:
         "Simulating {wildcards.simulation}"
     script:
         "../scripts/simulate.py"
+
+
+use rule simulate as simulate_coarser with:
+    output:
+        "results/data/coarser/{simulation}_x{coarser}.nc",
+    log:
+        "results/logs/simulate_coarser/{simulation}_x{coarser}.log",
+    benchmark:
+        "results/benchmarks/simulate_coarser/{simulation}_x{coarser}.tsv"
+    message:
+        "Simulating {wildcards.simulation} on a lattice {wildcards.coarser} times coarser"

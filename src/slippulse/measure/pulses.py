@@ -97,3 +97,32 @@ def comoving(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> dict[
     for name in ("slip", "slip_velocity", "slip_acceleration"):
         out[name] = run[name].values[half][order]
     return out
+
+
+def acceleration_amplitude(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> float:
+    """Amplitude of the slip acceleration across a pulse, by projection on the sine that spans its width.
+
+    The undamped lattice rings at the grid scale behind the front; a projection averages the ringing out, the largest
+    value would report it. NaN for a pulse without a trailing edge.
+    """
+    if not np.isfinite(pulse.width):
+        return float("nan")
+    fields = comoving(run, pulse, side)
+    inside = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
+    shape = np.cos(np.pi * fields["xi"][inside] / pulse.width)
+    if shape.size < 4:
+        return float("nan")
+    return float(np.sum(fields["slip_acceleration"][inside] * shape) / np.sum(shape**2))
+
+
+def slip_variation(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> float:
+    """Largest relative change of the slip left behind over the last third of the path before the pulse."""
+    if not np.isfinite(pulse.width) or not np.isfinite(pulse.slip) or pulse.slip == 0.0:
+        return float("nan")
+    fields = comoving(run, pulse, side)
+    end = -pulse.width - 4.0 * run.attrs["dx"]
+    third = (fields["xi"] < end) & (fields["xi"] > end - (pulse.front - pulse.width) / 3.0)
+    if not third.any():
+        return float("nan")
+    slip = fields["slip"][third]
+    return float((slip.max() - slip.min()) / pulse.slip)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 
 from ..sweep import point
-from .fronts import front_speed
-from .pulses import leading_pulse
+from .fronts import front_speed, position_at
+from .pulses import acceleration_amplitude, leading_pulse, slip_variation
 from .regime import classify
 from .transition import transition_displacement, transition_stress
 
@@ -27,7 +28,7 @@ def measure(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
     Parameters
     ----------
     sweep : data of a sweep
-    settings : share, front_window, steady_tolerance, still (see config/README.md)
+    settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
 
     Returns
     -------
@@ -50,13 +51,20 @@ def measure(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
             row |= transition_displacement(run)
         if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:
             row |= transition_stress(run, settings["share"])
+        row["first_stick_time"] = run.attrs["first_stick_time"]
+        for time in settings["trailing_times"]:
+            row[f"trailing_edge_{time:g}"] = float(position_at(run, time, "right", "stick_time"))
         if "slip_velocity" in run:
+            row["largest_velocity"] = float(np.max(run["slip_velocity"]))
             pulse = leading_pulse(run, settings["front_window"])
             row |= {
                 "pulse_front": pulse.front,
                 "pulse_width": pulse.width,
                 "pulse_peak_velocity": pulse.peak_velocity,
                 "pulse_slip": pulse.slip,
+                "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
+                "pulse_acceleration": acceleration_amplitude(run, pulse),
+                "slip_variation": slip_variation(run, pulse),
             }
         if "sample_velocity" in run and run.sizes["sample_position"] > 1:
             row |= classify(run, settings["still"], settings["steady_tolerance"])

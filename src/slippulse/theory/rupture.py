@@ -1,8 +1,8 @@
 """The crack-pulse transition, exactly, in the continuum limit dx -> 0 at fixed beta/dx.
 
-While tau(x) > 0 a front outruns the waves, so the curve t = T(x), T(x) = Int_0^x dx'/v(tau(x'), beta/dx), carries slip,
-slip velocity and strain 0 like an initial curve, and the damping, beta = (beta/dx) dx -> 0, acts at the front alone. Behind
-it the undamped equation has Riemann's solution. Each position beyond a front starts to feel its pre-stress at T(x), so
+While tau(x) > 0 a front outruns the waves, so the curve t = T(x), T(x) = Int_0^x dx'/v(tau(x'), beta/dx), carries
+slip, slip velocity and strain 0 like an initial curve, and the damping, beta = (beta/dx) dx -> 0, acts at the front
+alone. Behind it the undamped equation has Riemann's solution. Each position starts to feel its pre-stress at T(x), so
 
     du/dt(y, t) = (1/2) Int tau(x) J0( sqrt(gamma) sqrt( (t - T(x))^2 - (x - y)^2 ) ) dx   over |x - y| < t - T(x),
 
@@ -244,9 +244,9 @@ def exact_transition_displacement(
 class ArrestingCrack:
     """Gamma = 0, tau = 0 far to the right and negative far to the left: the crack whose left front slows for ever.
 
-    du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const, both from 0 where a front
-    outruns the waves. Where tau < 0 the left front is slower than the waves and, with no fracture energy, slip, slip
-    velocity and strain vanish there. So a characteristic that entered at e leaves through the left front at X with
+    du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const, both from 0 where a
+    front outruns the waves. Where tau < 0 the left front is slower than the waves and, with no fracture energy, slip,
+    slip velocity and strain vanish there. So a characteristic that entered at e ends on the left front at X with
 
         Int_X^e tau dx = 0,   t = e + T(e) - X,
 

@@ -1,0 +1,101 @@
+"""Numerical uncertainty from a grid study: three spacings, the observed order, the extrapolated value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy.optimize import brentq
+
+# Observed orders outside this range are not an order: the three values are then only a spread.
+ORDERS = (0.5, 6.0)
+
+
+@dataclass(frozen=True)
+class GridStudy:
+    """What three spacings say about one number.
+
+    Attributes
+    ----------
+    value : at the finest spacing
+    extrapolated : at spacing 0, by the observed order; the finest value where there is none
+    order : observed order; NaN where the three values do not follow a power of the spacing
+    uncertainty : |value - extrapolated|, or the spread of the three where there is no order
+    """
+
+    value: float
+    extrapolated: float
+    order: float
+    uncertainty: float
+
+
+def grid_study(values: tuple[float, float, float], factors: tuple[float, float]) -> GridStudy:
+    """Observed order, extrapolation and uncertainty from values at spacings dx, c_1 dx and c_2 dx.
+
+    Parameters
+    ----------
+    values : at the finest, the middle and the coarsest spacing
+    factors : c_1 < c_2, both > 1
+
+    Source: f(h) = f_0 + C h^p through the three values (Richardson).
+    """
+    finest, middle, coarsest = (float(value) for value in values)
+    nan = float("nan")
+    if not np.isfinite(finest):
+        return GridStudy(finest, finest, nan, nan)
+    if not np.isfinite([middle, coarsest]).all():
+        return GridStudy(finest, finest, nan, nan)
+    spread = max(finest, middle, coarsest) - min(finest, middle, coarsest)
+    first, second = middle - finest, coarsest - finest
+    if spread <= 1e-14 * max(1.0, abs(finest)):
+        return GridStudy(finest, finest, nan, spread)
+
+    def mismatch(order: float) -> float:
+        return second * (factors[0] ** order - 1.0) - first * (factors[1] ** order - 1.0)
+
+    low, high = ORDERS
+    if first == 0.0 or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
+        return GridStudy(finest, finest, nan, spread)
+    order = float(brentq(mismatch, low, high))
+    extrapolated = finest - first / (factors[0] ** order - 1.0)
+    return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
+
+
+def grid_tables(
+    tables: tuple[pd.DataFrame, ...], factors: tuple[float, float], keys: tuple[str, ...]
+) -> pd.DataFrame:
+    """A grid study of every measured number of a sweep.
+
+    Parameters
+    ----------
+    tables : measured tables at the finest, the middle and the coarsest spacing, rows in the same order
+    factors : c_1 < c_2
+    keys : columns that name a point rather than measure it
+
+    Returns
+    -------
+    long table: the keys and `point`, then quantity, value, extrapolated, order, uncertainty
+    """
+    finest = tables[0]
+    rows = []
+    quantities = [
+        name
+        for name in finest.columns
+        if name not in keys and finest[name].dtype.kind == "f" and not name.startswith("paper_")
+    ]
+    for index in range(len(finest)):
+        point = {"point": index} | {key: finest[key].iloc[index] for key in keys}
+        for name in quantities:
+            study = grid_study(tuple(table[name].iloc[index] for table in tables), factors)
+            rows.append(
+                point
+                | {
+                    "quantity": name,
+                    "value": study.value,
+                    "extrapolated": study.extrapolated,
+                    "order": study.order,
+                    "uncertainty": study.uncertainty,
+                }
+            )
+    return pd.DataFrame(rows)

@@ -1,0 +1,136 @@
+"""Blocks and springs of unit mass and stiffness, integrated independently of the lattice code.
+
+One ordinary differential equation for the sliding blocks between two events, by an adaptive eighth-order
+Runge-Kutta method at a tolerance near rounding; every event is looked for on a fine mesh inside every step, so that
+one that comes and goes within a step is seen too.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import DOP853
+from scipy.optimize import brentq
+
+RELATIVE, ABSOLUTE = 1e-12, 1e-13
+LONGEST_STEP = 0.1
+MESH = np.linspace(0.0, 1.0, 9)[1:]
+# Events this close are one: the two sides of a symmetric chain.
+TOGETHER = 1e-9
+
+
+@dataclass
+class Chain:
+    """A chain of blocks at positions 0, +-1, +-2, ..., at rest at first.
+
+    Parameters
+    ----------
+    pull : force on each block when nothing has moved, shape (n,); the end blocks must never move
+    leaf : stiffness of each block's leaf spring
+    damping : of the springs between neighbours
+    release : "total" or "elastic", whether the damping force helps to release a block
+    """
+
+    pull: np.ndarray
+    leaf: float
+    damping: float
+    release: str
+
+    def __post_init__(self) -> None:
+        n = self.pull.size
+        self.slip, self.velocity = np.zeros(n), np.zeros(n)
+        self.release_time, self.stick_time = np.full(n, np.nan), np.full(n, np.nan)
+        self.sliding = np.zeros(n, dtype=bool)
+        self.releases = self.sticks = 0
+
+    def elastic(self, slip: np.ndarray) -> np.ndarray:
+        """Force of the springs and of the pull; the ends are held."""
+        held = np.concatenate([[0.0], slip, [0.0]])
+        return np.diff(held, 2) - self.leaf * slip + self.pull
+
+    def drag(self, velocity: np.ndarray) -> np.ndarray:
+        """Force of the dampers between neighbours."""
+        held = np.concatenate([[0.0], velocity, [0.0]])
+        return self.damping * np.diff(held, 2)
+
+    def threshold_force(self, slip: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+        """What is compared with the friction threshold."""
+        return self.elastic(slip) + (self.drag(velocity) if self.release == "total" else 0.0)
+
+    def rate(self, _time: float, state: np.ndarray) -> np.ndarray:
+        """Time derivative of slip and velocity: stuck blocks keep both."""
+        slip, velocity = np.split(state, 2)
+        acceleration = np.where(self.sliding, self.elastic(slip) + self.drag(velocity), 0.0)
+        return np.concatenate([np.where(self.sliding, velocity, 0.0), acceleration])
+
+    def run(self, duration: float) -> Chain:
+        """Advance to ``duration`` or until everything is stuck."""
+        self._release(self.threshold_force(self.slip, self.velocity) >= 1.0, 0.0)
+        time = 0.0
+        while time < duration and self.sliding.any():
+            state = np.concatenate([self.slip, self.velocity])
+            solver = DOP853(
+                self.rate, time, state, duration, max_step=LONGEST_STEP, rtol=RELATIVE, atol=ABSOLUTE
+            )
+            while solver.status == "running":
+                solver.step()
+                path = solver.dense_output()
+                event = self._first_event(path)
+                if event is not None:
+                    time = event
+                    state = path(time)
+                    break
+                time, state = solver.t, solver.y
+            self.slip, self.velocity = np.split(state.copy(), 2)
+            self._apply(time)
+        return self
+
+    def _margins(self, state: np.ndarray) -> np.ndarray:
+        """Per block, what is above 0 as long as nothing happens: distance to release, or velocity."""
+        slip, velocity = np.split(state, 2)
+        return np.where(self.sliding, velocity, 1.0 - self.threshold_force(slip, velocity))
+
+    def _first_event(self, path) -> float | None:
+        """When a margin first falls below 0 within the last step."""
+        before = path.t_old
+        for share in MESH:
+            now = path.t_old + share * (path.t - path.t_old)
+            fallen = np.flatnonzero(self._margins(path(now)) < 0.0)
+            times = []
+            for block in fallen:
+
+                def margin(time: float, block: int = block) -> float:
+                    return self._margins(path(time))[block]
+
+                # A block released at the start of the step has velocity 0 there.
+                times.append(
+                    brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
+                )
+            if times:
+                return min(times)
+            before = now
+        return None
+
+    def _apply(self, time: float) -> None:
+        """Stick what has stopped and release what has reached the threshold."""
+        state = np.concatenate([self.slip, self.velocity])
+        rate = self.rate(time, state)
+        slip_rate, velocity_rate = np.split(rate, 2)
+        force_rate = self.elastic(slip_rate) - self.pull
+        if self.release == "total":
+            force_rate += self.drag(velocity_rate)
+        margin = self._margins(state)
+        stops = self.sliding & (margin <= TOGETHER * np.abs(velocity_rate)) & (velocity_rate < 0.0)
+        starts = ~self.sliding & (margin <= TOGETHER * np.abs(force_rate)) & (force_rate > 0.0)
+        self.sliding[stops] = False
+        self.velocity[stops] = 0.0
+        self.stick_time[stops] = time
+        self.sticks += int(stops.sum())
+        self._release(starts, time)
+
+    def _release(self, starts: np.ndarray, time: float) -> None:
+        self.sliding |= starts
+        self.release_time[starts & np.isnan(self.release_time)] = time
+        self.stick_time[starts] = np.nan
+        self.releases += int(starts.sum())

@@ -1,0 +1,14 @@
+"""Compute the ledger of claims."""
+
+from slippulse.jobs import logged, write_claims
+
+with logged(snakemake.log[0]):
+    write_claims(
+        snakemake.input.measured,
+        snakemake.input.coarser,
+        snakemake.input.uncertainties,
+        snakemake.params.settings["claims"],
+        snakemake.params.settings["measure"]["share"],
+        snakemake.params.settings["published"],
+        snakemake.output[0],
+    )
