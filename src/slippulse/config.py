@@ -26,7 +26,7 @@ class ConfigError(ValueError):
 def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping, coarser: float = 1.0) -> dict:
     """One simulation block with everything that its data depend on, as builtins: what a rule passes as params.
 
-    ``coarser`` multiplies the spacing, at fixed beta/dx and step/dx; where the spacing is fixed, it multiplies the step.
+    ``coarser`` multiplies the spacing, at fixed beta/dx and step/dx; a fixed spacing stays, and its step is multiplied.
     """
     block = {key: value for key, value in simulation.items()}
     for key, value in model.items():

@@ -104,9 +104,7 @@ class Chain:
                     return self._margins(path(time))[block]
 
                 # A block released at the start of the step has velocity 0 there.
-                times.append(
-                    brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
-                )
+                times.append(brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before)
             if times:
                 return min(times)
             before = now

@@ -54,8 +54,8 @@ def judge(
 
     Returns
     -------
-    "not testable" without a finite measurement, uncertainty or prediction; "not reproduced" if the deviation exceeds the
-    tolerance by more than the numerical uncertainty; "reproduced with caveat" if the tolerance lies within the
+    "not testable" without a finite measurement, uncertainty or prediction; "not reproduced" if the deviation exceeds
+    the tolerance by more than the numerical uncertainty; "reproduced with caveat" if the tolerance lies within the
     uncertainty of the deviation, or a condition is attached; else "reproduced"
     """
     if not all(math.isfinite(value) for value in (predicted, measured, uncertainty)):

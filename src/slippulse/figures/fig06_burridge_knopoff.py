@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -117,10 +118,7 @@ def draw_rows(axes, rows: pd.DataFrame, leaf: bool) -> None:
         state = state[(state["x"] >= low) & (state["x"] <= high)].sort_values("x")
         base = -pitch * row
         centre = (state["x"] + state["scale"] * state["slip"]).to_numpy()
-        coils = [
-            coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT)
-            for a, b in zip(centre[:-1], centre[1:], strict=True)
-        ]
+        coils = [coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT) for a, b in pairwise(centre)]
         axes.add_collection(LineCollection(coils, colors="0.35", linewidths=0.6))
         axes.plot([low, high], [base, base], color="black", linewidth=0.8)
         if leaf:

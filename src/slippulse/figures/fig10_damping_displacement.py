@@ -49,7 +49,7 @@ def plot(table: pd.DataFrame) -> Figure:
             color=ORANGE,
             zorder=4,
             gid="corrected",
-            label=r"$2\pi v/\sqrt{\bar\gamma}$ with the exact damped front speed $v(\bar\tau_0, \bar\beta/\mathrm{d}\bar x)$",
+            label=r"$2\pi v/\sqrt{\bar\gamma}$, exact damped front speed $v(\bar\tau_0, \bar\beta/\mathrm{d}\bar x)$",
         )
     handles, labels = grid[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2)

@@ -35,6 +35,8 @@ TIME, VISCOUS_LOSS, PENDING_STEP, MIN_VELOCITY, MIN_STUCK_STRESS, FIRST_STICK, S
 
 # Events closer than this share of the largest step are one event: the two fronts of a mirror-symmetric scene.
 SIMULTANEOUS = 1e-11
+# How many times within a step the stress of a stuck neighbour is looked at.
+LOOKS = 4
 # A velocity this little below zero at the instant of a stick is the rounding of the root, not another stick.
 ROUNDING = 1e-12
 # Velocities beyond this many times the largest that any pre-stress could have driven by now mean a blow-up.
@@ -143,8 +145,13 @@ def find_releases(
         edge_time[q] = math.inf
         if coefficients[0] >= 0.0:
             edge_time[q] = 0.0
-        elif polynomial(coefficients, degree, h + same) >= 0.0:
-            edge_time[q] = crossing(coefficients, degree, h + same)
+        else:
+            # A stress can pass the threshold and fall back within a step, between blocks that slow down.
+            for k in range(1, LOOKS + 1):
+                part = (h + same) * k / LOOKS
+                if polynomial(coefficients, degree, part) >= 0.0:
+                    edge_time[q] = crossing(coefficients, degree, part)
+                    break
         h = min(h, edge_time[q])
     return n_edges, h
 

@@ -164,9 +164,12 @@ def polynomial(coefficients, degree, h):
 
 @compiled()
 def crossing(coefficients, degree, h):
-    """Root in (0, h] of a polynomial that changes sign there: bisection made fast by Newton steps."""
+    """Root in (0, h] of a polynomial that changes sign there: bisection made fast by Newton steps.
+
+    The sign at 0 tells the direction: at h it may be lost to rounding, and then the root is h.
+    """
     lower, upper = 0.0, h
-    rising = polynomial(coefficients, degree, h) > 0.0
+    rising = coefficients[0] < 0.0
     root = 0.5 * h
     for _ in range(100):
         value = coefficients[degree]

@@ -1,0 +1,52 @@
+"""What holds for every figure: it draws from its table, its axes are labelled, it fits the journal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slippulse.figures.style import PAGE, save_figure
+
+NAMES = sorted(path.stem for path in (Path(__file__).parents[2] / "src/slippulse/figures").glob("fig*.py"))
+SKETCHES = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone"}
+
+
+def test_there_are_eleven_figures(names):
+    assert sorted(names) == NAMES
+    assert len(NAMES) == 11
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_fits_a_page_and_has_a_caption(draw, project, name):
+    width, height = draw(name).figure.get_size_inches()
+    assert width <= PAGE + 1e-9 and height <= 9.0
+    caption = (project / f"workflow/report/{name}.rst").read_text(encoding="utf-8")
+    assert len(caption.split()) > 20
+
+
+@pytest.mark.parametrize("name", sorted(set(NAMES) - SKETCHES))
+def test_axes_with_data_are_labelled(draw, name):
+    figure = draw(name).figure
+    labels = [axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes] + [
+        figure.get_supxlabel() + figure.get_supylabel()
+    ]
+    assert sum(bool(label) for label in labels) >= 2
+    for axes in figure.axes:
+        for line in axes.lines:
+            assert len(line.get_xdata()) == len(line.get_ydata())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_is_drawn_is_finite_and_repeatable(draw, tmp_path, name):
+    drawn = draw(name)
+    assert len(drawn.table) > 0
+    for attempt in ("a", "b"):
+        save_figure(drawn.module.plot(drawn.table), tmp_path / f"{attempt}.png", tmp_path / f"{attempt}.pdf")
+    for ending in ("png", "pdf"):
+        first, second = ((tmp_path / f"{attempt}.{ending}").read_bytes() for attempt in "ab")
+        assert first == second
+        assert len(first) > 5000
+    numbers = drawn.table.select_dtypes("number").to_numpy()
+    assert not np.isinf(numbers).any()

@@ -1,0 +1,90 @@
+"""Every tolerance of the tests, each with its reason. A test that fails is reported, not given a wider one."""
+
+from __future__ import annotations
+
+# --- Rounding -------------------------------------------------------------------------------------------------
+
+# One pass of a stencil: a handful of additions of numbers near 1, in another order than numpy's.
+STENCIL = 1e-13
+# Compiled code contracts a*b + c to one rounding, the interpreter does not; the steps multiply it.
+JIT = 1e-11
+# Profiles and integrals in closed form against adaptive quadrature asked for 1e-12.
+QUADRATURE = 1e-10
+# A root of a polynomial with coefficients near 1: rounding over the slope at the root.
+ROOT = 1e-12
+# Half of a lattice against the whole, or a scene against its mirror image: sums in another order, over all steps.
+MIRROR = 1e-10
+# A sample is the same Taylor polynomial that the step itself uses.
+SAMPLE = 1e-10
+# Recomputed at the end of a run from slip by second differences, which cancel: rounding of slip / dx^2 at dx = 0.05.
+STRESS_AT_END = 1e-9
+
+# --- The lattice as a system of ordinary differential equations ------------------------------------------------
+
+# Order 8 at step 0.05 is at rounding; so is the reference (tolerance 1e-12 a step). Stick times are zeros of a
+# velocity with slopes down to 0.1.
+CHAIN_TIME = 1e-9
+CHAIN_SLIP = 1e-9
+# Order 4 at step 0.1: the seventh order's error of 1e-4 seen at half the tolerance, the events being the same ones.
+CHAIN_TIME_ORDER_4 = 2e-4
+# The same closed-form oscillators, one or two blocks, by order 8 at step 0.05.
+OSCILLATOR = 1e-9
+# Observed orders of the localised scheme at steps 0.2, 0.1, 0.05: the nominal order less the last terms of the series
+# (steps are also cut by events, more of them relative to the longer steps).
+ORDER_BELOW, ORDER_ABOVE = 0.5, 0.4
+# First order of the textbook scheme over eight halvings, root mean square over blocks: single releases jump by whole
+# steps, so that the slope scatters.
+FIRST_ORDER = (0.85, 1.25)
+# The same for a quantity that does not jump: one free block, and the energy balance.
+FIRST_ORDER_SMOOTH = 0.05
+# The viscous loss is integrated to third order whatever the order of the step; without damping the balance has the
+# order of the step.
+ENERGY_ORDER_BELOW, ENERGY_ORDER_ABOVE = 0.5, 0.5
+# Energy balance at the paper preset's step, relative to its largest part (measured: below 1e-4 in every scene).
+ENERGY = 1e-4
+# And at a tenth of the largest step, order 8.
+ENERGY_FINE = 1e-7
+# The textbook scheme at step 1/1024 of dx: release times to the steps that a front loses over 60 blocks, half each.
+FIXED_AGAINST_LOCALISED = 1e-3
+
+# --- Stability --------------------------------------------------------------------------------------------------
+
+# Amplification a step just below the bound: rounding of the eigenvalues, and for orders 5 and 6 the growth that the
+# solver allows itself by design.
+AMPLIFICATION = 1e-9
+AMPLIFICATION_WEAK = 1.01e-4
+# How far below and above a bound "just" is.
+BELOW_BOUND, ABOVE_BOUND = 0.98, 1.03
+
+# --- Physics ----------------------------------------------------------------------------------------------------
+
+# Front speed at b = 0 on dx = 0.02 over time 120 at the step of the paper preset: asked for.
+FRONT_SPEED = 1e-3
+# Final slip of the steady pulse, 2 tau_0/gamma, same runs: asked for.
+PULSE_SLIP = 1e-3
+# Exact speeds with damping are known to six decimals.
+FRONT_SPEED_TABLE = 2e-6
+# Front speed with damping against simulation at dx = 0.01 and gamma = 0.05: (gamma dx^2) is 5e-6, the rest is the
+# approach to the steady front within time 20.
+FRONT_SPEED_DAMPED = 5e-4
+# Leaf springs on blocks, dx = 1: the formula is exact, the approach to the steady front within time 400 is not.
+FRONT_SPEED_LATTICE = 1e-3
+# The published space-time figure, read off by pixel: front, nucleation sticking, trailing edge.
+PUBLISHED_FRONT_SPEED = 0.01
+PUBLISHED_INTERCEPT = 0.05
+PUBLISHED_STICK = 0.01
+PUBLISHED_TRAILING = 0.015
+# Exact transition times by two quadratures, panels against adaptive.
+TRANSITION_QUADRATURE = 1e-9
+# Tabulated transition times and lengths, known to four or five digits.
+TRANSITION_TABLE = 1e-4
+SHARE_TABLE = 1e-4
+# Simulated transitions converge to the continuum at first order in dx: halving the spacing halves the error.
+TRANSITION_HALVING = (1.6, 2.5)
+# What is left after the first-order error is extrapolated away (relative), from dx = 0.02 and 0.01.
+TRANSITION_EXTRAPOLATED = 1e-4
+SHARE_EXTRAPOLATED = 4e-3
+# Closed forms of the undamped pulse against each other.
+PULSE_THEORY = 1e-12
+# The profile in its own equation, by finite differences of step 1e-4.
+PULSE_EQUATION = 1e-5

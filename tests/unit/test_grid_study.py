@@ -1,0 +1,48 @@
+"""Grid studies and verdicts: the arithmetic behind every error bar."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slippulse.claims.ledger import judge
+from slippulse.measure.uncertainty import grid_study
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.5])
+@pytest.mark.parametrize("factors", [(2.0, 4.0), (1.5, 2.0)])
+def test_a_power_of_the_spacing_is_recovered(order, factors):
+    values = tuple(3.0 + 0.2 * factor**order for factor in (1.0, *factors))
+    study = grid_study(values, factors)
+    assert study.order == pytest.approx(order, rel=1e-9)
+    assert study.extrapolated == pytest.approx(3.0, rel=1e-12)
+    assert study.uncertainty == pytest.approx(0.2, rel=1e-9)
+
+
+def test_without_an_order_the_spread_is_the_uncertainty():
+    study = grid_study((1.0, 1.1, 0.95), (2.0, 4.0))
+    assert np.isnan(study.order)
+    assert study.uncertainty == pytest.approx(0.15)
+    assert study.extrapolated == 1.0
+
+
+def test_a_missing_coarse_value_leaves_no_uncertainty():
+    assert np.isnan(grid_study((1.0, np.nan, 1.0), (2.0, 4.0)).uncertainty)
+
+
+@pytest.mark.parametrize(
+    ("predicted", "measured", "uncertainty", "tolerance", "caveat", "verdict"),
+    [
+        (1.0, 1.001, 1e-4, 0.01, False, "reproduced"),
+        (1.0, 1.001, 1e-4, 0.01, True, "reproduced with caveat"),
+        (1.0, 1.0095, 1e-3, 0.01, False, "reproduced with caveat"),
+        (1.0, 1.0105, 1e-3, 0.01, False, "reproduced with caveat"),
+        (1.0, 1.02, 1e-3, 0.01, False, "not reproduced"),
+        (0.0, 0.02, 1e-3, 0.01, False, "not reproduced"),
+        (0.0, 0.002, 1e-3, 0.01, False, "reproduced"),
+        (2.0, 2.1, float("nan"), 0.1, False, "not testable"),
+        (2.0, float("nan"), 0.1, 0.1, False, "not testable"),
+    ],
+)
+def test_verdicts(predicted, measured, uncertainty, tolerance, caveat, verdict):
+    assert judge(predicted, measured, uncertainty, tolerance, caveat) == verdict

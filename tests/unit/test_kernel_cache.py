@@ -1,0 +1,80 @@
+"""Compiled kernels are never older than the sources that they were compiled from."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from slippulse.lattice import jit
+
+
+@pytest.fixture
+def copied(tmp_path):
+    folder = tmp_path / "lattice"
+    shutil.copytree(jit.SOURCES, folder, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+def test_a_copy_has_the_same_digest(copied):
+    assert jit.source_digest(copied) == jit.source_digest()
+
+
+@pytest.mark.parametrize("name", sorted(path.name for path in jit.SOURCES.glob("*.py")))
+def test_an_edit_of_any_source_changes_the_digest(copied, name):
+    path = copied / name
+    path.write_bytes(path.read_bytes() + b"\n")
+    assert jit.source_digest(copied) != jit.source_digest()
+
+
+def test_a_new_source_and_a_new_name_change_the_digest(copied):
+    digests = {jit.source_digest(copied)}
+    (copied / "more.py").write_text("")
+    digests.add(jit.source_digest(copied))
+    (copied / "more.py").rename(copied / "other.py")
+    digests.add(jit.source_digest(copied))
+    assert len(digests) == 3
+
+
+def test_the_cache_folder_is_named_by_the_digest(monkeypatch, tmp_path):
+    monkeypatch.setenv("SLIPPULSE_CACHE", str(tmp_path / "mine"))
+    assert jit.cache_folder() == tmp_path / "mine" / f"kernels-{jit.source_digest()}"
+    monkeypatch.delenv("SLIPPULSE_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
+    assert jit.cache_folder().parent == tmp_path / "user/slippulse"
+
+
+def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self(tmp_path):
+    """numba's own cache would: the file that holds the caller is unchanged."""
+    package = tmp_path / "edited"
+    package.mkdir()
+    shutil.copy2(jit.__file__, package / "jit.py")
+    (package / "__init__.py").write_text("")
+    (package / "helper.py").write_text(
+        "from .jit import compiled\n\n\n@compiled()\ndef helper(x):\n    return x + 1\n"
+    )
+    (package / "caller.py").write_text(
+        "from .helper import helper\nfrom .jit import compiled\n\n\n"
+        "@compiled()\ndef caller(x):\n    return 10 * helper(x)\n"
+    )
+
+    def call() -> str:
+        done = subprocess.run(
+            [sys.executable, "-c", "from edited.caller import caller; print(caller(1))"],
+            cwd=tmp_path,
+            env={"PATH": "", "SLIPPULSE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return done.stdout.strip()
+
+    assert call() == "20"
+    assert list((tmp_path / "cache").rglob("*.nbi")), "nothing was cached"
+    (package / "helper.py").write_text(
+        "from .jit import compiled\n\n\n@compiled()\ndef helper(x):\n    return x + 2\n"
+    )
+    assert call() == "30"
+    assert len(list((tmp_path / "cache").iterdir())) == 2
