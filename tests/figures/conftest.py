@@ -70,7 +70,12 @@ def draw(project, tmp_path_factory):
             save_table(module.table(data, measured, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")
             drawn[name] = SimpleNamespace(
-                table=table, figure=module.plot(table), data=data, measured=measured, settings=settings, module=module
+                table=table,
+                figure=module.plot(table),
+                data=data,
+                measured=measured,
+                settings=settings,
+                module=module,
             )
         return drawn[name]
 

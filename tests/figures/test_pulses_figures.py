@@ -15,7 +15,9 @@ def curves(axes, kind: str) -> dict[str, np.ndarray]:
     }
 
 
-@pytest.mark.parametrize(("name", "panels"), [("fig03_steady_state", [0]), ("fig08_steady_state_displacement", [0, 1])])
+@pytest.mark.parametrize(
+    ("name", "panels"), [("fig03_steady_state", [0]), ("fig08_steady_state_displacement", [0, 1])]
+)
 def test_displacement_pulses_lie_on_the_theory(draw, name, panels):
     figure = draw(name).figure
     for panel in panels:

@@ -28,7 +28,9 @@ def test_every_run_is_drawn(draw):
         assert len(places) == len(sound)
         drawn_y = np.ma.getdata(places[:, 1])
         expected = sound[f"transition_{column}"].to_numpy()
-        assert np.allclose(np.sort(drawn_y[np.isfinite(drawn_y)]), np.sort(expected[np.isfinite(expected)]), rtol=1e-6)
+        assert np.allclose(
+            np.sort(drawn_y[np.isfinite(drawn_y)]), np.sort(expected[np.isfinite(expected)]), rtol=1e-6
+        )
         assert axes.get_xscale() == axes.get_yscale() == "log"
         (line,) = [line for line in axes.lines if line.get_gid() == "one to one"]
         assert np.array_equal(line.get_xdata(), line.get_ydata())

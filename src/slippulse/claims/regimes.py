@@ -128,6 +128,6 @@ def no_reverse_sliding(evidence: Evidence) -> Claim:
         lowest,
         max(abs(lowest - other) for other in coarse),
         "every simulation under a displacement boundary: min_stuck_stress",
-        f"largest mu_k/(mu_s - mu_k) that {runs} runs need so that nothing slides backwards; the printed threshold, which"
-        " is that of mu_k = 0, is passed at blocks beside the pulses",
+        f"largest mu_k/(mu_s - mu_k) that {runs} runs need so that nothing slides backwards; the printed threshold,"
+        " which is that of mu_k = 0, is passed at blocks beside the pulses",
     )

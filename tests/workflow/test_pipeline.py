@@ -1,0 +1,167 @@
+"""The pipeline as a user drives it: what a target needs, what a change re-runs, what is refused."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+pytestmark = pytest.mark.workflow
+
+PARTS = ["Snakefile", "workflow", "config", "src", "requirements.lock"]
+TARGETS = ["results/figures/fig07_damage_zone.png", "results/figures/fig08_steady_state_displacement.png"]
+# Small enough to run in a second, large enough to have a pulse.
+TINY = {
+    "preset": "draft",
+    "simulations": {
+        "steady_displacement": {"left": [0.5, 0.7], "damping_ratio": [0.0, 0.1], "duration": {"time": 25.0}},
+        "steady_stress": {"profiles": [{"left": -1.0, "right": 0.0, "width": 2.0}]},
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def copy_of_project(project, tmp_path_factory) -> Path:
+    """A copy of the project's sources, with a space and an umlaut in its path."""
+    folder = tmp_path_factory.mktemp("a copy für tests")
+    for part in PARTS:
+        source = project / part
+        if source.is_dir():
+            shutil.copytree(source, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, folder / part)
+    (folder / "tiny.yaml").write_text(yaml.safe_dump(TINY), encoding="utf-8")
+    return folder
+
+
+def snakemake(folder: Path, *arguments: str, config: str = "tiny.yaml") -> subprocess.CompletedProcess:
+    """Run Snakemake in a folder with its own library on the path."""
+    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
+    overlay = ["--configfile", config] if config else []
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", *overlay, *arguments]
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=240, check=False
+    )
+
+
+def jobs(result: subprocess.CompletedProcess) -> dict[str, int]:
+    """Rules and how often each is to run, from a dry run."""
+    assert result.returncode == 0, result.stderr + result.stdout
+    text = result.stdout + result.stderr
+    table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\ntotal", text, re.S)
+    if table is None:
+        assert "Nothing to be done" in text
+        return {}
+    return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}
+
+
+@pytest.fixture(scope="module")
+def finished(copy_of_project) -> Path:
+    """The copy after its targets have been made."""
+    result = snakemake(copy_of_project, "--", *TARGETS)
+    assert result.returncode == 0, result.stderr
+    for target in TARGETS:
+        for ending in ("png", "pdf", "csv"):
+            assert (copy_of_project / target).with_suffix(f".{ending}").stat().st_size > 0
+    return copy_of_project
+
+
+def test_everything_is_eleven_figures_in_three_files(copy_of_project):
+    result = snakemake(copy_of_project, "--dry-run", "--quiet", "rules", config="")
+    assert result.returncode == 0, result.stderr
+    planned = jobs(snakemake(copy_of_project, "--dry-run", config=""))
+    assert sum(name.startswith("fig") for name in planned) == 11
+    summary = snakemake(copy_of_project, "--summary", config="").stdout
+    files = set(re.findall(r"results/figures/fig\d\d_\w+\.(?:pdf|png|csv)", summary))
+    assert len(files) == 33
+
+
+def test_one_figure_needs_only_its_own_simulations(copy_of_project):
+    planned = jobs(
+        snakemake(copy_of_project, "--dry-run", "--", "results/figures/fig04_space_time.png", config="")
+    )
+    assert planned["simulate"] == 2
+    assert not any(name.startswith("fig") and name != "fig04_space_time" for name in planned)
+
+
+def test_a_second_run_does_nothing(finished):
+    assert jobs(snakemake(finished, "--dry-run", "--", *TARGETS)) == {}
+
+
+def test_another_level_runs_only_its_chain(finished):
+    changed = {**TINY, "simulations": {**TINY["simulations"]}}
+    changed["simulations"]["steady_displacement"] = TINY["simulations"]["steady_displacement"] | {
+        "left": [0.5, 0.6]
+    }
+    (finished / "changed.yaml").write_text(yaml.safe_dump(changed), encoding="utf-8")
+    planned = jobs(snakemake(finished, "--dry-run", "--", *TARGETS, config="changed.yaml"))
+    assert planned == {"simulate": 1, "measure": 1, "fig08_steady_state_displacement": 1}
+
+
+def test_swapped_values_are_seen(finished):
+    changed = {**TINY, "simulations": {**TINY["simulations"]}}
+    changed["simulations"]["steady_displacement"] = TINY["simulations"]["steady_displacement"] | {
+        "left": [0.7, 0.5]
+    }
+    (finished / "swapped.yaml").write_text(yaml.safe_dump(changed), encoding="utf-8")
+    planned = jobs(snakemake(finished, "--dry-run", "--", *TARGETS, config="swapped.yaml"))
+    assert planned["simulate"] == 1
+
+
+@pytest.mark.parametrize(
+    ("source", "runs"),
+    [
+        ("src/slippulse/figures/fig07_damage_zone.py", {"fig07_damage_zone"}),
+        (
+            "src/slippulse/lattice/stencils.py",
+            {"compile_kernels", "simulate", "measure", "fig08_steady_state_displacement"},
+        ),
+        ("src/slippulse/measure/pulses.py", {"measure", "fig08_steady_state_displacement"}),
+        ("requirements.lock", {"compile_kernels", "simulate", "measure", "fig08_steady_state_displacement"}),
+    ],
+)
+def test_an_edit_runs_what_uses_it(finished, source, runs):
+    path = finished / source
+    before = path.read_bytes()
+    stat = path.stat()
+    try:
+        path.write_bytes(before + b"\n# edited\n")
+        assert set(jobs(snakemake(finished, "--dry-run", "--", *TARGETS))) == runs
+    finally:
+        path.write_bytes(before)
+        os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+
+
+def test_equal_inputs_give_equal_bytes_on_one_core_and_two(finished):
+    data = finished / "results/data/steady_displacement.nc"
+    first = data.read_bytes()
+    result = snakemake(
+        finished, "--cores", "1", "--forcerun", "simulate", "--", str(data.relative_to(finished))
+    )
+    assert result.returncode == 0, result.stderr
+    assert data.read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    ("overlay", "named"),
+    [
+        ("simulations: {steady_displacement: {gama: [0.3]}}", ["gama", "did you mean 'gamma'"]),
+        ("presets: {draft: {dx: 1e-3}}", ["presets.draft.dx", "'1e-3'", "1.0e-3"]),
+        ("preset: best", ["preset", "'best'", "draft, paper, reference"]),
+    ],
+)
+def test_a_mistake_is_refused_before_anything_runs(finished, overlay, named):
+    (finished / "wrong.yaml").write_text(overlay, encoding="utf-8")
+    result = snakemake(finished, "--forceall", "--", *TARGETS, config="wrong.yaml")
+    text = result.stdout + result.stderr
+    assert result.returncode != 0
+    assert "Traceback" not in text
+    for part in named:
+        assert part in text
+    assert "Simulating" not in text
