@@ -83,6 +83,13 @@ class Scene:
         check_choice("release", self.release, RELEASES)
         check_choice("scheme", self.scheme, SCHEMES)
         check_choice("order", self.order, ORDERS)
+        for name, kind, allowed in (
+            ("order", int, "a whole number"),
+            ("resolved_blocks", int, "a whole number >= 1"),
+            ("half_lattice", bool, "true or false"),
+        ):
+            if type(getattr(self, name)) is not kind:
+                raise ValueError(f"{name}: {getattr(self, name)!r}; allowed: {allowed}")
         if not isinstance(self.prestress, Prestress):
             raise ValueError(f"prestress: {self.prestress!r}; allowed: a Prestress")
         check_number("duration", self.duration, above=0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from numbers import Real
 
 import numpy as np
@@ -49,14 +49,17 @@ class Prestress:
     bumps: tuple[tuple[float, float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("left", "right", "peak"):
-            check_number(f"prestress.{name}", getattr(self, name))
+        for name in ("left", "right"):
+            # A level at the threshold would release block after block at t = 0, without end.
+            check_number(f"prestress.{name}", getattr(self, name), below=1.0)
+        check_number("prestress.peak", self.peak)
         check_number("prestress.width", self.width, above=0.0)
         object.__setattr__(self, "steps", _tuples("prestress.steps", self.steps, ("position", "level")))
         object.__setattr__(
             self, "bumps", _tuples("prestress.bumps", self.bumps, ("centre", "amplitude", "width"))
         )
-        for position, _ in self.steps:
+        for position, level in self.steps:
+            check_number("prestress.steps level", level, below=1.0)
             if position == 0.0:
                 raise ValueError(
                     "prestress.steps: position is 0.0; allowed: any other number (use left and right)"
@@ -88,8 +91,10 @@ class Prestress:
         x = np.asarray(x, dtype=float)
         # peak + (level - peak)(1 - exp): no cancellation near x = 0, where the release threshold is met.
         tau = self.peak + (self.level(x) - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
-        for centre, amplitude, width in self.bumps:
-            tau = tau + amplitude * np.exp(-0.5 * ((x - centre) / width) ** 2)
+        # Bumps at equal distances first to each other, so that a mirrored profile is mirrored to the last bit.
+        parts = [(abs(c), a, w, a * np.exp(-0.5 * ((x - c) / w) ** 2)) for c, a, w in self.bumps]
+        for _, group in groupby(sorted(parts, key=lambda part: part[:3]), key=lambda part: part[:3]):
+            tau = tau + sum(values for *_, values in group)
         return tau
 
     def integral(self, lower: float, upper: float) -> float:

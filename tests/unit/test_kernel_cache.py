@@ -64,7 +64,13 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
         done = subprocess.run(
             [sys.executable, "-c", "from edited.caller import caller; print(caller(1))"],
             cwd=tmp_path,
-            env={"PATH": "", "SLIPPULSE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)},
+            env={
+                "PATH": "",
+                "SLIPPULSE_CACHE": str(tmp_path / "cache"),
+                "PYTHONPATH": str(tmp_path),
+                # Python's own cache tells files apart by the second of their last change.
+                "PYTHONDONTWRITEBYTECODE": "1",
+            },
             capture_output=True,
             text=True,
             check=True,

@@ -71,7 +71,7 @@ def test_bumps_are_added():
 def test_symmetry_is_what_the_values_say(profile, symmetric):
     x = np.linspace(0.0, 20.0, 2001)
     assert profile.symmetric is symmetric
-    assert np.array_equal(profile(x), profile(-x)) is symmetric
+    assert np.allclose(profile(x), profile(-x), rtol=0.0, atol=tol.STENCIL) is symmetric
 
 
 @pytest.mark.parametrize("name", PROFILES)
@@ -129,7 +129,6 @@ def test_a_refusal_names_the_key_the_value_and_what_is_allowed(changes, key, val
     assert "\n" not in message
 
 
-@pytest.mark.xfail(strict=True, reason="a level of 1 or more releases without end: the run never comes back")
 @pytest.mark.parametrize(
     "changes", [{"left": 1.2}, {"right": 1.0}, {"steps": ((30.0, 1.2),)}], ids=["left", "right", "steps"]
 )

@@ -10,146 +10,161 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Rectangle
 
-from .style import BLUE, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, ORANGE, PAGE, new_figure, panel_letter
 
-# Length of the layer shown, in thicknesses; largest displacement drawn, as a share of it.
-LENGTH, DISPLACEMENT = 3.6, 0.14
-TITLES = {
-    "stress": r"$\Gamma = 0$: stress imposed at $y = H$",
-    "displacement": r"$\Gamma = 1$: displacement held at $y = H$",
+TITLES = {"stress": r"$\Gamma = 0$: stress imposed", "displacement": r"$\Gamma = 1$: displacement held"}
+# In thicknesses: length of the layer shown, depth of what is rigid, largest displacement drawn.
+LENGTH, RIGID, DISPLACEMENT = 3.5, 0.2, 0.5
+# Positions along the layer, as shares of its length: moduli, strip, undisplaced line of the profile.
+MODULI, STRIP, REST = 0.2, 0.48, 0.68
+RED, MUTED = "#c00000", "0.25"
+RECTANGLES = {
+    "layer": {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8},
+    "substrate": {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0},
+    "held top": {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0},
+    "strip": {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4},
+}
+ARROWS = {
+    "imposed stress": ("-|>", ORANGE),
+    "friction": ("-|>", BLACK),
+    "thickness": ("<|-|>", MUTED),
+    "axis": ("-|>", MUTED),
+    "strip width": ("<|-|>", RED),
+}
+# Alignment (horizontal, vertical) and colour of a text.
+TEXTS = {
+    "moduli": ("center", "center", BLACK),
+    "substrate": ("center", "center", BLACK),
+    "top condition": ("center", "bottom", ORANGE),
+    "friction": ("center", "bottom", BLACK),
+    "friction law": ("center", "top", BLACK),
+    "strip width": ("center", "bottom", RED),
+    "profile": ("left", "center", BLUE),
+    "thickness": ("left", "center", MUTED),
+    "axis": ("center", "center", MUTED),
 }
 
 
 def table(
     data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """Corners of layer, substrate and strip, and the displacement over y that each condition is reduced with."""
+    """Rectangles, arrows, texts and displacement profiles of both panels.
+
+    Parameters
+    ----------
+    data, measured : not used
+    settings : thickness H, and strip_width in units of it
+
+    Returns
+    -------
+    DataFrame with panel ("stress" or "displacement"), role, name, x, y. Roles: rectangle (from x, y by width, height),
+    arrow (to x_end, y_end), text (its text), profile (displacement over y), rest (the line that it starts from).
+
+    Source: section II and appendix A of the paper.
+    """
     height = float(settings["thickness"])
-    strip = float(settings["strip_width"]) * height
-    length = LENGTH * height
+    strip = float(settings["strip_width"])
+    parts = [shapes(panel, strip) for panel in TITLES] + [profile_rows(panel) for panel in TITLES]
+    rows = pd.concat(parts, ignore_index=True)
+    lengths = ["x", "y", "width", "height", "x_end", "y_end"]
+    rows[lengths] *= height
+    return rows
+
+
+def shapes(panel: str, strip: float) -> pd.DataFrame:
+    """Rectangles, arrows and texts of one panel, in thicknesses."""
     rectangles = [
-        ("layer", 0.0, 0.0, length, height),
-        ("substrate", 0.0, -0.18 * height, length, 0.18 * height),
-        ("strip", 0.5 * (length - strip), 0.0, strip, height),
+        ("layer", 0.0, 0.0, LENGTH, 1.0),
+        ("substrate", 0.0, -RIGID, LENGTH, RIGID),
+        ("strip", STRIP * LENGTH - 0.5 * strip, 0.0, strip, 1.0),
     ]
-    y = np.linspace(0.0, height, 21)
-    profiles = {
-        # One displacement for the whole height stands for the interface under an imposed stress; with the top held
-        # it falls linearly to zero there (appendix A of the paper).
-        "stress": np.full(y.size, DISPLACEMENT * length),
-        "displacement": DISPLACEMENT * length * (1.0 - y / height),
-    }
-    parts = []
-    for panel, profile in profiles.items():
-        rows = pd.DataFrame(rectangles, columns=["name", "x", "y", "width", "height"])
-        parts.append(rows.assign(panel=panel, role="rectangle"))
-        parts.append(
-            pd.DataFrame(
-                {"panel": panel, "role": "profile", "x": 0.68 * length + profile, "y": y, "name": "profile"}
-            )
-        )
-        parts.append(
-            pd.DataFrame(
-                {"panel": panel, "role": "rest", "x": 0.68 * length, "y": [0.0, height], "name": "rest"}
-            )
-        )
-    return pd.concat(parts, ignore_index=True)
+    arrows = [
+        ("friction", 0.27 * LENGTH, 0.05, 0.13 * LENGTH, 0.05),
+        ("thickness", LENGTH + 0.13, 0.0, LENGTH + 0.13, 1.0),
+        ("axis", -0.42, 0.0, -0.07, 0.0),
+        ("axis", -0.42, 0.0, -0.42, 0.35),
+    ]
+    texts = [
+        ("moduli", MODULI * LENGTH, 0.68, r"$G,\ \lambda,\ \rho$"),
+        ("substrate", 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate"),
+        ("friction", MODULI * LENGTH, 0.1, "$f_f$"),
+        ("friction law", 0.5 * LENGTH, -RIGID - 0.08,
+         r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"),
+        ("strip width", STRIP * LENGTH, 0.47, r"$\mathrm{d}x$"),
+        ("thickness", LENGTH + 0.23, 0.5, "$H$"),
+        ("thickness", LENGTH + 0.23, 1.0, "$y = H$"),
+        ("thickness", LENGTH + 0.23, 0.0, "$y = 0$"),
+        ("axis", -0.24, -0.13, "$x$"),
+        ("axis", -0.55, 0.25, "$y$"),
+    ]  # fmt: skip
+    if panel == "stress":
+        starts = np.linspace(0.03, 0.85, 6) * LENGTH
+        arrows += [("imposed stress", x, 1.1, x + 0.12 * LENGTH, 1.1) for x in starts]
+        texts += [
+            ("top condition", 0.5 * LENGTH, 1.19, r"$\tau$"),
+            ("profile", REST * LENGTH + DISPLACEMENT + 0.06, 0.5, r"$\langle u_x\rangle_y$"),
+        ]
+    else:
+        rectangles += [("held top", 0.0, 1.0, LENGTH, RIGID)]
+        texts += [
+            ("top condition", 0.5 * LENGTH, 1.0 + RIGID + 0.03, r"$\partial u_x/\partial t = 0$"),
+            ("profile", REST * LENGTH + 0.5 * DISPLACEMENT + 0.14, 0.5, "$u_x(y)$"),
+        ]
+    return pd.concat(
+        [
+            pd.DataFrame(rectangles, columns=["name", "x", "y", "width", "height"]).assign(role="rectangle"),
+            pd.DataFrame(arrows, columns=["name", "x", "y", "x_end", "y_end"]).assign(role="arrow"),
+            pd.DataFrame(texts, columns=["name", "x", "y", "text"]).assign(role="text"),
+        ]
+    ).assign(panel=panel)
+
+
+def profile_rows(panel: str) -> pd.DataFrame:
+    """Displacement since the start over y, as each condition is reduced with, in thicknesses.
+
+    Under an imposed stress the mean over the height stands for the interface; with the top held the displacement falls
+    linearly from the interface to the top, so that its mean is half of the slip (appendix A of the paper).
+    """
+    y = np.linspace(0.0, 1.0, 21)
+    share = np.ones(y.size) if panel == "stress" else 1.0 - y
+    profile = pd.DataFrame({"role": "profile", "x": REST * LENGTH + DISPLACEMENT * share, "y": y})
+    rest = pd.DataFrame({"role": "rest", "x": REST * LENGTH, "y": [0.0, 1.0]})
+    return pd.concat([profile, rest]).assign(panel=panel, name="displacement")
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """Two panels, one a boundary condition."""
-    figure = new_figure(PAGE, 2.0)
+    figure = new_figure(PAGE, 1.72)
     for axes, panel, letter in zip(figure.subplots(1, 2), TITLES, "ab", strict=True):
-        draw_panel(axes, table[table["panel"] == panel], panel)
+        draw_panel(axes, table[table["panel"] == panel])
         axes.set_title(TITLES[panel], fontsize=8)
         panel_letter(axes, letter)
     return figure
 
 
-def draw_panel(axes, rows: pd.DataFrame, panel: str) -> None:
-    """Layer, substrate, strip, top condition, friction, displacement profile and axes."""
-    boxes = rows[rows["role"] == "rectangle"].set_index("name")
-    layer, strip = boxes.loc["layer"], boxes.loc["strip"]
-    looks = {
-        "layer": {"facecolor": "#e6edf4", "edgecolor": "black", "linewidth": 0.8},
-        "substrate": {"facecolor": "0.85", "edgecolor": "0.4", "hatch": "////", "linewidth": 0.0},
-        "strip": {"facecolor": "none", "edgecolor": "#c00000", "linewidth": 1.4},
-    }
-    for name, look in looks.items():
-        box = boxes.loc[name]
-        axes.add_patch(Rectangle((box["x"], box["y"]), box["width"], box["height"], gid=name, **look))
-    height, length = float(layer["height"]), float(layer["width"])
-    arrow = {"arrowstyle": "-|>", "mutation_scale": 8, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
-    if panel == "stress":
-        for start in np.linspace(0.04, 0.84, 5) * length:
-            axes.add_patch(
-                FancyArrowPatch(
-                    (start, 1.09 * height), (start + 0.12 * length, 1.09 * height), color=ORANGE, **arrow
-                )
-            )
-        axes.text(0.5 * length, 1.17 * height, r"$\tau$", color=ORANGE, ha="center", va="bottom")
-    else:
+def draw_panel(axes, rows: pd.DataFrame) -> None:
+    """Everything of one boundary condition, to scale."""
+    of = {role: group for role, group in rows.groupby("role", sort=False)}
+    for box in of["rectangle"].itertuples():
+        axes.add_patch(Rectangle((box.x, box.y), box.width, box.height, gid=box.name, **RECTANGLES[box.name]))
+    for arrow in of["arrow"].itertuples():
+        style, colour = ARROWS[arrow.name]
         axes.add_patch(
-            Rectangle(
-                (0, height),
-                length,
-                0.14 * height,
-                facecolor="0.85",
-                edgecolor="0.4",
-                hatch="////",
-                linewidth=0.0,
+            FancyArrowPatch(
+                (arrow.x, arrow.y), (arrow.x_end, arrow.y_end), arrowstyle=style, mutation_scale=7, color=colour,
+                linewidth=1.0, shrinkA=0, shrinkB=0, gid=arrow.name,
             )
-        )
-        axes.text(
-            0.5 * length,
-            1.17 * height,
-            r"$\partial u_x/\partial t = 0$",
-            color=ORANGE,
-            ha="center",
-            va="bottom",
-        )
-    profile, rest = rows[rows["role"] == "profile"], rows[rows["role"] == "rest"]
-    axes.plot(rest["x"], rest["y"], color=BLUE, linewidth=0.8, linestyle=":")
-    axes.plot(profile["x"], profile["y"], color=BLUE, linewidth=1.5, gid="profile")
-    axes.text(float(profile["x"].max()) + 0.03 * length, 0.5 * height, r"$u_x(y)$", color=BLUE, va="center")
-    axes.text(
-        strip["x"] + 0.5 * strip["width"],
-        0.5 * height,
-        r"$\mathrm{d}x$",
-        color="#c00000",
-        ha="center",
-        va="center",
-    )
-    axes.text(0.17 * length, 0.62 * height, r"$G,\ \lambda,\ \rho$", ha="center", va="center")
-    axes.text(
-        0.02 * length,
-        -0.25 * height,
-        r"friction $f_f \leq \mu_s\sigma_n$ at rest, $\mu_k\sigma_n$ sliding",
-        va="top",
-    )
-    axes.annotate(
-        "",
-        (0.09 * length, 0.0),
-        (0.24 * length, 0.0),
-        arrowprops={"arrowstyle": "-|>", "color": "black", "lw": 1.0},
-    )
-    axes.text(0.165 * length, 0.05 * height, "$f_f$", ha="center", va="bottom")
-    double = {
-        "arrowstyle": "<|-|>",
-        "mutation_scale": 6,
-        "linewidth": 0.7,
-        "color": "0.2",
-        "shrinkA": 0,
-        "shrinkB": 0,
-    }
-    axes.add_patch(FancyArrowPatch((1.03 * length, 0.0), (1.03 * length, height), **double))
-    axes.text(1.045 * length, 0.5 * height, "$H$", va="center")
-    origin = (-0.1 * length, 0.0)
-    axes.add_patch(FancyArrowPatch(origin, (origin[0] + 0.09 * length, 0.0), color="black", **arrow))
-    axes.add_patch(FancyArrowPatch(origin, (origin[0], 0.34 * height), color="black", **arrow))
-    axes.text(origin[0] + 0.03 * length, -0.05 * height, "$x$", va="top")
-    axes.text(origin[0] - 0.015 * length, 0.3 * height, "$y$", ha="right")
-    axes.set_xlim(-0.15 * length, 1.12 * length)
-    axes.set_ylim(-0.5 * height, 1.42 * height)
+        )  # fmt: skip
+    axes.plot(of["rest"]["x"], of["rest"]["y"], color=BLUE, linewidth=0.8, linestyle=":", gid="rest")
+    axes.plot(of["profile"]["x"], of["profile"]["y"], color=BLUE, linewidth=1.5, gid="profile")
+    for text in of["text"].itertuples():
+        horizontal, vertical, colour = TEXTS[text.name]
+        label = axes.text(text.x, text.y, text.text, ha=horizontal, va=vertical, color=colour)
+        if text.name == "substrate":
+            label.set(fontsize=7, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})
+    layer = of["rectangle"].set_index("name").loc["layer"]
+    height, length = layer["height"], layer["width"]
+    axes.set_xlim(-0.65 * height, length + 0.68 * height)
+    axes.set_ylim(-0.55 * height, 1.46 * height)
     axes.set_aspect("equal")
     axes.set_axis_off()

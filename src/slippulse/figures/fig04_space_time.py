@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ..measure.fronts import position_at
 from ..sweep import point
@@ -240,21 +239,12 @@ def _draw_map(axes, roles: Mapping[str, pd.DataFrame]):
 
 
 def _draw_transition(axes, roles: Mapping[str, pd.DataFrame]) -> None:
-    ends = roles["measured"].set_index("series")
-    time, length = float(ends["time"].iloc[0]), float(ends["value"].iloc[0])
-    left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
-    low = roles["prestress"]["position"].min()
+    low = min(rows["position"].min() for rows in (roles["prestress"], roles["map"]))
     level = 0.5 * (low + roles["front"]["position"].min())
-    arrow = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9, "mutation_scale": 8.0}
-    style = {"path_effects": HALO}
-    axes.plot([time, time], [level, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
-    for name, start, stop in (("T", (0.0, level), (time, level)), ("L", (time, left), (time, right))):
-        mark = axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | style, zorder=4.0)
-        mark.set_gid(f"{name}_trans")
-    beside = time + 0.025 * axes.get_xlim()[1]
-    for name, value, height in (("T", time, level), ("L", length, 0.5 * (left + right))):
-        label = rf"$\bar {name}_\mathrm{{trans}} = {value:.2f}$"
-        axes.text(beside, height, label, va="center", fontsize=7.5, path_effects=HALO, zorder=4.0)
+    ends = roles["measured"].set_index("series")
+    # A run that is too short for its transition has none to draw.
+    if np.isfinite(ends["time"]).all():
+        _draw_arrows(axes, ends, level)
     marker = {"linestyle": "none", "markeredgewidth": 0.8, "markersize": 4.5, "zorder": 5.0}
     for role, symbol, face, label in (
         ("paper", "D", ORANGE, "paper's estimate"),
@@ -272,5 +262,20 @@ def _draw_transition(axes, roles: Mapping[str, pd.DataFrame]) -> None:
                 label=label,
                 **marker,
             )
-    handles = [h for h in axes.lines if isinstance(h, Line2D) and not h.get_label().startswith("_")]
+    handles = [line for line in axes.lines if not line.get_label().startswith("_")]
     axes.legend(handles=handles, loc="upper left", handlelength=1.6, borderaxespad=0.3)
+
+
+def _draw_arrows(axes, ends: pd.DataFrame, level: float) -> None:
+    time, length = float(ends["time"].iloc[0]), float(ends["value"].iloc[0])
+    left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
+    arrow = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9, "mutation_scale": 8.0}
+    axes.plot([time, time], [level, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
+    beside = time + 0.025 * axes.get_xlim()[1]
+    for name, value, height, start, stop in (
+        ("T", time, level, (0.0, level), (time, level)),
+        ("L", length, 0.5 * (left + right), (time, left), (time, right)),
+    ):
+        axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
+        label = rf"$\bar {name}_\mathrm{{trans}} = {value:.2f}$"
+        axes.text(beside, height, label, va="center", fontsize=7.5, path_effects=HALO, zorder=4.0)

@@ -14,120 +14,187 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
-from ..measure.fronts import path
 from ..sweep import point
-from .style import GREEN, ORANGE, PAGE, new_figure, panel_letter
+from .shared.pulses import profile_of
+from .style import BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
-INSTANTS = 5
-BLOCK, HEIGHT, PLATE = 0.5, 0.42, 1.25
-COLOURS = {"at rest": "#c9d3dd", "sliding": ORANGE, "stuck after sliding": GREEN}
+PANELS = ("displacement", "stress")
+# Blocks shown besides the middle one, and blocks shown beyond the one that stops the left front.
+SHOWN, BEYOND = 18, 2
+# Block width and height in spacings, and how far above the ground the plate is.
+BLOCK, HEIGHT, PLATE = 0.5, 0.44, 1.12
+# The drawn displacement: at most this share of a spacing, springs shortened to this share of their length at most.
+FARTHEST, SHORTEST = 0.85, 0.35
+# Inches of a spacing's height, and of the strip with the pre-stress.
+UNIT, STRIP = 0.36, 0.42
+COLOURS = {"at rest": "#d5dce4", "sliding": ORANGE, "stuck after sliding": GREEN}
 TITLES = {
-    "displacement": r"$\Gamma = 1$: leaf springs to a plate that is held; two pulses leave the nucleation",
-    "stress": r"$\Gamma = 0$: each block is pushed by its own pre-stress; the left front arrests, one pulse is left",
+    "displacement": r"$\Gamma = 1$: leaf springs to a held plate, $\bar\gamma = {gamma:g}$, $\bar\tau_0 = {left:g}$",
+    "stress": r"$\Gamma = 0$: a constant stress on each block, "
+    r"$\bar\tau_{{0,l}} = {left:g}$, $\bar\tau_{{0,r}} = {right:g}$",
 }
 
 
 def table(
     data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """State of every block at a few instants of both runs; displacements drawn are slip times one scale."""
+    """State of the blocks at a few instants of both runs.
+
+    Parameters
+    ----------
+    data : sweeps burridge_knopoff_displacement and burridge_knopoff_stress, of which the first run is drawn
+    measured : not used
+    settings : not used
+
+    Returns
+    -------
+    DataFrame, one row a panel, instant and block: panel, row, instant (its name), time, x (at rest), slip,
+    slip_velocity, prestress, state, arresting_block (the first one that the left front never releases), scale (drawn
+    displacement over slip) and the parameters gamma, left, right, width.
+
+    Source: the paper's discussion of the Burridge-Knopoff model.
+    """
+    parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PANELS]
+    return pd.concat(parts, ignore_index=True)
+
+
+def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
+    """Rows of one run, with one block more on each side than is shown: their springs reach in."""
+    low, high = window(run)
+    shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
+    x = shown["sample_position"].values
     parts = []
-    for boundary in ("displacement", "stress"):
-        run = point(data[f"burridge_knopoff_{boundary}"], 0)
-        times = instants(run)
-        x, sampled = run["sample_position"].values, run["sample_time"].values
-        release = run["release_time"].interp(x=x, method="nearest", kwargs={"fill_value": np.nan}).values
-        level = run["prestress"].interp(x=x, method="nearest", kwargs={"fill_value": "extrapolate"}).values
-        stuck_left = float(np.nanmin(np.where(np.isfinite(release), x, np.nan))) - run.attrs["dx"]
-        for row, time in enumerate(times):
-            at = int(np.argmin(np.abs(sampled - time)))
-            velocity, slip = run["sample_velocity"].values[at], run["sample_slip"].values[at]
-            state = np.where(
-                velocity > 0.0, "sliding", np.where(slip > 0.0, "stuck after sliding", "at rest")
+    for row, (instant, at) in enumerate(instants(run)):
+        slip, velocity = shown["sample_slip"].values[at], shown["sample_velocity"].values[at]
+        moved = np.where(slip > 0.0, "stuck after sliding", "at rest")
+        parts.append(
+            pd.DataFrame(
+                {
+                    "panel": name,
+                    "row": row,
+                    "instant": instant,
+                    "time": float(run["sample_time"].values[at]),
+                    "x": x,
+                    "slip": slip,
+                    "slip_velocity": velocity,
+                    "prestress": profile_of(run)(x),
+                    "state": np.where(velocity > 0.0, "sliding", moved),
+                    "arresting_block": (x == arresting_block(run)) & (name == "stress"),
+                }
             )
-            parts.append(
-                pd.DataFrame(
-                    {
-                        "panel": boundary,
-                        "row": row,
-                        "time": sampled[at],
-                        "x": x,
-                        "slip": slip,
-                        "slip_velocity": velocity,
-                        "prestress": level,
-                        "state": state,
-                        "arresting_block": (x == stuck_left) & (boundary == "stress"),
-                    }
-                )
-            )
+        )
     rows = pd.concat(parts, ignore_index=True)
-    # One scale for both runs: the largest slip moves a block by three quarters of a spacing.
-    rows["scale"] = 0.75 / float(rows["slip"].max())
-    return rows
+    closer = float(-rows.groupby("row")["slip"].diff().min())
+    rows["scale"] = min(FARTHEST / rows["slip"].max(), (1.0 - SHORTEST) * (1.0 - BLOCK) / closer)
+    return rows.assign(**{key: run.attrs[key] for key in ("gamma", "left", "right", "width")})
 
 
-def instants(run: xr.Dataset) -> np.ndarray:
-    """Evenly from early in the crack to the end of the run, the start left out."""
-    times = run["sample_time"].values
-    released, _ = path(run, "right")
-    first = float(released[min(2, released.size - 1)])
-    return np.linspace(first, float(times[-1]), INSTANTS)
+def arresting_block(run: xr.Dataset) -> float:
+    """Position of the first block on the left that was never released."""
+    released = run["x"].values[np.isfinite(run["release_time"].values)]
+    return float(released.min() - run.attrs["dx"])
+
+
+def window(run: xr.Dataset) -> tuple[float, float]:
+    """Positions of the first and last block shown: about the nucleation, or from where the left front stops."""
+    if run.attrs["left"] == run.attrs["right"]:
+        return -0.5 * SHOWN, 0.5 * SHOWN
+    low = arresting_block(run) - BEYOND
+    return low, low + SHOWN
+
+
+def instants(run: xr.Dataset) -> list[tuple[str, int]]:
+    """Names and sample numbers: before anything slips, half-way to the first stick, at it, and two later in view."""
+    low, high = window(run)
+    x, slip, velocity = (run[name].values for name in ("sample_position", "sample_slip", "sample_velocity"))
+    in_view = ~(slip[:, (x <= low) | (x >= high)] > 0.0).any(axis=1)
+    last = int(np.flatnonzero(in_view)[-1])
+    stuck = (slip > 0.0) & (velocity <= 0.0)
+    # A run in which nothing sticks stays a crack to the end.
+    stick = int(np.argmax(stuck.any(axis=1))) if stuck[: last + 1].any() else last
+    sides = [bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0)]
+    ending = ["arrested", "pulse", "two pulses"][sum(sides)] if stuck[last, x == 0.0].all() else "crack"
+    chosen = [
+        ("start", 0),
+        ("crack", stick // 2),
+        ("first stick", stick),
+        ("later", (stick + last) // 2),
+        (ending, last),
+    ]
+    # The last name wins where two instants are one sample.
+    return [
+        (name, at) for i, (name, at) in enumerate(chosen) if all(at != later for _, later in chosen[i + 1 :])
+    ]
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """One panel a boundary condition, time downwards."""
-    figure = new_figure(PAGE, 7.2)
-    panels = figure.subplots(2, 1, height_ratios=[1.25, 1.0])
-    for axes, boundary, letter in zip(panels, TITLES, "ab", strict=True):
-        rows = table[table["panel"] == boundary]
-        draw_rows(axes, rows, leaf=boundary == "displacement")
-        axes.set_title(TITLES[boundary], fontsize=8)
-        panel_letter(axes, letter)
-    handles = [
-        Line2D(
-            [],
-            [],
-            marker="s",
-            linestyle="none",
-            markersize=6,
-            color=colour,
-            markeredgecolor="0.2",
-            label=name,
-        )
-        for name, colour in COLOURS.items()
-    ]
-    handles.append(
-        Line2D([], [], marker="s", linestyle="none", markersize=6, markerfacecolor="none", markeredgecolor="black",
-               markeredgewidth=1.8, label="block that stops the left front")
-    )  # fmt: skip
-    scale = float(table["scale"].iloc[0])
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=4, title=f"displacement drawn: {scale:.2g} × slip"
-    )
+    """One panel a boundary condition: its pre-stress, and below it the rows of blocks, time downwards."""
+    counts = table.groupby("panel")["row"].nunique()
+    pitches = {"displacement": 1.62, "stress": 0.86}
+    heights = {name: UNIT * (pitches[name] * counts[name] + 0.12) for name in PANELS}
+    ratios = [height for name in PANELS for height in (STRIP, heights[name])]
+    figure = new_figure(PAGE, sum(ratios) + 1.75)
+    grid = figure.add_gridspec(4, 1, height_ratios=ratios)
+    panels = [figure.add_subplot(grid[row]) for row in (1, 3)]
+    for index, (axes, name, letter) in enumerate(zip(panels, PANELS, "ab", strict=True)):
+        rows = table[table["panel"] == name]
+        strip = figure.add_subplot(grid[2 * index], sharex=axes)
+        draw_prestress(strip, rows[rows["row"] == 0])
+        strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=8)
+        panel_letter(strip, letter)
+        draw_rows(axes, rows, pitches[name], leaf=name == "displacement")
+    figure.legend(handles=legend_handles(), loc="outside lower center", ncols=4)
     return figure
 
 
-def draw_rows(axes, rows: pd.DataFrame, leaf: bool) -> None:
+def legend_handles() -> list[Line2D]:
+    """A square for each state, and one for the arresting block."""
+    looks = [
+        {"label": name, "markerfacecolor": colour, "markeredgecolor": "0.2", "markeredgewidth": 0.5}
+        for name, colour in COLOURS.items()
+    ]
+    looks.append(
+        {
+            "label": "never released: stops the left front",
+            "markerfacecolor": "none",
+            "markeredgecolor": "black",
+            "markeredgewidth": 1.8,
+        }
+    )
+    return [Line2D([], [], marker="s", linestyle="none", markersize=6, **look) for look in looks]
+
+
+def draw_prestress(axes, rows: pd.DataFrame) -> None:
+    """Pre-stress of every block as a bar."""
+    x, level = rows["x"].to_numpy(), rows["prestress"].to_numpy()
+    axes.axhline(0.0, color="black", linewidth=0.6)
+    axes.bar(x, level, width=BLOCK, color=GREY, edgecolor="none")
+    axes.set_ylabel(r"$\bar\tau$", rotation=0, ha="right", va="center")
+    axes.set_ylim(min(0.0, float(level.min())) - 0.15, 1.12)
+    axes.set_yticks(sorted({0.0, 1.0, float(rows["left"].iloc[0])}))
+    axes.tick_params(axis="x", length=0, labelbottom=False)
+    axes.tick_params(axis="y", labelsize=6)
+    for side in ("right", "top", "bottom"):
+        axes.spines[side].set_visible(False)
+
+
+def draw_rows(axes, rows: pd.DataFrame, pitch: float, leaf: bool) -> None:
     """Blocks, coil springs and leaf springs of one run, one line an instant."""
-    touched = rows.loc[rows["slip"] > 0.0, "x"]
-    low, high = float(touched.min()) - 1.6, float(touched.max()) + 1.6
-    if leaf:
-        low, high = -max(-low, high), max(-low, high)
-    pitch = 2.0 if leaf else 1.25
+    shown = rows["x"].to_numpy()
+    low, high = shown.min() + 0.35, shown.max() - 0.35
     for row, state in rows.groupby("row"):
-        state = state[(state["x"] >= low) & (state["x"] <= high)].sort_values("x")
+        state = state.sort_values("x")
         base = -pitch * row
-        centre = (state["x"] + state["scale"] * state["slip"]).to_numpy()
+        rest = state["x"].to_numpy()
+        centre = rest + (state["scale"] * state["slip"]).to_numpy()
         coils = [coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT) for a, b in pairwise(centre)]
-        axes.add_collection(LineCollection(coils, colors="0.35", linewidths=0.6))
+        axes.add_collection(LineCollection(coils, colors="0.35", linewidths=0.6, gid="coil springs"))
         axes.plot([low, high], [base, base], color="black", linewidth=0.8)
+        axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
         if leaf:
-            axes.plot([low, high], [base + PLATE] * 2, color="black", linewidth=1.2)
-            bent = [
-                bow(x, base + PLATE, now, base + HEIGHT)
-                for x, now in zip(state["x"].to_numpy(), centre, strict=True)
-            ]
-            axes.add_collection(LineCollection(bent, colors="#0072B2", linewidths=0.8))
+            axes.plot([low, high], [base + PLATE] * 2, color="black", linewidth=1.8)
+            bent = [bow(top, base + PLATE, now, base + HEIGHT) for top, now in zip(rest, centre, strict=True)]
+            axes.add_collection(LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs"))
         for now, block in zip(centre, state.itertuples(), strict=True):
             axes.add_patch(
                 Rectangle(
@@ -144,22 +211,24 @@ def draw_rows(axes, rows: pd.DataFrame, leaf: bool) -> None:
         axes.text(
             low - 0.2,
             base + 0.5 * HEIGHT,
-            rf"$\bar t = {state['time'].iloc[0]:.1f}$",
+            rf"$\bar t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0],
             ha="right",
             va="center",
+            fontsize=7,
         )
-    count = rows["row"].nunique()
-    axes.set_xlim(low - 2.4, high)
-    axes.set_ylim(-pitch * (count - 1) - 0.25, (PLATE if leaf else HEIGHT) + 0.2)
+    axes.set_xlim(low, high)
+    axes.set_ylim(-pitch * rows["row"].max() - 0.2, (PLATE if leaf else HEIGHT) + 0.08)
     axes.set_yticks([])
-    axes.set_xlabel(r"position at rest $\bar x$ (spacing 1)")
+    axes.set_xlabel(
+        rf"position $\bar x$ at rest; displacement drawn: {rows['scale'].iloc[0]:.2g} $\times$ slip $\bar u$"
+    )
     axes.xaxis.set_major_locator(MultipleLocator(2))
     for side in ("left", "right", "top"):
         axes.spines[side].set_visible(False)
 
 
-def coil(start: float, end: float, y: float, turns: int = 4, size: float = 0.09) -> np.ndarray:
-    """A zigzag from start to end at height y."""
+def coil(start: float, end: float, y: float, turns: int = 4, size: float = 0.1) -> np.ndarray:
+    """A coil spring from ``start`` to ``end`` at height ``y``, as a zigzag."""
     x = np.linspace(start, end, 2 * turns + 3)
     offset = np.zeros(x.size)
     offset[1:-1] = size * (-1.0) ** np.arange(x.size - 2)

@@ -149,21 +149,29 @@ class Lattice:
             step, scene.duration, self.largest_force, CALL_STEPS,
         )  # fmt: skip
 
+    def _settings(self) -> str:
+        return f"dx = {self.scene.dx:g}, beta = {self.beta:g}, max_step = {self.scene.max_step:g}"
+
     def run(self, progress: Callable[[float], None] | None) -> int:
         """Advance to the end of the scene. Returns why the kernel stopped."""
+        least = CALL_STEPS * localised.SIMULTANEOUS * self.scene.max_step * self.scene.dx
         while True:
-            # A failed run overflows before it is noticed; the exception below says so in one line.
+            before = float(self.totals[localised.TIME])
             status = self._advance()
             if status == localised.GROW:
                 self._grow()
             elif status == localised.UNSTABLE:
                 raise UnstableRun(
                     f"the run became unstable at t = {self.totals[localised.TIME]:.6g}: slip velocity is not finite or"
-                    f" beyond anything the pre-stress can drive (dx = {self.scene.dx:g}, beta = {self.beta:g},"
-                    f" max_step = {self.scene.max_step:g})"
+                    f" beyond anything the pre-stress can drive ({self._settings()})"
                 )
             elif status != localised.CONTINUE:
                 return status
+            elif self.totals[localised.TIME] - before < least:
+                raise UnstableRun(
+                    f"the run became unstable at t = {before:.6g}: it no longer advances, blocks stick and are"
+                    f" released over and over at one instant ({self._settings()})"
+                )
             if progress is not None:
                 progress(min(1.0, self.totals[localised.TIME] / self.scene.duration))
 
@@ -222,6 +230,9 @@ class Lattice:
         acceleration = np.where(self.sliding, self.w[2], 0.0)
         for s in range(int(self.counts[localised.NEXT_SAMPLE]), self.sample_times.size):
             inside = self.sample_blocks >= 0
+            if self.sample_times[s] > scene.duration:
+                self.sample_slip[s] = self.sample_velocity[s] = np.nan
+                continue
             self.sample_slip[s, inside] = self.w[0, self.sample_blocks[inside]]
             self.sample_velocity[s, inside] = self.w[1, self.sample_blocks[inside]]
 

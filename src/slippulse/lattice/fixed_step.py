@@ -90,8 +90,9 @@ def advance_fixed(
                 counts[STICKS] += 1
             velocity[i] = after
             slip[i] += dt * after
-            if not after <= fastest:
-                fastest = after
+            if not after < math.inf:
+                return UNSTABLE
+            fastest = max(fastest, after)
         if mirror:
             velocity[0] = velocity[2]
         if beta > 0.0:

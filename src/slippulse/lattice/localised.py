@@ -17,7 +17,7 @@ from .runs import release_block, stick_block
 from .stencils import (
     advance_slip,
     advance_strain,
-    count_below,
+    count_stopping,
     crossing,
     first_acceleration,
     next_derivative,
@@ -35,7 +35,7 @@ TIME, VISCOUS_LOSS, PENDING_STEP, MIN_VELOCITY, MIN_STUCK_STRESS, FIRST_STICK, S
 
 # Events closer than this share of the largest step are one event: the two fronts of a mirror-symmetric scene.
 SIMULTANEOUS = 1e-11
-# How many times within a step the stress of a stuck neighbour is looked at.
+# How many times within a step a stress, or a velocity that may dip below 0, is looked at.
 LOOKS = 4
 # A velocity this little below zero at the instant of a stick is the rounding of the root, not another stick.
 ROUNDING = 1e-12
@@ -158,7 +158,7 @@ def find_releases(
 
 @compiled()
 def find_sticks(w, velocity, starts, ends, n, stopping_block, stopping_time, top, h):
-    """When each block whose velocity is negative after h passed through 0.
+    """When each block whose velocity passes below 0 within h does so.
 
     Returns how many there are and the first time, or -1 for the number where a velocity is not finite.
     """
@@ -167,7 +167,7 @@ def find_sticks(w, velocity, starts, ends, n, stopping_block, stopping_time, top
     earliest = h
     for r in range(n):
         for i in range(starts[r], ends[r]):
-            if velocity[i] >= 0.0:
+            if velocity[i] >= 0.0 and w[1, i] + h * w[2, i] >= 0.0:
                 continue
             if not math.isfinite(velocity[i]):
                 return -1, h
@@ -175,12 +175,21 @@ def find_sticks(w, velocity, starts, ends, n, stopping_block, stopping_time, top
             for k in range(top):
                 factorial *= max(k, 1)
                 coefficients[k] = w[k + 1, i] / factorial
+            below = h
+            if velocity[i] > ROUNDING:
+                below = math.inf
+                for k in range(1, LOOKS):
+                    if polynomial(coefficients, top - 1, h * k / LOOKS) < 0.0:
+                        below = h * k / LOOKS
+                        break
+                if below == math.inf:
+                    continue
             root = 0.0
             if coefficients[0] > 0.0:
-                root = crossing(coefficients, top - 1, h)
+                root = crossing(coefficients, top - 1, below)
             elif coefficients[0] == 0.0 and coefficients[1] > 0.0:
                 # Released at this very instant: the zero at the start is not the one that is sought.
-                root = crossing(coefficients[1:], top - 2, h)
+                root = crossing(coefficients[1:], top - 2, below)
             stopping_block[n_stopping] = i
             stopping_time[n_stopping] = root
             n_stopping += 1
@@ -218,18 +227,19 @@ def advance(
         n_stopping = 0
         floor = 0.0
         while True:
-            negative = 0
+            stopping = 0
             for r in range(n):
                 velocity_after(velocity, w, starts[r], ends[r], h, order)
-                negative += count_below(velocity[starts[r] : ends[r]], floor)
-            if negative == 0:
+                a, b = starts[r], ends[r]
+                stopping += count_stopping(velocity[a:b], w[1, a:b], w[2, a:b], h, floor)
+            if stopping == 0:
                 break
             n_stopping, earliest = find_sticks(
                 w, velocity, starts, ends, n, stopping_block, stopping_time, top, h
             )
             if n_stopping < 0:
                 return UNSTABLE
-            if not earliest < h:
+            if not earliest < h - same:
                 break
             # The shorter step may end inside a dip that the longer one stepped over, so look again.
             h = earliest

@@ -30,5 +30,8 @@ class Samples:
         self.positions = np.asarray(self.positions, dtype=float)
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
+        for name in ("times", "positions"):
+            if not np.isfinite(getattr(self, name)).all():
+                raise ValueError(f"samples.{name}: not finite; allowed: finite numbers")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")

@@ -94,12 +94,15 @@ def velocity_after(out, w, first, last, step, order):
 
 
 @compiled()
-def count_below(values, floor):
-    """How many entries are below ``floor`` or not a number."""
-    n = values.shape[0]
+def count_stopping(after, velocity, acceleration, step, floor):
+    """How many blocks may stop within a step: below ``floor`` at its end, not a number, or slowing down to pass it.
+
+    A velocity that dips below 0 and returns within the step is seen by its tangent at the start.
+    """
+    n = after.shape[0]
     count = 0
     for i in range(n):
-        count += not (values[i] >= floor)
+        count += (not (after[i] >= floor)) | (velocity[i] + step * acceleration[i] < floor)
     return count
 
 

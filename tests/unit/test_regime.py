@@ -1,0 +1,193 @@
+"""The rule that names a regime: each class and each threshold, on made-up runs and on simulated ones."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from slippulse.measure.regime import REGIMES, classify
+from slippulse.model import Scene
+from slippulse.prestress import Prestress
+from slippulse.simulation import Samples, simulate
+
+STILL, TOLERANCE, DURATION = 0.05, 0.02, 30.0
+
+
+def made_up(
+    *,
+    centre: float = 0.0,
+    left: float = 0.0,
+    right: float = 1.0,
+    before: float = 1.0,
+    speeds: tuple[float, float] = (0.0, 1.0),
+    last_release: float = DURATION,
+    ever: float = 1.0,
+) -> xr.Dataset:
+    """A run with given velocities at x = 0 and on both sides at the end, and fronts at given speeds (left, right).
+
+    ``before`` is the largest velocity at two thirds of the duration, ``ever`` the one at an earlier sample.
+    """
+    x = np.linspace(-40.0, 40.0, 801)
+    release = np.full(x.shape, np.nan)
+    release[np.abs(x) < 1e-9] = 0.0
+    for speed, sign in zip(speeds, (-1.0, 1.0), strict=True):
+        if speed > 0.0:
+            side = (sign * x > 0.0) & (np.abs(x) <= speed * last_release)
+            release[side] = np.abs(x[side]) / speed
+        else:
+            # A front that stops early, at one position.
+            release[(sign * x > 0.0) & (np.abs(x) <= 2.0)] = 0.1 * last_release
+    times, at = np.linspace(0.0, DURATION, 10), np.array([-10.0, 0.0, 10.0])
+    velocity = np.zeros((10, 3))
+    velocity[2, 1] = ever
+    velocity[6, 2] = before
+    velocity[-1] = (left, centre, right)
+    return xr.Dataset(
+        {"release_time": ("x", release), "sample_velocity": (("sample_time", "sample_position"), velocity)},
+        coords={"x": x, "sample_time": times, "sample_position": at},
+        attrs={"duration": DURATION, "end_time": DURATION},
+    )
+
+
+def regime(run: xr.Dataset) -> str:
+    return classify(run, STILL, TOLERANCE)["regime"]
+
+
+@pytest.mark.parametrize(
+    ("run", "expected"),
+    [
+        (dict(last_release=0.5 * DURATION), "arrested"),
+        (dict(centre=0.5, left=1.0, speeds=(1.0, 1.0)), "crack-like, two-way"),
+        (dict(centre=0.5), "crack-like, one-way"),
+        (dict(left=1.0, speeds=(1.0, 1.0)), "pulses, two-way"),
+        (dict(before=0.8), "pulse, one-way, growing"),
+        (dict(), "pulse, one-way, steady"),
+        (dict(before=1.2), "pulse, one-way, decaying"),
+    ],
+)
+def test_every_regime_is_reached(run, expected):
+    assert expected in REGIMES
+    assert regime(made_up(**run)) == expected
+
+
+def test_the_named_regimes_are_the_ones_tested():
+    assert len(REGIMES) == len(set(REGIMES)) == 7
+
+
+@pytest.mark.parametrize(
+    ("share", "expected"), [(0.04, "pulse, one-way, steady"), (0.06, "crack-like, one-way")]
+)
+def test_a_nucleation_point_slower_than_still_is_a_pulse(share, expected):
+    assert regime(made_up(centre=share)) == expected
+
+
+def test_the_centre_is_compared_with_the_largest_velocity_of_the_moment():
+    # Slow in itself, but a large share of what is left.
+    assert regime(made_up(centre=0.06, right=0.5, before=0.5)) == "crack-like, one-way"
+    assert regime(made_up(centre=0.06, right=2.0, before=2.0)) == "pulse, one-way, steady"
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.88, "arrested"), (0.92, "pulse, one-way, steady")])
+def test_no_release_in_the_last_tenth_is_arrest(share, expected):
+    # A slower front elsewhere must not matter: only the right front runs.
+    assert regime(made_up(last_release=share * DURATION, speeds=(0.0, 1.2))) == expected
+
+
+@pytest.mark.parametrize(("velocity", "expected"), [(0.04, "arrested"), (0.06, "pulse, one-way, steady")])
+def test_what_is_left_of_the_largest_velocity_of_the_run_decides_on_arrest(velocity, expected):
+    assert regime(made_up(right=velocity, before=velocity, ever=1.0)) == expected
+
+
+def test_arrest_counts_before_the_shape_of_slip():
+    assert regime(made_up(centre=1.0, left=1.0, last_release=0.5 * DURATION)) == "arrested"
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"), [(0.03, "growing"), (0.01, "steady"), (-0.01, "steady"), (-0.03, "decaying")]
+)
+def test_steady_is_a_change_within_the_tolerance(change, expected):
+    out = classify(made_up(right=1.0 + change), STILL, TOLERANCE)
+    assert out["regime"] == f"pulse, one-way, {expected}"
+    assert out["largest_velocity_change"] == pytest.approx(change)
+
+
+@pytest.mark.parametrize(("speed", "expected"), [(0.99, "pulses, two-way"), (0.95, "pulse, one-way, steady")])
+def test_a_front_runs_when_it_keeps_up_with_the_waves(speed, expected):
+    out = classify(made_up(left=1.0, speeds=(speed, 1.0)), STILL, TOLERANCE)
+    assert out["regime"] == expected
+    assert out["late_front_speed_left"] == pytest.approx(speed, abs=1e-3)
+    assert out["late_front_speed_right"] == pytest.approx(1.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("left", "centre", "expected"),
+    [
+        (0.06, 0.5, "crack-like, two-way"),
+        (0.04, 0.5, "crack-like, one-way"),
+        (0.06, 0.0, "pulses, two-way"),
+        (0.04, 0.0, "pulse, one-way, steady"),
+    ],
+)
+def test_where_no_front_keeps_up_the_sides_that_slide_run(left, centre, expected):
+    assert regime(made_up(left=left, centre=centre, speeds=(0.5, 0.6))) == expected
+
+
+def test_thresholds_are_arguments():
+    run = made_up(centre=0.2, before=0.9)
+    assert classify(run, 0.3, 0.05)["regime"] == "pulse, one-way, growing"
+    assert classify(run, 0.3, 0.2)["regime"] == "pulse, one-way, steady"
+    assert classify(run, 0.1, 0.05)["regime"] == "crack-like, one-way"
+
+
+def test_the_numbers_behind_the_class_are_returned():
+    out = classify(made_up(centre=0.02, right=0.5, before=0.4), STILL, TOLERANCE)
+    assert out["centre_velocity_share"] == pytest.approx(0.04)
+    assert out["largest_velocity_change"] == pytest.approx(0.25)
+
+
+def test_a_run_at_rest_has_no_centre_share():
+    out = classify(made_up(right=0.0, before=0.0, last_release=0.3 * DURATION), STILL, TOLERANCE)
+    assert out["regime"] == "arrested"
+    assert np.isnan(out["centre_velocity_share"])
+
+
+def simulated(boundary: str, prestress: Prestress, duration: float, gamma: float = 0.0) -> str:
+    # With fewer than ten blocks in the Gaussian, damping alone makes a steady pulse decay.
+    dx = 0.1
+    scene = Scene(
+        boundary=boundary,
+        prestress=prestress,
+        duration=duration,
+        dx=dx,
+        gamma=gamma,
+        beta=0.1 * dx,
+        max_step=0.5,
+    )
+    reach = 1.5 * duration + 10.0
+    run = simulate(scene, Samples(np.linspace(0.0, duration, 10), np.linspace(-reach, reach, 801)))
+    assert run.attrs["flags"] == ""
+    return regime(run)
+
+
+def beyond(level: float) -> Prestress:
+    return Prestress(-0.6, 0.0, steps=((15.0, level),))
+
+
+@pytest.mark.parametrize(
+    ("boundary", "prestress", "duration", "gamma", "expected"),
+    [
+        ("displacement", Prestress(0.5, 0.5), 20.0, 0.2, "pulses, two-way"),
+        # The same rupture, seen before half a period of the leaf springs is over.
+        ("displacement", Prestress(0.5, 0.5), 20.0, 0.005, "crack-like, two-way"),
+        ("displacement", Prestress(-0.1, -0.1), 20.0, 0.2, "arrested"),
+        ("stress", Prestress(0.3, 0.3), 40.0, 0.0, "crack-like, two-way"),
+        ("stress", Prestress(-0.3, 0.3), 40.0, 0.0, "crack-like, one-way"),
+        ("stress", Prestress(0.3, -0.3), 40.0, 0.0, "crack-like, one-way"),
+        ("stress", beyond(0.01), 80.0, 0.0, "pulse, one-way, growing"),
+        ("stress", beyond(0.0), 80.0, 0.0, "pulse, one-way, steady"),
+        ("stress", beyond(-0.01), 80.0, 0.0, "pulse, one-way, decaying"),
+    ],
+)
+def test_simulated_ruptures(boundary, prestress, duration, gamma, expected):
+    assert simulated(boundary, prestress, duration, gamma) == expected

@@ -1,0 +1,119 @@
+"""Blocks and springs, dx = 1, against an independent integration of the same equation of motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+from reference.burridge_knopoff import Chain
+
+import slippulse as sp
+
+DURATION = 16.0
+REACH = 40
+PROFILES = {
+    "displacement, even": ("displacement", 0.3, sp.Prestress(0.3, 0.3)),
+    "displacement, uneven": ("displacement", 0.5, sp.Prestress(0.2, 0.6, bumps=((5.0, -0.7, 1.0),))),
+    "stress, one-way": ("stress", 0.0, sp.Prestress(-0.5, 0.0)),
+    "stress, two nucleation points": (
+        "stress",
+        0.0,
+        sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0))),
+    ),
+}
+
+
+def scene(name: str, beta: float, release: str, **accuracy) -> sp.Scene:
+    boundary, gamma, profile = PROFILES[name]
+    return sp.Scene(
+        boundary,
+        profile,
+        DURATION,
+        1.0,
+        gamma=gamma,
+        beta=beta,
+        release=release,
+        resolved_blocks=1,
+        **accuracy,
+    )
+
+
+@pytest.fixture(scope="module")
+def chains():
+    """The reference, integrated once a case."""
+    known: dict[tuple, Chain] = {}
+
+    def chain(name: str, beta: float, release: str) -> Chain:
+        if (name, beta, release) not in known:
+            _, gamma, profile = PROFILES[name]
+            pull = profile(np.arange(-REACH, REACH + 1.0))
+            known[name, beta, release] = Chain(pull, gamma, beta, release).run(DURATION)
+        return known[name, beta, release]
+
+    return chain
+
+
+def differences(run, chain: Chain) -> dict[str, float]:
+    """Largest difference of each quantity over the blocks that both have; both must have the same events."""
+    blocks = np.round(run["x"].values).astype(int)
+    kept = np.abs(blocks) <= REACH
+    out = {}
+    for name in ("release_time", "stick_time"):
+        ours, theirs = run[name].values[kept], getattr(chain, name)[blocks[kept] + REACH]
+        assert np.array_equal(np.isfinite(ours), np.isfinite(theirs)), name
+        out[name] = float(np.max(np.abs(ours - theirs), where=np.isfinite(ours), initial=0.0))
+    for name, theirs in (("slip", chain.slip), ("slip_velocity", chain.velocity)):
+        out[name] = float(np.max(np.abs(run[name].values[kept] - theirs[blocks[kept] + REACH])))
+    return out
+
+
+CASES = [
+    (name, beta, release)
+    for name in PROFILES
+    for beta, release in ((0.0, "total"), (0.3, "total"), (0.3, "elastic"))
+]
+
+
+@pytest.mark.parametrize(("name", "beta", "release"), CASES)
+def test_every_event_and_every_slip_agrees(chains, name, beta, release):
+    run = sp.simulate(scene(name, beta, release, max_step=0.05, order=8, half_lattice=False))
+    chain = chains(name, beta, release)
+    assert (run.attrs["releases"], run.attrs["sticks"]) == (chain.releases, chain.sticks)
+    apart = differences(run, chain)
+    assert max(apart["release_time"], apart["stick_time"]) < tol.CHAIN_TIME
+    assert max(apart["slip"], apart["slip_velocity"]) < tol.CHAIN_SLIP
+
+
+@pytest.mark.parametrize(("name", "beta", "release"), CASES)
+def test_the_fourth_order_step_of_the_figure_agrees_to_its_truncation_error(chains, name, beta, release):
+    run = sp.simulate(scene(name, beta, release, max_step=0.1, order=4))
+    assert max(differences(run, chains(name, beta, release)).values()) < tol.CHAIN_ORDER_4
+
+
+def random_scenes(count: int):
+    """Uneven profiles whose blocks are released and stick in no simple order."""
+    random = np.random.default_rng(1)
+    for _ in range(count):
+        gamma, beta = float(random.uniform(0.05, 1.5)), float(random.choice([0.0, 0.05, 0.2]))
+        bumps = tuple(
+            (float(random.uniform(-20, 20)), float(random.uniform(-0.5, 0.5)), float(random.uniform(1, 4)))
+            for _ in range(3)
+        )
+        boundary = str(random.choice(["displacement", "stress"]))
+        levels = float(random.uniform(-0.5, 0.5)), float(random.uniform(-0.3, 0.5))
+        yield boundary, gamma if boundary == "displacement" else 0.0, beta, sp.Prestress(*levels, bumps=bumps)
+
+
+@pytest.mark.parametrize("step", [0.5, 0.2])
+def test_no_event_is_stepped_over(step):
+    """Events that come and go within a long step: the same numbers of releases and sticks as with a short one."""
+    missed = []
+    for index, (boundary, gamma, beta, profile) in enumerate(random_scenes(200)):
+        counts = []
+        for max_step in (step, 0.02):
+            accuracy = {"max_step": max_step, "order": 8, "resolved_blocks": 1}
+            run = sp.simulate(sp.Scene(boundary, profile, 25.0, 1.0, gamma=gamma, beta=beta, **accuracy))
+            counts.append([run.attrs[name] for name in ("releases", "sticks", "re_releases")])
+        if counts[0] != counts[1]:
+            missed.append((index, *counts))
+    assert missed == []

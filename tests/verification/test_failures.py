@@ -1,0 +1,110 @@
+"""Runs that are not the model's: stopped with a reason, or flagged."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import slippulse as sp
+from slippulse.lattice import driver
+from slippulse.model import SCHEMES
+
+PUBLISHED = {
+    "boundary": "displacement",
+    "gamma": 0.55,
+    "beta": 1e-3,
+    "dx": 0.01,
+    "duration": 10.8,
+    "prestress": sp.Prestress(0.25, 0.25),
+}
+
+
+class TooLong(Exception):
+    """A run that does not come to an end."""
+
+
+def at_most(calls: int):
+    """Progress that gives up: a run that repeats one instant for ever would not return otherwise."""
+    seen = []
+
+    def progress(share: float) -> None:
+        seen.append(share)
+        if len(seen) > calls:
+            raise TooLong(f"after {calls} calls at {share:.3g} of the duration")
+
+    return progress
+
+
+@pytest.mark.parametrize("release", ["total", "elastic"])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
+    """The published scene with -beta: modes grow at up to 4 beta/dx^2, 40 per unit of time."""
+    scene = sp.Scene(**PUBLISHED, scheme=scheme, release=release)
+    with pytest.raises(sp.UnstableRun, match=r"t = \d"):
+        driver.run_scene(scene, progress=at_most(40), damping_sign=-1)
+    assert driver.run_scene(scene).numbers["end_time"] == scene.duration
+
+
+@pytest.mark.parametrize("row", [0, 1])
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.9])
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
+    """Put into the slip or the velocity of a sliding block."""
+    scene = sp.Scene("displacement", sp.Prestress(0.5, 0.4), 4.0, 0.05, gamma=0.65, beta=0.005, scheme=scheme)
+    lattice = driver.Lattice(scene, None, scene.beta)
+    lattice.run(None)
+    object.__setattr__(scene, "duration", 8.0)
+    moving = np.flatnonzero(lattice.w[1] > 0.0)
+    block = moving[int(place * moving.size)]
+    lattice.w[row, block] = value
+    if row == 0 and scheme == "localised":
+        lattice.strain[block] = value
+    with pytest.raises(sp.UnstableRun, match="not finite"):
+        lattice.run(at_most(20))
+
+
+UNRESOLVED = {"boundary": "displacement", "gamma": 0.65, "prestress": sp.Prestress(0.3, 0.3), "dx": 0.4}
+
+
+def test_a_pulse_of_few_blocks_is_flagged():
+    run = sp.simulate(sp.Scene(**UNRESOLVED, duration=20.0))
+    assert run.attrs["flags"] == "unresolved_pulse"
+    assert 0 < run.attrs["pulse_blocks"] < 8
+    assert sp.simulate(sp.Scene(**UNRESOLVED | {"dx": 0.05}, duration=20.0)).attrs["flags"] == ""
+    assert sp.simulate(sp.Scene(**UNRESOLVED, duration=20.0, resolved_blocks=1)).attrs["flags"] == ""
+
+
+def test_under_a_stress_boundary_the_gaussian_must_be_resolved():
+    values = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 4.0}
+    assert sp.simulate(sp.Scene(**values, dx=0.2)).attrs["flags"] == "unresolved_pulse"
+    assert sp.simulate(sp.Scene(**values, dx=0.125)).attrs["flags"] == ""
+
+
+@pytest.mark.parametrize(("ratio", "flagged"), [(0.0, True), (0.2, True), (0.3, False), (5.0, False)])
+def test_a_stress_beyond_the_threshold_of_reverse_sliding_is_flagged(ratio, flagged):
+    """The level -1.5 is there from the start: -(1 + 2 ratio) is above it for ratios below 0.25."""
+    scene = sp.Scene("stress", sp.Prestress(-1.5, 0.3), 3.0, 0.05, beta=0.01, friction_ratio=ratio)
+    run = sp.simulate(scene)
+    assert (run.attrs["flags"] == "reverse_sliding") is flagged
+    assert run.attrs["friction_ratio_needed"] >= 0.25
+
+
+def test_a_step_too_long_for_the_damping_is_flagged():
+    scene = sp.Scene("stress", sp.Prestress(-0.5, -0.1), 20.0, 0.05, beta=0.05, max_step=0.5)
+    object.__setattr__(scene, "max_step", 1.39)
+    assert "energy" in sp.simulate(scene).attrs["flags"]
+
+
+def test_strict_raises_where_a_flag_would_be_set():
+    with pytest.raises(sp.UnresolvedRun, match=r"unresolved_pulse .*needed 8"):
+        sp.simulate(sp.Scene(**UNRESOLVED, duration=20.0), strict=True)
+    sp.simulate(sp.Scene(**UNRESOLVED | {"dx": 0.05}, duration=20.0), strict=True)
+
+
+def test_a_run_can_be_interrupted():
+    def stop(_share: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sp.simulate(sp.Scene(**PUBLISHED), progress=stop)

@@ -1,0 +1,141 @@
+"""The theory against tabulated values, against closed forms, and against quadratures of another kind."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import tolerances as tol
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import j0
+
+import slippulse as sp
+from slippulse.measure.fronts import arrival, position_at
+from slippulse.theory.transition import prestress_balance_position
+
+GAMMA = 2.0 / 3.0
+
+
+def transition_by_quadrature(tau0: float) -> float:
+    """First zero of the slip velocity at x = 0 for the undamped rupture, by adaptive quadrature."""
+
+    def slowness(x: float) -> float:
+        drop = (1.0 - tau0) * -np.expm1(-0.5 * x * x)
+        return float(np.sqrt(drop * (2.0 - drop)))
+
+    def arrival_time(x: float) -> float:
+        return quad(slowness, 0.0, x, epsabs=1e-13, epsrel=1e-12)[0]
+
+    def velocity(time: float) -> float:
+        end = brentq(lambda x: time - arrival_time(x) - x, 0.0, time, xtol=1e-13)
+
+        def integrand(x: float) -> float:
+            tau = tau0 + (1.0 - tau0) * np.exp(-0.5 * x * x)
+            return tau * j0(np.sqrt(GAMMA * max((time - arrival_time(x)) ** 2 - x * x, 0.0)))
+
+        return quad(integrand, 0.0, end, epsabs=1e-12, epsrel=1e-11)[0]
+
+    return brentq(velocity, 3.0, 4.5, xtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("tau0", "time", "length"), [(0.5, 3.7805, 10.3226), (0.2, 3.6006, 8.7692), (0.95, 3.9326, 26.952)]
+)
+def test_transition_under_displacement(tau0, time, length):
+    exact = sp.theory.exact_transition_displacement(sp.Prestress(tau0, tau0), GAMMA)
+    assert exact.time == pytest.approx(time, rel=tol.TRANSITION_TABLE)
+    assert exact.length == pytest.approx(length, rel=tol.TRANSITION_TABLE)
+
+
+def test_transition_under_displacement_by_another_quadrature():
+    exact = sp.theory.exact_transition_displacement(sp.Prestress(0.5, 0.5), GAMMA)
+    assert exact.time == pytest.approx(transition_by_quadrature(0.5), rel=tol.TRANSITION_QUADRATURE)
+
+
+def test_simulated_transitions_under_displacement_are_those_known_and_converge_at_first_order(paper_accuracy):
+    exact = sp.theory.exact_transition_displacement(sp.Prestress(0.5, 0.5), GAMMA)
+    errors = []
+    for dx, known in ((0.05, 3.7945), (0.02, 3.7863), (0.01, 3.7835)):
+        scene = sp.Scene(
+            "displacement", sp.Prestress(0.5, 0.5), 4.5, dx, gamma=GAMMA, **paper_accuracy, resolved_blocks=1
+        )
+        run = sp.simulate(scene)
+        time = run.attrs["first_stick_time"]
+        assert time == pytest.approx(known, rel=tol.TRANSITION_TABLE)
+        errors.append((time - exact.time, 2.0 * float(position_at(run, time)) - exact.length))
+    low, high = tol.TRANSITION_HALVING
+    for middle, fine in zip(errors[1], errors[2], strict=True):
+        assert low < middle / fine < high
+    for middle, fine, value in zip(errors[1], errors[2], (exact.time, exact.length), strict=True):
+        assert abs(2.0 * fine - middle) < tol.TRANSITION_EXTRAPOLATED * value
+
+
+@pytest.mark.parametrize(
+    ("left", "width", "table"),
+    [(-1.0, 4.0, (1.3031, 1.5543, 1.9779)), (-0.5, 1.0, (1.1745, 1.3415, 1.6052))],
+)
+def test_share_times_under_stress(left, width, table):
+    crack = sp.theory.ArrestingCrack(sp.Prestress(left, 0.0, width))
+    distance = abs(crack.balance_position)
+    for share, known in zip((0.90, 0.95, 0.99), table, strict=True):
+        assert crack.share_time(share) / distance == pytest.approx(known, rel=tol.SHARE_TABLE)
+
+
+@pytest.mark.parametrize(("left", "width", "ratio"), [(-1.0, 4.0, 0.0), (-1.0, 4.0, 0.1), (-0.5, 1.0, 0.1)])
+def test_simulated_share_times_under_stress_converge_at_first_order(left, width, ratio):
+    profile = sp.Prestress(left, 0.0, width)
+    crack = sp.theory.ArrestingCrack(profile, ratio)
+    distance = abs(crack.balance_position)
+    exact = crack.share_time(0.9)
+    errors = []
+    for dx in (0.02 * width, 0.01 * width, 0.005 * width):
+        scene = sp.Scene("stress", profile, 1.6 * distance, dx, beta=ratio * dx, max_step=0.1, order=6)
+        errors.append((arrival(sp.simulate(scene), 0.9 * distance, "left") - exact) / exact)
+    low, high = tol.TRANSITION_HALVING
+    for coarse, fine in pairwise(errors):
+        assert low < coarse / fine < high, errors
+    assert abs(2.0 * errors[2] - errors[1]) < tol.SHARE_EXTRAPOLATED
+
+
+@pytest.mark.parametrize("profile", [sp.Prestress(-0.75, 0.0, 5.0), sp.Prestress(-2.0, 0.0, 0.5)])
+def test_the_prestress_balances_from_its_balance_position_on(profile):
+    x = prestress_balance_position(profile)
+    reach = 40.0 * profile.width
+    total, _ = quad(lambda y: float(profile(y)), x, reach, points=[0.0], epsabs=1e-12, limit=400)
+    assert x < 0.0
+    assert total == pytest.approx(0.0, abs=tol.QUADRATURE)
+
+
+@pytest.mark.parametrize("tau0", [0.1, 0.37, 0.5, 0.9])
+@pytest.mark.parametrize("gamma", [1e-3, 0.65])
+def test_the_undamped_pulse_is_the_closed_form_of_the_paper(tau0, gamma):
+    speed = 1.0 / np.sqrt(1.0 - tau0**2)
+    pulse = sp.theory.paper_pulse(tau0, gamma)
+    assert pulse.speed == pytest.approx(speed, rel=tol.PULSE_THEORY)
+    assert pulse.slip == pytest.approx(2.0 * tau0 / gamma, rel=tol.PULSE_THEORY)
+    assert pulse.peak_velocity == pytest.approx(1.0 / np.sqrt(gamma), rel=tol.PULSE_THEORY)
+    assert pulse.width == pytest.approx(np.pi * tau0 * speed / np.sqrt(gamma), rel=tol.PULSE_THEORY)
+    assert pulse.stress_drop == pytest.approx(2.0 * tau0, rel=tol.PULSE_THEORY)
+
+
+@pytest.mark.parametrize("beta", [0.0, 1e-3, 0.05])
+def test_the_profile_of_the_pulse_obeys_its_equation(beta):
+    """(v^2 - 1) U'' + gamma U + beta v U''' = tau_0, with U and U' from rest at the front and at rest behind."""
+    tau0, gamma, speed = 0.25, 0.55, 1.0686
+    pulse = sp.theory.steady_pulse(tau0, gamma, beta, speed)
+    xi = np.linspace(-0.99, -0.01, 99) * pulse.width
+    h = 1e-4
+    slip, velocity, acceleration = pulse.profile(xi)
+    change = [(b - a) / (2.0 * h) for a, b in zip(pulse.profile(xi - h), pulse.profile(xi + h), strict=True)]
+    assert velocity == pytest.approx(-speed * change[0], abs=tol.PULSE_EQUATION)
+    assert acceleration == pytest.approx(-speed * change[1], abs=tol.PULSE_EQUATION)
+    third = change[2] / speed**2
+    balance = (speed**2 - 1.0) * acceleration / speed**2 + gamma * slip + beta * speed * third
+    assert balance == pytest.approx(tau0, abs=tol.PULSE_EQUATION)
+    ends = pulse.profile(np.array([0.0, -pulse.width]))
+    assert ends[0] == pytest.approx([0.0, pulse.slip], abs=tol.PULSE_EQUATION)
+    assert ends[1] == pytest.approx([0.0, 0.0], abs=tol.PULSE_EQUATION)
+    fine = pulse.profile(np.linspace(-pulse.width, 0.0, 20001))[1]
+    assert pulse.peak_velocity == pytest.approx(fine.max(), rel=tol.PULSE_EQUATION)
