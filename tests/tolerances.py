@@ -26,7 +26,7 @@ STRESS_AT_END = 1e-9
 CHAIN_TIME = 1e-9
 CHAIN_SLIP = 1e-9
 # Order 4 at step 0.1, dx = 1: truncation over some 15 events, 1e-4 in the plain scenes.
-CHAIN_ORDER_4 = 5e-4
+CHAIN_ORDER_4 = 2e-4
 # The same closed-form oscillators, one or two blocks, by order 8 at step 0.05.
 OSCILLATOR = 1e-9
 # Observed orders of the localised scheme, from steps 0.1 and 0.05: events cut steps too, so that halving the longest

@@ -78,10 +78,13 @@ def test_stretching(random):
     assert product == pytest.approx(np.sum(np.diff(velocity) * np.diff(acceleration)), abs=tol.STENCIL * N)
 
 
-def test_count_below_counts_what_is_not_a_number():
-    values = np.array([0.0, -1e-30, 1.0, np.nan, -np.inf, np.inf])
-    assert stencils.count_below(values, 0.0) == 3
-    assert stencils.count_below(values, -1.0) == 2
+def test_count_stopping_counts_what_ends_or_dips_below_and_what_is_not_a_number():
+    after = np.array([0.0, -1e-30, 1.0, np.nan, -np.inf, np.inf])
+    still, steady = np.zeros(6), np.ones(6)
+    assert stencils.count_stopping(after, steady, still, 0.1, 0.0) == 3
+    assert stencils.count_stopping(after, steady, still, 0.1, -1.0) == 2
+    slowing = np.array([0.0, 0.0, -11.0, 0.0, 0.0, -9.0])
+    assert stencils.count_stopping(after, steady, slowing, 0.1, 0.0) == 4
 
 
 def test_polynomial(random):
