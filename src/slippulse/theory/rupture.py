@@ -12,10 +12,10 @@ until du/dt returns to 0 somewhere (Gamma = 1) or a front stops outrunning the w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.polynomial import Chebyshev
+from numpy.polynomial import Chebyshev, legendre
 from scipy.optimize import brentq
 from scipy.special import j0
 
@@ -24,7 +24,9 @@ from ..prestress import Prestress
 from .front_speed import front_speed, front_speed_undamped
 from .transition import prestress_balance_position
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+NODES, WEIGHTS = legendre.leggauss(12)
+# From values at the nodes of a panel to the Legendre coefficients of their integral from its left end.
+INTEGRATE = legendre.legint(np.linalg.inv(legendre.legvander(NODES, NODES.size - 1)), lbnd=-1.0)
 # Panels a Gaussian width: the profile and the front law are smooth on this scale.
 PANELS_PER_WIDTH = 12
 # Degree of the interpolated front law; its error is below 1e-7 in the slowness for damping ratios above 0.01.
@@ -73,7 +75,7 @@ class Fronts:
         check_number("damping_ratio", damping_ratio, at_least=0.0)
         check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
         self.prestress = prestress
-        self.ends, self.edges, self.times = {}, {}, {}
+        self.ends, self.edges, self.times, self.within = {}, {}, {}, {}
         for sign in (-1.0, 1.0):
             edges = _panels(prestress, sign, reach)
             tau_at_edges = prestress(sign * edges)
@@ -96,7 +98,7 @@ class Fronts:
             rate = slowness(tau, damping_ratio, release)
             self.edges[sign] = edges
             self.times[sign] = np.concatenate([[0.0], np.cumsum(half * (rate @ WEIGHTS))])
-        self._law = (float(damping_ratio), release)
+            self.within[sign] = INTEGRATE @ (half[:, None] * rate).T
 
     def arrival(self, x) -> np.ndarray:
         """T(x): when the front reaches x; NaN beyond where it outruns the waves."""
@@ -107,12 +109,31 @@ class Fronts:
             distance = np.abs(x[chosen])
             edges, times = self.edges[sign], self.times[sign]
             panel = np.clip(np.searchsorted(edges, distance, side="right") - 1, 0, edges.size - 2)
-            # The rest of the panel by the same quadrature, so that T is as smooth as the profile.
-            half = 0.5 * (distance - edges[panel])
-            nodes = edges[panel][:, None] + half[:, None] * (1.0 + NODES)
-            rate = slowness(self.prestress(sign * nodes), *self._law)
-            out[chosen] = times[panel] + half * (rate @ WEIGHTS)
+            inside = 2.0 * (distance - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
+            out[chosen] = times[panel] + legendre.legval(inside, self.within[sign][:, panel], tensor=False)
         return out
+
+    def quadrature(self, left: float, right: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Nodes x of an integral of tau from left to right, weights with tau in them, and T at the nodes."""
+        x, weight, entered, edges = self._whole
+        inside = slice(*np.searchsorted(edges, [left, right]) + [0, -1])
+        first, last = edges[inside.start], edges[inside.stop]
+        if not first < last:
+            first, last, inside = left, left, slice(0, 0)
+        # The panels at both ends are cut.
+        half = 0.5 * np.array([[first - left], [right - last]])
+        ends = np.array([[left], [last]]) + half * (1.0 + NODES)
+        cut = (half * WEIGHTS) * self.prestress(ends)
+        parts = ((x[inside], ends), (weight[inside], cut), (entered[inside], self.arrival(ends)))
+        return tuple(np.concatenate([a.ravel(), b.ravel()]) for a, b in parts)
+
+    @cached_property
+    def _whole(self) -> tuple[np.ndarray, ...]:
+        """Nodes, weights with tau, and T at the nodes of all panels of both sides, and the panels' edges."""
+        edges = np.concatenate([-self.edges[-1.0][:0:-1], self.edges[1.0]])
+        half = 0.5 * np.diff(edges)[:, None]
+        x = edges[:-1, None] + half * (1.0 + NODES)
+        return x, half * WEIGHTS * self.prestress(x), self.arrival(x), edges
 
     def reached(self, time: float, sign: float) -> float:
         """How far from x = 0 the front on one side (+1 right, -1 left) is at a time."""
@@ -190,13 +211,9 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     left, right = fronts.cone(y, time)
     if gamma == 0.0:
         return 0.5 * fronts.prestress.integral(left, right)
-    marks = np.unique(np.concatenate([-fronts.edges[-1.0], fronts.edges[1.0], [left, y, right]]))
-    marks = marks[(marks >= left) & (marks <= right)]
-    half = 0.5 * np.diff(marks)[:, None]
-    x = (0.5 * (marks[1:] + marks[:-1])[:, None] + half * NODES).ravel()
-    weight = (half * WEIGHTS).ravel()
-    interval = np.maximum((time - fronts.arrival(x)) ** 2 - (x - y) ** 2, 0.0)
-    return float(0.5 * np.sum(weight * fronts.prestress(x) * j0(np.sqrt(gamma * interval))))
+    x, weight, entered = fronts.quadrature(left, right)
+    interval = np.maximum((time - entered) ** 2 - (x - y) ** 2, 0.0)
+    return float(0.5 * np.sum(weight * j0(np.sqrt(gamma * interval))))
 
 
 def exact_transition_displacement(
@@ -229,7 +246,8 @@ def exact_transition_displacement(
     def velocity(time: float) -> float:
         return slip_velocity(fronts, gamma, 0.0, time)
 
-    times = np.linspace(0.0, 2.0 * period, 81)[1:]
+    # Slip velocity swings no faster than the leaf springs: steps of a tenth of their half period miss no zero.
+    times = np.linspace(0.0, 2.0 * period, 21)[1:]
     before = times[0]
     for time in times[1:]:
         if velocity(time) <= 0.0:
