@@ -22,6 +22,7 @@ include: "workflow/rules/claims.smk"
 rule all:
     default_target: True
     input:
-        figure_files(FIGURES),
+        figure_files(FIGURES | STUDIES),
+        "results/claims.json",
     message:
         "Done: every figure is in results/figures, as PDF, PNG and the CSV that it is drawn from"

@@ -97,3 +97,9 @@ TRANSITION = 5e-4
 SHARE_TIME, STRESS_PEAK = 5e-3, 2e-3
 # Observed orders may differ from the formal one by this much where the next order is not negligible.
 ORDER_BAND = 0.35
+# The damped theory against simulation at dx = 0.02, step 0.05: what is left is how steady the front is by then.
+FRONT_SPEED_THEORY = 3e-4
+# The same without leaf springs, where the front has long been steady.
+FRONT_SPEED_STUDY = 5e-5
+# The damped pulse at dx = 0.01: it is a continuum theory behind a front that is some blocks wide.
+PULSE_SLIP_THEORY, PULSE_PEAK_THEORY, PULSE_WIDTH_BLOCKS = 5e-4, 2e-3, 2.0

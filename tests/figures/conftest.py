@@ -15,7 +15,7 @@ from slippulse.store import load_table, save_table
 from slippulse.sweep import run_sweep
 
 # A few points of each list are enough to draw.
-THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3}
+THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
 INPUTS = {
     "fig01_system_sketch": [],
     "fig02_phase_diagram": ["regimes_displacement", "regimes_stress", "regimes_beyond"],
@@ -28,6 +28,21 @@ INPUTS = {
     "fig09_steady_state_stress": ["steady_stress"],
     "fig10_damping_displacement": ["damping_displacement"],
     "fig11_damping_stress": ["damping_stress"],
+    "study_front_speed": [
+        "front_speed_total",
+        "front_speed_slow_total",
+        "front_speed_elastic",
+        "front_speed_slow_elastic",
+    ],
+    "study_pulse_theory": ["pulse_damping"],
+    "study_continuum_limit": [
+        "continuum_fixed_ratio",
+        "continuum_fixed_beta_total",
+        "continuum_fixed_beta_elastic",
+    ],
+    "study_exact_transition": ["scaling_displacement", "scaling_stress", "transition_convergence"],
+    "study_arrest": ["arrest"],
+    "study_stability_of_pulses": ["pulses_across_a_step", "regimes_beyond"],
 }
 
 
@@ -64,7 +79,11 @@ def draw(project, tmp_path_factory):
         if name not in drawn:
             module = import_module(f"slippulse.figures.{name}")
             inputs = {source: simulate(source) for source in INPUTS[name]}
-            settings = {"measure": config["measure"], **config["figures"].get(name, {})}
+            settings = {
+                "measure": config["measure"],
+                "paper_damping_ratio": config["model"]["damping_ratio"],
+                **config["figures"].get(name, {}),
+            }
             data = {source: pair[0] for source, pair in inputs.items()}
             measured = {source: pair[1] for source, pair in inputs.items()}
             save_table(module.table(data, measured, settings), folder / f"{name}.csv")
@@ -84,5 +103,5 @@ def draw(project, tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def names() -> list[str]:
-    """Every figure of the paper."""
+    """Every figure."""
     return list(INPUTS)

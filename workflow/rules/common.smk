@@ -81,6 +81,35 @@ FIGURES = {
     "fig11_damping_stress": {"measured": ["damping_stress"]},
 }
 
+# What goes beyond the paper, under the same contract.
+STUDIES = {
+    "study_front_speed": {
+        "measured": [
+            "front_speed_total",
+            "front_speed_slow_total",
+            "front_speed_elastic",
+            "front_speed_slow_elastic",
+        ]
+    },
+    "study_pulse_theory": {"measured": ["pulse_damping"]},
+    "study_continuum_limit": {
+        "measured": [
+            "continuum_fixed_ratio",
+            "continuum_fixed_beta_total",
+            "continuum_fixed_beta_elastic",
+        ]
+    },
+    "study_exact_transition": {
+        "measured": [
+            "scaling_displacement",
+            "scaling_stress",
+            "transition_convergence",
+        ]
+    },
+    "study_arrest": {"data": ["arrest"], "measured": ["arrest"]},
+    "study_stability_of_pulses": {"data": ["pulses_across_a_step", "regimes_beyond"]},
+}
+
 
 def figure_files(names):
     """PDF, PNG and CSV of each figure."""
@@ -99,4 +128,8 @@ def simulation_block(wildcards):
 
 def figure_settings(name):
     """What a figure takes from the configuration."""
-    return {"measure": config["measure"], **config["figures"].get(name, {})}
+    return {
+        "measure": config["measure"],
+        "paper_damping_ratio": config["model"]["damping_ratio"],
+        **config["figures"].get(name, {}),
+    }

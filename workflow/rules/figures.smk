@@ -1,6 +1,6 @@
 # One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
 
-for figure, needs in FIGURES.items():
+for figure, needs in (FIGURES | STUDIES).items():
 
     rule:
         name:
@@ -13,7 +13,7 @@ for figure, needs in FIGURES.items():
             png=report(
                 f"results/figures/{figure}.png",
                 caption=f"../report/{figure}.rst",
-                category="Figures of the paper",
+                category="Figures of the paper" if figure in FIGURES else "Studies",
                 labels={"figure": figure},
             ),
             pdf=f"results/figures/{figure}.pdf",

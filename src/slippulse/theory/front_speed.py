@@ -122,7 +122,7 @@ def _speed(tau: float, ratio: float, release: str) -> float:
     target = np.log(tau)
 
     def mismatch(log_excess: float) -> float:
-        return _log_prestress(np.exp(log_excess), ratio, release) - target
+        return _log_prestress(float(np.exp(log_excess)), ratio, release, check=False) - target
 
     lower = np.log(0.25 * tau**2 / (1.0 + ratio) ** 2) - 2.0
     upper = np.log(front_speed_undamped(tau) - 1.0) + 2.0
@@ -134,15 +134,20 @@ def _speed(tau: float, ratio: float, release: str) -> float:
             raise ValueError(
                 f"tau0: {tau!r}; allowed: values with a finite speed at damping_ratio = {ratio:g}"
             )
-    return 1.0 + float(np.exp(brentq(mismatch, lower, upper, xtol=1e-13, rtol=1e-13)))
+    excess = float(np.exp(brentq(mismatch, lower, upper, xtol=1e-13, rtol=1e-13)))
+    # The error control is for the root alone: its bracket may be anything.
+    _log_prestress(excess, ratio, release)
+    return 1.0 + excess
 
 
-def _log_prestress(excess: float, ratio: float, release: str) -> float:
-    """ln tau_0 at speed 1 + excess; the quadrature is done twice and the two must agree."""
+def _log_prestress(excess: float, ratio: float, release: str, check: bool = True) -> float:
+    """ln tau_0 at speed 1 + excess; to check, the quadrature is done twice and the two must agree."""
     speed = 1.0 + excess
     log_static = 0.5 * np.log(excess * (2.0 + excess) / speed**2)
     if ratio == 0.0:
         return log_static
+    if not check:
+        return log_static + _quadrature(excess, ratio, release, PERIODS)
     values = [log_static + _quadrature(excess, ratio, release, periods) for periods in (PERIODS, 2 * PERIODS)]
     if abs(values[1] - values[0]) > QUADRATURE_TOLERANCE * max(1.0, abs(values[1])):
         raise ArithmeticError(

@@ -116,7 +116,8 @@ class Fronts:
     def quadrature(self, left: float, right: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Nodes x of an integral of tau from left to right, weights with tau in them, and T at the nodes."""
         x, weight, entered, edges = self._whole
-        inside = slice(*np.searchsorted(edges, [left, right]) + [0, -1])
+        start, stop = np.searchsorted(edges, [left, right])
+        inside = slice(int(start), int(stop) - 1)
         first, last = edges[inside.start], edges[inside.stop]
         if not first < last:
             first, last, inside = left, left, slice(0, 0)
