@@ -60,7 +60,7 @@ def panel_letter(axes, letter: str) -> None:
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
     """Write PNG and PDF with no clock in them; the layout is found once, which is most of the work."""
-    figure.draw_without_rendering()
+    figure.get_layout_engine().execute(figure)
     figure.set_layout_engine("none")
     write_whole(png, lambda part: figure.savefig(part, format="png", metadata={"Software": None}))
     write_whole(
