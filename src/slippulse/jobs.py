@@ -99,17 +99,40 @@ def measure_block(data: str | Path, settings: Mapping, output: str | Path) -> No
     save_table(measure(load_dataset(data), settings), output)
 
 
-def estimate_uncertainty(
-    finest: str | Path, coarser: Sequence[str], factors: Sequence[float], output: str | Path
+def study_grid(
+    name: str,
+    finest: str | Path,
+    blocks: Mapping[float, Mapping],
+    settings: Mapping,
+    threads: int,
+    uncertainties: str | Path,
+    tables: str | Path,
 ) -> None:
-    """Compare the measured tables of three spacings and write the grid study of every number."""
-    from .measure.table import PARAMETERS
+    """Run and measure one simulation block on coarser lattices, and write the grid study of every number.
+
+    ``blocks`` holds the resolved block by factor of the spacing. The coarser data are not kept, their measured tables
+    are, one below the other with their factor.
+    """
+    import pandas as pd
+
+    from .config import expand
+    from .measure.table import PARAMETERS, measure
     from .measure.uncertainty import grid_tables
     from .store import load_table, save_table
+    from .sweep import run_sweep
 
-    order = sorted(range(len(factors)), key=lambda i: factors[i])
-    tables = (load_table(finest), *(load_table(coarser[i]) for i in order))
-    save_table(grid_tables(tables, tuple(factors[i] for i in order), PARAMETERS), output)
+    coarser = {}
+    for factor in sorted(blocks):
+        sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
+        scenes, samples = expand(blocks[factor])
+        coarser[factor] = measure(run_sweep(scenes, samples, blocks[factor]["record"], threads), settings)
+    save_table(
+        grid_tables((load_table(finest), *coarser.values()), tuple(coarser), PARAMETERS), uncertainties
+    )
+    save_table(
+        pd.concat([table.assign(factor=factor) for factor, table in coarser.items()], ignore_index=True),
+        tables,
+    )
 
 
 def write_claims(
@@ -128,9 +151,10 @@ def write_claims(
     from .store import load_table, write_whole
 
     tables = {Path(path).stem: load_table(path) for path in measured}
-    coarse: dict[str, list] = {name: [] for name in tables}
+    coarse: dict[str, list] = {}
     for path in coarser:
-        coarse[Path(path).stem.rpartition("_x")[0]].append(load_table(path))
+        table = load_table(path)
+        coarse[Path(path).stem] = [part.reset_index(drop=True) for _, part in table.groupby("factor")]
     studies = {Path(path).stem: load_table(path) for path in uncertainties}
     claims = all_claims(Evidence(tables, coarse, studies, tolerances), share, readings)
     text = json.dumps([_finite(claim.as_dict()) for claim in claims], indent=1, ensure_ascii=False) + "\n"

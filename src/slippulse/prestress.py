@@ -8,7 +8,6 @@ from itertools import groupby, pairwise
 from numbers import Real
 
 import numpy as np
-from scipy.special import ndtr
 
 from .checks import check_number
 
@@ -122,8 +121,14 @@ class Prestress:
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:
-    scale = width * math.sqrt(2.0 * math.pi)
-    return scale * float(ndtr((upper - centre) / width) - ndtr((lower - centre) / width))
+    a, b = ((x - centre) / (math.sqrt(2.0) * width) for x in (lower, upper))
+    scale = width * math.sqrt(0.5 * math.pi)
+    # On one side of the centre the tails are taken, which do not cancel.
+    if a > 0.0:
+        return scale * (math.erfc(a) - math.erfc(b))
+    if b < 0.0:
+        return scale * (math.erfc(-b) - math.erfc(-a))
+    return scale * (math.erf(b) - math.erf(a))
 
 
 def _tuples(key: str, rows: object, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:

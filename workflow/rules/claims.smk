@@ -5,11 +5,7 @@ rule write_claims:
     input:
         CLAIM_SOURCES,
         measured=[f"results/measurements/{name}.csv" for name in CLAIM_SIMULATIONS],
-        coarser=[
-            f"results/measurements/coarser/{name}_x{float(factor)}.csv"
-            for name in CLAIM_SIMULATIONS
-            for factor in sorted(ACCURACY["coarser"])
-        ],
+        coarser=[f"results/uncertainties/coarser/{name}.csv" for name in CLAIM_SIMULATIONS],
         uncertainties=[f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS],
     output:
         "results/claims.json",

@@ -122,8 +122,16 @@ def simulation_block(wildcards):
         raise WorkflowError(
             f"simulation: {wildcards.simulation!r}; allowed: {', '.join(config['simulations'])}"
         )
-    coarser = float(getattr(wildcards, "coarser", 1.0))
-    return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY, coarser)
+    return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+
+
+def coarser_blocks(wildcards):
+    """The same on the coarser lattices of the preset, by factor of the spacing."""
+    block = config["simulations"][wildcards.simulation]
+    return {
+        float(factor): resolve(block, config["model"], ACCURACY, float(factor))
+        for factor in ACCURACY["coarser"]
+    }
 
 
 def figure_settings(name):

@@ -19,37 +19,25 @@ rule measure:
         "../scripts/measure.py"
 
 
-use rule measure as measure_coarser with:
+rule study_grid:
     input:
+        SIMULATION_SOURCES,
         MEASURE_SOURCES,
-        data="results/data/coarser/{simulation}_x{coarser}.nc",
-    output:
-        "results/measurements/coarser/{simulation}_x{coarser}.csv",
-    log:
-        "results/logs/measure_coarser/{simulation}_x{coarser}.log",
-    benchmark:
-        "results/benchmarks/measure_coarser/{simulation}_x{coarser}.tsv"
-    message:
-        "Measuring {wildcards.simulation} on a lattice {wildcards.coarser} times coarser"
-
-
-rule estimate_uncertainty:
-    input:
-        MEASURE_SOURCES,
+        LOCK,
+        kernels="results/kernels.txt",
         finest="results/measurements/{simulation}.csv",
-        coarser=[
-            f"results/measurements/coarser/{{simulation}}_x{float(factor)}.csv"
-            for factor in ACCURACY["coarser"]
-        ],
     output:
-        "results/uncertainties/{simulation}.csv",
+        uncertainties="results/uncertainties/{simulation}.csv",
+        tables="results/uncertainties/coarser/{simulation}.csv",
     log:
-        "results/logs/estimate_uncertainty/{simulation}.log",
+        "results/logs/study_grid/{simulation}.log",
     benchmark:
-        "results/benchmarks/estimate_uncertainty/{simulation}.tsv"
+        "results/benchmarks/study_grid/{simulation}.tsv"
+    threads: 2
     params:
-        factors=ACCURACY["coarser"],
+        blocks=coarser_blocks,
+        settings=config["measure"],
     message:
-        "Grid study of {wildcards.simulation}"
+        "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     script:
-        "../scripts/estimate_uncertainty.py"
+        "../scripts/study_grid.py"

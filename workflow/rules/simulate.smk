@@ -19,7 +19,6 @@ rule compile_kernels:
 
 wildcard_constraints:
     simulation="[a-z][a-z0-9_]*",
-    coarser=r"\d+\.\d+",
 
 
 rule simulate:
@@ -40,14 +39,3 @@ rule simulate:
         "Simulating {wildcards.simulation}"
     script:
         "../scripts/simulate.py"
-
-
-use rule simulate as simulate_coarser with:
-    output:
-        "results/data/coarser/{simulation}_x{coarser}.nc",
-    log:
-        "results/logs/simulate_coarser/{simulation}_x{coarser}.log",
-    benchmark:
-        "results/benchmarks/simulate_coarser/{simulation}_x{coarser}.tsv"
-    message:
-        "Simulating {wildcards.simulation} on a lattice {wildcards.coarser} times coarser"

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.optimize import brentq
+
+from ..roots import root_between
 
 # Observed orders outside this range are not an order: the three values are then only a spread.
 ORDERS = (0.5, 6.0)
@@ -57,7 +58,7 @@ def grid_study(values: tuple[float, float, float], factors: tuple[float, float])
     low, high = ORDERS
     if first == 0.0 or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
         return GridStudy(finest, finest, nan, spread)
-    order = float(brentq(mismatch, low, high))
+    order = float(root_between(mismatch, low, high))
     extrapolated = finest - first / (factors[0] ** order - 1.0)
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
 

@@ -12,9 +12,9 @@ M_+(0) / M_+(i/(b v)) = tau_0 ("elastic"). Leaf springs are left out: gamma dx^2
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..checks import check_choice, check_number
+from ..roots import root_between
 
 RELEASES = ("total", "elastic")
 # Quadrature: Gauss-Legendre nodes on each panel of half a period, and how many periods beyond the last scale.
@@ -134,7 +134,7 @@ def _speed(tau: float, ratio: float, release: str) -> float:
             raise ValueError(
                 f"tau0: {tau!r}; allowed: values with a finite speed at damping_ratio = {ratio:g}"
             )
-    excess = float(np.exp(brentq(mismatch, lower, upper, xtol=1e-13, rtol=1e-13)))
+    excess = float(np.exp(root_between(mismatch, lower, upper, xtol=1e-13, rtol=1e-13)))
     # The error control is for the root alone: its bracket may be anything.
     _log_prestress(excess, ratio, release)
     return 1.0 + excess

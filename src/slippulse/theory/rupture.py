@@ -16,11 +16,10 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev, legendre
-from scipy.optimize import brentq
-from scipy.special import j0
 
 from ..checks import check_number
 from ..prestress import Prestress
+from ..roots import root_between
 from .front_speed import front_speed, front_speed_undamped
 from .transition import prestress_balance_position
 
@@ -83,7 +82,7 @@ class Fronts:
             # A level of exactly 0 far away still carries a front at the wave speed.
             level = float(prestress.level(np.asarray(sign * reach)))
             if stopped.size and level < 0.0:
-                end = brentq(
+                end = root_between(
                     lambda x, s=sign: float(prestress(s * x)), edges[stopped[0] - 1], edges[stopped[0]]
                 )
                 edges = np.concatenate([edges[: stopped[0]], [end]])
@@ -144,7 +143,7 @@ class Fronts:
                 f"time: {time!r}; allowed: < {self.times[sign][-1]:g}, when the fronts were asked for"
             )
         return float(
-            brentq(lambda x: float(self.arrival(np.array([sign * x]))[0]) - time, 0.0, last, xtol=1e-13)
+            root_between(lambda x: float(self.arrival(np.array([sign * x]))[0]) - time, 0.0, last, xtol=1e-13)
         )
 
     def cone(self, y: float, time: float) -> tuple[float, float]:
@@ -163,7 +162,7 @@ class Fronts:
                 raise ValueError(
                     f"time: {time!r}; allowed: earlier, the cone leaves the part that outruns the waves"
                 )
-            out.append(brentq(late, start, end, xtol=1e-13))
+            out.append(root_between(late, start, end, xtol=1e-13))
         return out[0], out[1]
 
 
@@ -212,6 +211,9 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     left, right = fronts.cone(y, time)
     if gamma == 0.0:
         return 0.5 * fronts.prestress.integral(left, right)
+    # Slow to load, and not needed under a stress boundary.
+    from scipy.special import j0
+
     x, weight, entered = fronts.quadrature(left, right)
     interval = np.maximum((time - entered) ** 2 - (x - y) ** 2, 0.0)
     return float(0.5 * np.sum(weight * j0(np.sqrt(gamma * interval))))
@@ -254,7 +256,7 @@ def exact_transition_displacement(
         if velocity(time) <= 0.0:
             break
         before = time
-    stick = float(brentq(velocity, before, time, xtol=1e-12))
+    stick = float(root_between(velocity, before, time, xtol=1e-12))
     speed = float(front_speed(tau0, damping_ratio, release))
     reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width)
     return ExactTransition(stick, 2.0 * reach.reached(stick, 1.0))
@@ -294,7 +296,7 @@ class ArrestingCrack:
     def entry_for(self, position: float) -> float:
         """Entry point e of the characteristic that ends on the slow left front at a position between x_minus and x*."""
         return float(
-            brentq(
+            root_between(
                 lambda e: self.prestress.integral(position, e), self.zero, 4.0 * self.far - 1e-9, xtol=1e-13
             )
         )

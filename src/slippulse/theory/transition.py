@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..checks import check_number
 from ..prestress import Prestress
+from ..roots import root_between
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
@@ -48,7 +48,7 @@ def prestress_balance_position(prestress: Prestress) -> float:
     reach = far
     while prestress.integral(-reach, far) > 0.0:
         reach *= 2.0
-    return float(brentq(lambda x: prestress.integral(x, far), -reach, 0.0, xtol=1e-12 * reach))
+    return float(root_between(lambda x: prestress.integral(x, far), -reach, 0.0, xtol=1e-12 * reach))
 
 
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:

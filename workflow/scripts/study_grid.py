@@ -1,0 +1,14 @@
+"""Numerical uncertainty of every number of one simulation block, from coarser lattices."""
+
+from slippulse.jobs import logged, study_grid
+
+with logged(snakemake.log[0]):
+    study_grid(
+        snakemake.wildcards.simulation,
+        snakemake.input.finest,
+        snakemake.params.blocks,
+        snakemake.params.settings,
+        snakemake.threads,
+        snakemake.output.uncertainties,
+        snakemake.output.tables,
+    )
