@@ -48,8 +48,11 @@ class Gallery:
         if name not in self.order:
             return ""
         caption = " ".join(self.captions[name].split())
+        number = self.order.index(name) + 1
+        alternative = f"Figure {number}: {name.partition('_')[2].replace('_', ' ')}"
         # No extension: the vector file for print, the picture for the browser.
-        return f"![**Figure {self.order.index(name) + 1}.** {caption}]({self.folder / name}){{width=100%}}"
+        picture = f"({self.folder / name}){{width=100% alt='{alternative}'}}"
+        return f"![**Figure {number}.** {caption}]{picture}"
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
         """A reference to a figure between two texts; nothing at all if it is not included."""

@@ -53,6 +53,19 @@ class Ledger:
         """The verdict, emphasised."""
         return f"*{self(id).verdict}*"
 
+    def remark(self, id: str, word: str, start: str = "") -> str:
+        """The part of a claim's note that begins with a word, from another word on if one is given.
+
+        Raises
+        ------
+        ValueError
+            If no part of the note begins so.
+        """
+        for part in self(id).note.split("; "):
+            if part.startswith(word) and start in part:
+                return tex(part[part.index(start) :])
+        raise ValueError(f"note of {id!r}: no part begins with {word!r}; it reads: {self(id).note}")
+
     def count(self, *verdicts: str) -> int:
         """How many claims have one of these verdicts; all of them if none is named."""
         return sum(not verdicts or claim.verdict in verdicts for claim in self.claims.values())

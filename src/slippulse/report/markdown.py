@@ -7,6 +7,10 @@ from collections.abc import Sequence
 # Wide enough that pandoc takes the dashes as relative widths.
 FULL = 200
 
+# What stands between the two is on pages on their side in print, and in small type in a browser.
+WIDE = '`````{=html}\n<div class="wide">\n`````\n\n`````{=typst}\n#sideways[\n`````'
+NARROW = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
+
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], widths: Sequence[int], align: str) -> str:
     """A pipe table.
@@ -24,14 +28,3 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], widths: Sequence[i
         marks.append({"l": f":{dashes}", "r": f"{dashes}:", "c": f":{dashes}:"}[side])
     lines = [head, marks, *rows]
     return "\n".join("| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines)
-
-
-def wide(markdown: str) -> str:
-    """A table of many columns: on a page on its side in print, in small type in a browser."""
-    raw = "`````{{={format}}}\n{text}\n`````"
-    opened = [
-        raw.format(format="html", text='<div class="wide">'),
-        raw.format(format="typst", text="#sideways["),
-    ]
-    closed = [raw.format(format="typst", text="]"), raw.format(format="html", text="</div>")]
-    return "\n\n".join([*opened, markdown, *closed])

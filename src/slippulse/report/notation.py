@@ -29,7 +29,7 @@ def tex(statement: str) -> str:
     out, i = [], 0
     while i < len(tokens):
         end = i
-        while end < len(tokens) and kinds[end] in ("strong", "weak", "space"):
+        while end < len(tokens) and kinds[end] != "text" and not (end > i and _remark(tokens, end)):
             end += 1
         run = tokens[i:end]
         first, last = _trim(run)
@@ -49,6 +49,11 @@ def _kind(token: str) -> str:
     if STRONG.match(token):
         return "strong"
     return "weak" if WEAK.match(token) else "text"
+
+
+def _remark(tokens: list[str], start: int) -> bool:
+    """Whether a bracket with an equation opens here, such as (beta = 0): a remark, not a factor."""
+    return tokens[start] == "(" and "=" in tokens[start : _closing(tokens, start)]
 
 
 def _is_formula(run: list[str]) -> bool:
@@ -82,11 +87,10 @@ def _convert(tokens: list[str]) -> str:
             i = end + 1
             continue
         if token == "|":
-            out.append(r"\lvert " if bars % 2 == 0 else r"\rvert ")
+            out.append(r"\left|" if bars % 2 == 0 else r"\right|")
             bars += 1
         else:
-            opens = i + 1 < len(tokens) and tokens[i + 1] == "("
-            out.append(r"\;" if token.isspace() and opens else _symbol(token))
+            out.append(_symbol(token))
         i += 1
     return "".join(out).strip()
 

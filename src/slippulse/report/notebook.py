@@ -16,11 +16,13 @@ from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs
 from .ledger import Ledger
-from .markdown import wide
+from .markdown import NARROW, WIDE
 from .numerals import number, percent, setting
 from .prose import fill
 
 __all__ = [
+    "NARROW",
+    "WIDE",
     "Prestress",
     "alteration_note",
     "claim",
@@ -40,7 +42,6 @@ __all__ = [
     "show",
     "speeds",
     "theory",
-    "wide",
 ]
 
 inputs = Inputs.current()
