@@ -59,17 +59,19 @@ def test_the_factor_by_cauchys_integral(v):
     assert sp.theory.prestress_for_speed(v, b) == pytest.approx(found, rel=tolerances.CAUCHY_BY_PANELS)
 
 
-def test_strong_damping_under_the_elastic_rule():
-    for tau in (0.2, 0.5, 0.8):
-        limit = 1.0 / np.sqrt(1.0 - tau)
-        errors = [abs(sp.theory.front_speed(tau, b, "elastic") - limit) for b in (10.0, 100.0, 1000.0)]
-        assert errors[1] < 0.15 * errors[0] and errors[2] < 0.15 * errors[1]
+@pytest.mark.parametrize("v", [1.2, 2.0])
+def test_strong_damping_under_the_elastic_rule(v):
+    """tau tends to 1 - 1/v^2 as 1/b."""
+    errors = [
+        abs(sp.theory.prestress_for_speed(v, b, "elastic") - (1.0 - 1.0 / v**2)) for b in (4.0, 20.0, 100.0)
+    ]
+    assert errors[1] < 0.3 * errors[0] and errors[2] < 0.3 * errors[1]
 
 
 def test_strong_damping_under_the_total_rule():
     """M_+(0) falls as 1/b at fixed speed."""
-    levels = [sp.theory.prestress_for_speed(1.5, b) * b for b in (100.0, 1000.0, 10000.0)]
-    assert levels[2] == pytest.approx(levels[1], rel=0.05)
+    products = [sp.theory.prestress_for_speed(1.5, b) * b for b in (4.0, 20.0, 100.0)]
+    assert 0.0 < products[2] - products[1] < 0.5 * (products[1] - products[0])
 
 
 @pytest.mark.parametrize(("tau", "gamma", "dx"), [(0.5, 0.65, 0.5), (0.3, 0.2, 0.2), (0.6, 0.3, 1.0)])
