@@ -17,6 +17,7 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/measure.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
+include: "workflow/rules/manuscript.smk"
 
 
 rule all:
@@ -24,5 +25,7 @@ rule all:
     input:
         figure_files(FIGURES | STUDIES),
         "results/claims.json",
+        "results/manuscript/replication.html",
+        "results/manuscript/replication.pdf",
     message:
-        "Done: every figure is in results/figures, as PDF, PNG and the CSV that it is drawn from"
+        "Done: every figure is in results/figures, the replication report in results/manuscript"

@@ -103,3 +103,10 @@ FRONT_SPEED_THEORY = 3e-4
 FRONT_SPEED_STUDY = 5e-5
 # The damped pulse at dx = 0.01: it is a continuum theory behind a front that is some blocks wide.
 PULSE_SLIP_THEORY, PULSE_PEAK_THEORY, PULSE_WIDTH_BLOCKS = 5e-4, 2e-3, 2.0
+
+# --- The appendix of the report ---------------------------------------------------------------------------------
+
+# ln M_+(0) by panels up to 2500 with the leading tail alone: what is left is of second order in 1/2500.
+CAUCHY_BY_PANELS = 1e-6
+# A Gaussian of width 1e-3 in place of uniform pre-stress: its share of an integral over lengths near 1.
+NARROW_GAUSSIAN = 1e-3

@@ -183,3 +183,33 @@ def draw_figure(
     )
     save_table(table, outputs["csv"])
     save_figure(module.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
+
+
+def write_report(
+    files: Mapping,
+    figures: Sequence[str],
+    config: Mapping,
+    outputs: Mapping[str, str],
+) -> None:
+    """Execute the replication report and write it as HTML and PDF.
+
+    ``files`` has `source`, `claims` and `shipped`, and the lists `measured`,
+    `uncertainties` and `figures` (their PDFs).
+    """
+    from .report.build import build_report
+    from .report.inputs import Inputs
+
+    def absolute(path: str) -> str:
+        return str(Path(path).resolve())
+
+    inputs = Inputs(
+        config=config,
+        claims_file=absolute(files["claims"]),
+        measured={Path(path).stem: absolute(path) for path in files["measured"]},
+        uncertainties={Path(path).stem: absolute(path) for path in files["uncertainties"]},
+        figures=list(figures),
+        figures_folder=absolute(str(Path(files["figures"][0]).parent)),
+        manuscript=absolute(str(Path(files["source"]).parent)),
+        shipped_config=absolute(files["shipped"]),
+    )
+    build_report(inputs, outputs)

@@ -110,6 +110,22 @@ STUDIES = {
     "study_stability_of_pulses": {"data": ["pulses_across_a_step", "regimes_beyond"]},
 }
 
+# The replication report: the figures that it includes, the simulations whose numbers it quotes, what it is made of.
+REPORT_FIGURES = list(FIGURES | STUDIES)
+REPORT_SIMULATIONS = ["scaling_displacement", "scaling_stress", "steady_displacement"]
+REPORT_SOURCES = sources("report/*.py", "theory/*.py", "prestress.py", "store.py") + [
+    f"manuscript/{name}"
+    for name in (
+        "captions.yaml",
+        "errata.yaml",
+        "metadata.yaml",
+        "references.bib",
+        "shipped_verdicts.yaml",
+        "style.css",
+        "template.typ",
+    )
+]
+
 
 def figure_files(names):
     """PDF, PNG and CSV of each figure."""

@@ -1,0 +1,114 @@
+"""Tables of how exact the numbers are, from the grid studies, and of simulation beside theory."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from ..theory.front_speed import front_speed, front_speed_undamped
+from ..theory.pulse import steady_pulse
+from .markdown import table
+from .numerals import number, percent, setting
+
+# What the grid table shows: simulation, column, name.
+QUANTITIES = (
+    ("steady_displacement", "front_speed_right", "front speed"),
+    ("steady_displacement", "pulse_slip", "final slip"),
+    ("steady_displacement", "pulse_peak_velocity", "peak slip velocity"),
+    ("steady_displacement", "pulse_width", "pulse width"),
+    ("scaling_displacement", "transition_time", r"$T_\mathrm{trans}$, displacement boundary"),
+    ("scaling_displacement", "transition_length", r"$L_\mathrm{trans}$, displacement boundary"),
+    ("scaling_stress", "transition_time", r"$T_\mathrm{trans}$, stress boundary"),
+    ("scaling_stress", "transition_length", r"$L_\mathrm{trans}$, stress boundary"),
+    ("scaling_stress", "last_release_time", "last release, stress boundary"),
+)
+
+
+def grid_studies(study: Callable[[str], pd.DataFrame]) -> str:
+    """Observed order and relative numerical uncertainty of the main quantities.
+
+    Parameters
+    ----------
+    study : from the name of a simulation to its grid study
+    """
+    rows = []
+    for simulation, quantity, name in QUANTITIES:
+        found = study(simulation)
+        found = found[found["quantity"] == quantity]
+        relative = (found["uncertainty"] / found["value"].abs()).dropna()
+        if relative.empty:
+            rows.append([name, str(len(found)), *["—"] * 3])
+            continue
+        orders = found["order"].dropna()
+        order = number(float(orders.median()), 2) if len(orders) else "—"
+        rows.append(
+            [
+                name,
+                str(len(relative)),
+                order,
+                percent(float(relative.median())),
+                percent(float(relative.max())),
+            ]
+        )
+    head = ["quantity", "runs", "order", "median uncertainty", "largest"]
+    return table(head, rows, [40, 10, 12, 20, 18], "lrrrr")
+
+
+def presets(settings: Mapping[str, Mapping], chosen: str) -> str:
+    """The presets of the configuration; the one of this run is in bold."""
+    rows = []
+    for name, preset in settings.items():
+        shown = f"**{name}**" if name == chosen else name
+        factors = " and ".join(setting(factor) for factor in preset["coarser"])
+        rows.append(
+            [shown, setting(preset["dx"]), setting(preset["max_step"]), str(preset["order"]), factors]
+        )
+    head = [
+        "preset",
+        r"spacing $\Delta x$",
+        r"largest step over $\Delta x$",
+        "order",
+        "grid study, times coarser",
+    ]
+    return table(head, rows, [18, 18, 24, 12, 28], "lrrrr")
+
+
+def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
+    """Front speed and peak slip velocity of steady pulses: simulated, exact, and by the paper's formulas.
+
+    Parameters
+    ----------
+    measured : measured numbers of one simulation, one row a run
+    taus : pre-stress levels to show; all of them if not given
+    """
+    rows = []
+    for row in measured.itertuples():
+        if taus is not None and not np.isclose(row.left, taus).any():
+            continue
+        speed = float(front_speed(row.left, row.damping_ratio, row.release))
+        pulse = steady_pulse(row.left, row.gamma, row.beta, speed)
+        rows.append(
+            [
+                setting(row.left),
+                setting(row.damping_ratio),
+                number(row.front_speed_right, 5),
+                number(speed, 5),
+                number(float(front_speed_undamped(row.left)), 5),
+                number(row.pulse_peak_velocity, 4),
+                number(pulse.peak_velocity, 4),
+                number(row.gamma**-0.5, 4),
+            ]
+        )
+    head = [
+        r"$\tau_0$",
+        r"$\beta/\Delta x$",
+        "speed, simulated",
+        "exact",
+        r"$1/\sqrt{1-\tau_0^2}$",
+        "peak, simulated",
+        "exact",
+        r"$1/\sqrt{\gamma}$",
+    ]
+    return table(head, rows, [9, 11, 14, 12, 15, 14, 12, 13], "rrrrrrrr")

@@ -1,0 +1,35 @@
+"""The replication report, from the ledger and the figures to HTML and PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import yaml
+
+from ..store import write_whole
+from .execute import execute
+from .inputs import Inputs
+from .render import render_html, render_pdf
+
+SOURCE = "replication.md"
+
+
+def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
+    """Execute the manuscript and write it.
+
+    Parameters
+    ----------
+    inputs : what it is written from
+    outputs : files for `html`, `pdf`, and `verdicts`, the verdict of each claim
+
+    Raises
+    ------
+    ValueError
+        If a cell fails, a text is not whole, or pandoc or Typst refuse it.
+    """
+    text = execute(Path(inputs.manuscript) / SOURCE, inputs)
+    render_html(text, inputs.manuscript, outputs["html"])
+    render_pdf(text, inputs.manuscript, outputs["pdf"])
+    verdicts = yaml.safe_dump({claim["id"]: claim["verdict"] for claim in inputs.claims}, sort_keys=False)
+    write_whole(outputs["verdicts"], lambda part: part.write_text(verdicts, encoding="utf-8"))

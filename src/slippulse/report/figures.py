@@ -1,0 +1,59 @@
+"""Figures of the report: numbered by where they stand in the text, drawn elsewhere."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+# How the text places a figure.
+PLACED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
+
+
+def placed_figures(source: str) -> list[str]:
+    """Names of the figures that a text places, in its order."""
+    return PLACED.findall(source)
+
+
+class Gallery:
+    """The figures that one report includes.
+
+    Parameters
+    ----------
+    included : names of the figures whose files there are
+    placed : names in the order of the text
+    captions : per name, Markdown
+    folder : where NAME.pdf and NAME.png are
+
+    Raises
+    ------
+    ValueError
+        If an included figure has no caption or no place in the text, naming it.
+    """
+
+    def __init__(
+        self, included: list[str], placed: list[str], captions: Mapping[str, str], folder: str
+    ) -> None:
+        for name in included:
+            if name not in captions:
+                raise ValueError(f"figure {name!r}: no caption; allowed: {', '.join(captions)}")
+            if name not in placed:
+                raise ValueError(f"figure {name!r}: has no place in the text; allowed: {', '.join(placed)}")
+        self.order = [name for name in placed if name in included]
+        self.captions = captions
+        self.folder = Path(folder)
+
+    def figure(self, name: str) -> str:
+        """The figure with its number and caption, as Markdown; nothing if it is not included."""
+        if name not in self.order:
+            return ""
+        caption = " ".join(self.captions[name].split())
+        number = self.order.index(name) + 1
+        alternative = f"Figure {number}: {name.partition('_')[2].replace('_', ' ')}"
+        # No extension: the vector file for print, the picture for the browser.
+        picture = f"({self.folder / name}){{width=100% alt='{alternative}'}}"
+        return f"![**Figure {number}.** {caption}]{picture}"
+
+    def see(self, name: str, before: str = "figure ", after: str = "") -> str:
+        """A reference to a figure between two texts; nothing at all if it is not included."""
+        return f"{before}{self.order.index(name) + 1}{after}" if name in self.order else ""

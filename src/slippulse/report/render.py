@@ -1,0 +1,106 @@
+"""From Markdown to one self-contained HTML file and a PDF, with pandoc and Typst; no network, no LaTeX, no clock."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import pypandoc
+import typst
+
+from ..store import write_whole
+
+# Any fixed instant will do: equal inputs then give equal bytes.
+TIMESTAMP = 0
+
+
+def render_html(text: str, manuscript: str | Path, output: str | Path) -> None:
+    """Write the report as one HTML file that loads nothing.
+
+    Parameters
+    ----------
+    text : Markdown
+    manuscript : folder with metadata.yaml, references.bib, style.css
+    output : HTML file
+    """
+    manuscript = Path(manuscript)
+    options = [
+        "--to=html5",
+        "--mathml",
+        "--embed-resources",
+        "--default-image-extension=png",
+        f"--css={manuscript / 'style.css'}",
+        "--toc",
+        "--toc-depth=2",
+    ]
+    html = _pandoc(text, manuscript, options)
+    write_whole(output, lambda part: part.write_text(html, encoding="utf-8"))
+
+
+def render_pdf(text: str, manuscript: str | Path, output: str | Path) -> None:
+    """Write the report as PDF, its figures as vectors.
+
+    Parameters
+    ----------
+    text : Markdown
+    manuscript : folder with metadata.yaml, references.bib, template.typ
+    output : PDF file
+
+    Raises
+    ------
+    ValueError
+        If Typst refuses the text, with its message.
+    """
+    manuscript = Path(manuscript)
+    options = [
+        "--to=typst",
+        "--default-image-extension=pdf",
+        f"--template={manuscript / 'template.typ'}",
+    ]
+    source = _pandoc(text, manuscript, options)
+    with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
+        root = Path(folder)
+        (root / "report.typ").write_text(_gather(source, root), encoding="utf-8")
+        try:
+            pdf = typst.compile(
+                str(root / "report.typ"),
+                root=str(root),
+                format="pdf",
+                ignore_system_fonts=True,
+                timestamp=TIMESTAMP,
+            )
+        except typst.TypstError as error:
+            raise ValueError(f"Typst: {error}") from None
+    write_whole(output, lambda part: part.write_bytes(pdf))
+
+
+def _pandoc(text: str, manuscript: Path, options: list[str]) -> str:
+    command = [
+        pypandoc.get_pandoc_path(),
+        "--from=markdown",
+        "--standalone",
+        "--number-sections",
+        "--citeproc",
+        f"--metadata-file={manuscript / 'metadata.yaml'}",
+        f"--bibliography={manuscript / 'references.bib'}",
+        "--fail-if-warnings",
+        *options,
+    ]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, encoding="utf-8", check=False)
+    if done.returncode != 0:
+        raise ValueError(f"pandoc: {done.stderr.strip()}")
+    return done.stdout
+
+
+def _gather(source: str, root: Path) -> str:
+    """Copy the pictures beside the source, since Typst reads nothing above its root."""
+
+    def local(match: re.Match) -> str:
+        picture = Path(match[1])
+        shutil.copyfile(picture, root / picture.name)
+        return f'image("{picture.name}"'
+
+    return re.sub(r'image\("([^"]+)"', local, source)

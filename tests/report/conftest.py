@@ -1,0 +1,157 @@
+"""A report made from a small invented run: a ledger, tables and figures of the right form, executed and rendered."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+import yaml
+from matplotlib.figure import Figure
+
+from slippulse.claims.ledger import judge
+from slippulse.config import expand, resolve
+from slippulse.measure.uncertainty import grid_tables
+from slippulse.report.build import build_report
+from slippulse.report.inputs import Inputs
+from slippulse.store import save_table
+from slippulse.theory import front_speed, steady_pulse
+
+SIMULATIONS = ("scaling_displacement", "scaling_stress", "steady_displacement")
+KEYS = ("left", "gamma", "beta", "damping_ratio", "release")
+
+
+def invented_claims(config: dict, scale: float = 1.0) -> list[dict]:
+    """One entry for each claim of the configuration, each with numbers of its own."""
+    claims = []
+    for i, (id, entry) in enumerate(config["claims"].items()):
+        reading = config["published"].get(id.removeprefix("published_"))
+        predicted = reading["value"] if reading else 1.0
+        measured = scale * predicted * (1.0 + 0.00137 * (i + 1))
+        note = f"{i + 3} runs; extrapolated to dx = 0 it deviates from the exact theory by 1.{i}e-05 (median)"
+        claims.append(
+            {
+                "id": id,
+                "figure_or_section": "section III A",
+                "statement": f"statement of {id.replace('_', ' ')}: T_trans is pi/sqrt(gamma)",
+                "predicted": predicted,
+                "measured": measured,
+                "uncertainty": 0.00021,
+                "tolerance": entry["tolerance"],
+                "verdict": judge(predicted, measured, 0.00021, entry["tolerance"]),
+                "note": note,
+                "source": "invented",
+            }
+        )
+    return claims
+
+
+def invented_table(config: dict, simulation: str, error: float) -> pd.DataFrame:
+    """Measured numbers of a simulation block: theory with an error added, so that every column exists."""
+    accuracy = config["presets"][config["preset"]]
+    scenes, _ = expand(resolve(config["simulations"][simulation], config["model"], accuracy))
+    rows = []
+    for i, scene in enumerate(scenes):
+        row = {
+            "left": scene.prestress.left,
+            "gamma": scene.gamma,
+            "beta": scene.beta,
+            "damping_ratio": scene.damping_ratio,
+            "release": scene.release,
+            "transition_time": 3.0 + error,
+            "transition_length": 9.0 + error,
+            "slip_time_background": 2.0 if i % 2 else float("nan"),
+            "slip_time_nucleation": float("nan"),
+            "balance_distance": 2.0,
+            "last_release_time": 3.1 + 0.01 * i + error,
+        }
+        if simulation == "steady_displacement":
+            speed = front_speed(row["left"], row["damping_ratio"], row["release"])
+            pulse = steady_pulse(row["left"], row["gamma"], row["beta"], speed)
+            row |= {
+                "front_speed_right": speed + error,
+                "pulse_peak_velocity": pulse.peak_velocity + error,
+                "pulse_slip": pulse.slip + error,
+                "pulse_width": pulse.width + error,
+            }
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture(scope="session")
+def shipped(project) -> dict:
+    """The shipped configuration."""
+    return yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def make_inputs(project, shipped, tmp_path_factory):
+    """A function that writes the files of an invented run and returns them as inputs of the report."""
+
+    def make(config: dict | None = None, scale: float = 1.0, figures: list[str] | None = None) -> Inputs:
+        folder = tmp_path_factory.mktemp("run")
+        config = copy.deepcopy(config or shipped)
+        (folder / "claims.json").write_text(json.dumps(invented_claims(config, scale)), encoding="utf-8")
+        measured, studies = {}, {}
+        for name in SIMULATIONS:
+            tables = tuple(invented_table(config, name, error) for error in (1e-3, 2e-3, 4e-3))
+            measured[name] = str(folder / f"{name}.csv")
+            save_table(tables[0], measured[name])
+            studies[name] = str(folder / f"{name}_study.csv")
+            save_table(grid_tables(tables, (2.0, 4.0), KEYS), studies[name])
+        captions = yaml.safe_load((project / "manuscript/captions.yaml").read_text(encoding="utf-8"))
+        figures = figures if figures is not None else [name for name in captions if name.startswith("fig")]
+        picture = Figure(figsize=(4, 2))
+        picture.add_subplot().plot(np.arange(3))
+        for name in figures:
+            for ending in ("pdf", "png"):
+                picture.savefig(
+                    folder / f"{name}.{ending}", metadata={"CreationDate": None} if ending == "pdf" else {}
+                )
+        return Inputs(
+            config=config,
+            claims_file=str(folder / "claims.json"),
+            measured=measured,
+            uncertainties=studies,
+            figures=figures,
+            figures_folder=str(folder),
+            manuscript=str(project / "manuscript"),
+            shipped_config=str(project / "config/config.yaml"),
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def build(tmp_path_factory):
+    """A function that builds a report and returns its files' paths and its ledger."""
+
+    def made(inputs: Inputs) -> SimpleNamespace:
+        folder = tmp_path_factory.mktemp("report")
+        outputs = {
+            "html": folder / "replication.html",
+            "pdf": folder / "replication.pdf",
+            "verdicts": folder / "verdicts.yaml",
+        }
+        build_report(inputs, outputs)
+        return SimpleNamespace(
+            **outputs, inputs=inputs, claims={claim["id"]: claim for claim in inputs.claims}
+        )
+
+    return made
+
+
+@pytest.fixture(scope="session")
+def report(make_inputs, build) -> SimpleNamespace:
+    """The report of an invented run of the shipped configuration."""
+    return build(make_inputs())
+
+
+@pytest.fixture(scope="session")
+def manuscript(project) -> Path:
+    """The folder of the report's texts."""
+    return project / "manuscript"

@@ -1,0 +1,148 @@
+"""The report as a reader gets it: whole, self-contained, the same bytes each time, with the numbers of its run."""
+
+from __future__ import annotations
+
+import copy
+import json
+import os
+import re
+from html.parser import HTMLParser
+
+import pytest
+import yaml
+from pypdf import PdfReader
+
+from slippulse.report.execute import execute
+from slippulse.report.numerals import number, with_uncertainty
+
+
+class Resources(HTMLParser):
+    """What a browser would load, and which tags there are."""
+
+    LOADING = frozenset({"src", "srcset", "data", "poster", "background", "action"})
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.loaded, self.tags = [], {}
+
+    def handle_starttag(self, tag, attributes):
+        self.tags[tag] = self.tags.get(tag, 0) + 1
+        for key, value in attributes:
+            if key in self.LOADING or (key in ("href", "xlink:href") and tag != "a"):
+                self.loaded.append(value)
+
+
+@pytest.fixture(scope="module")
+def html(report) -> str:
+    return report.html.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def pdf_text(report) -> str:
+    return " ".join(page.extract_text() for page in PdfReader(report.pdf).pages)
+
+
+def test_the_html_loads_nothing(html):
+    parser = Resources()
+    parser.feed(html)
+    assert len(parser.loaded) >= 11
+    assert all(value.startswith(("data:", "#")) for value in parser.loaded)
+    assert "script" not in parser.tags
+    styles = " ".join(re.findall(r"<style.*?</style>", html, re.S))
+    assert "@import" not in styles and not re.search(r"url\(\s*['\"]?(?!data:|#)", styles)
+
+
+def test_its_equations_are_mathml(html):
+    assert html.count("<math") > 150
+    text = re.sub(r"<annotation.*?</annotation>", "", html, flags=re.S)
+    assert not re.search(r"\\(?:frac|sqrt|tau|gamma|int)\b|\$\$", text)
+
+
+def test_the_pdf_has_pages_on_a4_and_figures(report):
+    pages = PdfReader(report.pdf).pages
+    assert len(pages) >= 12
+    assert {tuple(sorted(round(float(x)) for x in page.mediabox[2:])) for page in pages} == {(595, 842)}
+
+
+def test_equal_inputs_give_equal_bytes(report, build):
+    again = build(report.inputs)
+    assert again.pdf.read_bytes() == report.pdf.read_bytes()
+    assert again.html.read_bytes() == report.html.read_bytes()
+
+
+def test_both_have_the_numbers_of_the_ledger(report, html, pdf_text):
+    claim = report.claims["front_speed_undamped"]
+    for text in (html, pdf_text):
+        flat = re.sub(r"\s+", " ", text)
+        assert with_uncertainty(claim["measured"], claim["uncertainty"]) in flat
+        assert number(report.claims["T_trans_stress_underestimate"]["measured"], 4)[:5] in flat
+        for id in report.claims:
+            assert id in flat or id.replace("_", "_ ") in flat
+    assert "{{" not in html.replace("{{ ", "{{") or "{{" not in re.sub(
+        r"<(pre|code).*?</\1>", "", html, flags=re.S
+    )
+    assert yaml.safe_load(report.verdicts.read_text()) == {
+        id: claim["verdict"] for id, claim in report.claims.items()
+    }
+
+
+def test_an_altered_run_changes_the_numbers_and_says_so(report, make_inputs, shipped):
+    config = copy.deepcopy(shipped)
+    config["simulations"]["space_time_displacement"]["left"] = [0.4]
+    config["simulations"]["steady_displacement"]["left"] = [0.3]
+    altered = make_inputs(config, scale=1.05)
+    source = f"{altered.manuscript}/replication.md"
+    before, after = execute(source, report.inputs), execute(source, altered)
+    assert "Altered configuration" not in before
+    top = after[: after.index("# Abstract")]
+    assert "`simulations.space_time_displacement.left`: `[0.4]` (shipped: `[0.25]`)" in top
+    assert "`simulations.steady_displacement.left`" in top
+    assert "Verdicts that differ" in top
+    for text, inputs in ((before, report.inputs), (after, altered)):
+        tau = inputs.config["simulations"]["space_time_displacement"]["left"][0]
+        assert rf"$\tau_0$ = {tau}" in text
+        claim = next(claim for claim in inputs.claims if claim["id"] == "front_speed_undamped")
+        assert with_uncertainty(claim["measured"], claim["uncertainty"]) in text
+    assert with_uncertainty(1.05 * 1.00137, 0.00021) not in before
+
+
+def test_a_claim_that_was_not_measured_is_said_to_be_so(make_inputs):
+    inputs = make_inputs()
+    for claim in inputs.claims:
+        claim["measured"] = claim["uncertainty"] = None
+        claim["verdict"] = "not testable"
+    with open(inputs.claims_file, "w", encoding="utf-8") as file:
+        json.dump(inputs.claims, file)
+    text = execute(f"{inputs.manuscript}/replication.md", inputs)
+    assert "not measured" in text and "nan" not in re.sub(r"`[^`]*`", "", text).lower().replace(
+        "explanan", ""
+    )
+
+
+def test_the_users_own_kernels_take_no_part(make_inputs, tmp_path, monkeypatch):
+    broken = tmp_path / "kernels/python3"
+    broken.mkdir(parents=True)
+    (broken / "kernel.json").write_text(
+        json.dumps({"argv": ["/nonexistent"], "display_name": "broken", "language": "python"}),
+        encoding="utf-8",
+    )
+    profile = tmp_path / "ipython/profile_default/startup"
+    profile.mkdir(parents=True)
+    (profile / "first.py").write_text("raise SystemExit('the user\\'s own start-up')", encoding="utf-8")
+    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path))
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    (tmp_path / "small.md").write_text(
+        "```python\nfrom slippulse.report.notebook import *\n```\n\nAll {{ claim.count() }}.\n"
+    )
+    inputs = make_inputs()
+    assert execute(tmp_path / "small.md", inputs) == f"All {len(inputs.claims)}.\n"
+    assert os.environ["IPYTHONDIR"] == str(tmp_path / "ipython")
+
+
+def test_a_failing_expression_is_one_line_that_names_it(make_inputs, tmp_path):
+    (tmp_path / "small.md").write_text(
+        "```python\nfrom slippulse.report.notebook import *\n```\n\nIt is {{ claim('no_such').measured }}.\n"
+    )
+    with pytest.raises(ValueError, match=r"small\.md: .*no_such") as caught:
+        execute(tmp_path / "small.md", make_inputs())
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,82 @@
+"""The texts of the report name only what there is."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+import yaml
+
+from slippulse.report.errata import KEYS, check_errata
+from slippulse.report.figures import Gallery, placed_figures
+
+
+@pytest.fixture(scope="module")
+def source(manuscript) -> str:
+    return (manuscript / "replication.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def errata(manuscript) -> list[dict]:
+    return yaml.safe_load((manuscript / "errata.yaml").read_text(encoding="utf-8"))
+
+
+def mentioned(text: str) -> set[str]:
+    return set(re.findall(r"""\bclaim(?:\.(?!count\b)\w+)?\(\s*["'](\w+)["']""", text))
+
+
+def test_every_claim_that_is_mentioned_is_in_the_ledger(source, errata, shipped):
+    names = mentioned(source)
+    for entry in errata:
+        names |= mentioned(" ".join(entry.values()))
+        names |= set(re.findall(r"`(\w+)`", entry["shown"]))
+    assert len(names) > 30
+    assert names <= set(shipped["claims"])
+
+
+def test_every_erratum_is_whole_and_shown(errata, source):
+    check_errata(errata)
+    assert len(errata) >= 20
+    headings = set(re.findall(r"^#+ (.+?)(?: \{.*)?$", source, re.M))
+    for entry in errata:
+        for title in re.findall(r'[Dd]erivation "([^"]+)"|Section "([^"]+)"', entry["shown"]):
+            assert "".join(title) in headings, entry
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_an_erratum_that_is_not_whole_is_refused(key):
+    entry = {name: "text" for name in KEYS} | {key: " "}
+    with pytest.raises(ValueError, match=f"entry 1: {key}: missing"):
+        check_errata([entry])
+
+
+def test_every_figure_has_one_place_and_a_caption(source, manuscript):
+    captions = yaml.safe_load((manuscript / "captions.yaml").read_text(encoding="utf-8"))
+    placed = placed_figures(source)
+    assert sorted(placed) == sorted(captions)
+
+
+def test_the_shipped_verdicts_are_of_the_claims(manuscript, shipped):
+    verdicts = yaml.safe_load((manuscript / "shipped_verdicts.yaml").read_text(encoding="utf-8"))
+    assert set(verdicts) == set(shipped["claims"])
+
+
+def test_every_citation_is_in_the_bibliography_and_every_entry_is_cited(source, manuscript):
+    entries = set(
+        re.findall(r"^@\w+\{(\w+),", (manuscript / "references.bib").read_text(encoding="utf-8"), re.M)
+    )
+    assert set(re.findall(r"@([A-Z]\w+)", source)) == entries
+
+
+def test_a_figure_without_a_caption_or_a_place_is_refused():
+    with pytest.raises(ValueError, match="'b': no caption"):
+        Gallery(["b"], ["a", "b"], {"a": "text"}, "folder")
+    with pytest.raises(ValueError, match="'b': has no place"):
+        Gallery(["b"], ["a"], {"a": "text", "b": "text"}, "folder")
+
+
+def test_figures_are_numbered_in_the_order_of_the_text():
+    gallery = Gallery(["c", "a"], ["a", "b", "c"], {"a": "x", "b": "y", "c": "z"}, "folder")
+    assert "**Figure 2.** z" in gallery.figure("c")
+    assert gallery.see("c", " (figure ", ")") == " (figure 2)"
+    assert gallery.figure("b") == gallery.see("b") == ""
