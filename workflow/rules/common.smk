@@ -108,6 +108,7 @@ STUDIES = {
     },
     "study_arrest": {"data": ["arrest"], "measured": ["arrest"]},
     "study_stability_of_pulses": {"data": ["pulses_across_a_step", "regimes_beyond"]},
+    "study_extremes": {"studies": ["extremes"]},
 }
 
 
@@ -124,6 +125,17 @@ def simulation_block(wildcards):
         )
     coarser = float(getattr(wildcards, "coarser", 1.0))
     return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY, coarser)
+
+
+def study_settings(wildcards):
+    """What a study of the solver takes from the configuration."""
+    if wildcards.study not in config["studies"]:
+        raise WorkflowError(f"study: {wildcards.study!r}; allowed: {', '.join(config['studies'])}")
+    return {
+        **config["studies"][wildcards.study],
+        "front_window": config["measure"]["front_window"],
+        "presets": config["presets"],
+    }
 
 
 def figure_settings(name):

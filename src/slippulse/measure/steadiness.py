@@ -7,11 +7,11 @@ import xarray as xr
 
 from ..theory.pulse import steady_pulse
 from .fronts import path
-from .pulses import LeadingPulse
+from .pulses import LeadingPulse, slip_variation
 
-# A width that differs from that of the steady pulse at the measured speed by more than this, and by more than the
-# blocks that the front's layer takes, belongs to a pulse that still changes.
-WIDTH_SHARE, WIDTH_BLOCKS = 0.1, 3.0
+# A width that differs from that of the steady pulse at the measured speed by more than this, the damped layer and the
+# blocks that the front takes, or slip that still varies by more than this behind it, belongs to a pulse that changes.
+CHANGE, WIDTH_BLOCKS = 0.05, 3.0
 # The damped layer at the front over the width of the pulse: the front speed is computed without leaf springs, and its
 # error grows as the square, to one per cent here.
 LAYER_SHARE = 0.125
@@ -27,7 +27,8 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> st
 
     Returns
     -------
-    "steady"; "unsteady" when its width is not the steady one at its speed, or it is slower than the waves;
+    "steady"; "unsteady" when its width is not the steady one at its speed, the slip behind it varies, or it is slower
+    than the waves;
     "thick_front" when the damped layer is not thin against it; "none" without a pulse or under a stress boundary
 
     Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
@@ -43,7 +44,11 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> st
         return "unsteady"
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = steady_pulse(tau, run.attrs["gamma"], beta, pulse.speed)
-    if beta * pulse.speed / (pulse.speed**2 - 1.0) > LAYER_SHARE * steady.width:
+    layer = beta * pulse.speed / (pulse.speed**2 - 1.0)
+    if layer > LAYER_SHARE * steady.width:
         return "thick_front"
-    allowed = WIDTH_SHARE * steady.width + WIDTH_BLOCKS * dx
-    return "steady" if abs(pulse.width - steady.width) <= allowed else "unsteady"
+    allowed = CHANGE * steady.width + layer + WIDTH_BLOCKS * dx
+    # A pulse too young to have left slip behind is judged by its width alone.
+    varied = slip_variation(run, pulse, side)
+    changes = abs(pulse.width - steady.width) > allowed or varied > CHANGE
+    return "unsteady" if changes else "steady"
