@@ -44,9 +44,10 @@ INPUTS = {
     "study_arrest": ["arrest"],
     "study_stability_of_pulses": ["pulses_across_a_step", "regimes_beyond"],
     "study_extremes": [],
+    "study_stability": [],
 }
 # Studies of the solver, whose tables come from runs of their own.
-TABLES = {"study_extremes": ["extremes"]}
+TABLES = {"study_extremes": ["extremes"], "study_stability": ["stability"]}
 
 
 def thinned(values: list, count: int) -> list:

@@ -109,6 +109,7 @@ STUDIES = {
     "study_arrest": {"data": ["arrest"], "measured": ["arrest"]},
     "study_stability_of_pulses": {"data": ["pulses_across_a_step", "regimes_beyond"]},
     "study_extremes": {"studies": ["extremes"]},
+    "study_stability": {"studies": ["stability"]},
 }
 
 

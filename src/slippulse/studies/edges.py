@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ..lattice.stability import largest_step
+from ..lattice.stability import MARGIN, largest_step
 from ..measure.fronts import front_speed, path
 from ..measure.pulses import leading_pulse
 from ..measure.steadiness import pulse_state
@@ -94,8 +94,8 @@ def verdict(found: Measured, tolerance: float) -> str:
 
 
 def stable_step(damping_ratio: float, gamma_dx2: float, order: int = 4, largest: float = 0.5) -> float:
-    """The preset's step, or nine tenths of the stability bound where that is less."""
-    return min(largest, 0.9 * largest_step("localised", order, damping_ratio, gamma_dx2))
+    """The preset's step, or the safe share of the stability bound where that is less."""
+    return min(largest, MARGIN * largest_step("localised", order, damping_ratio, gamma_dx2))
 
 
 def scene(
