@@ -18,6 +18,7 @@ include: "workflow/rules/measure.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/manuscript.smk"
+include: "workflow/rules/studies.smk"
 
 
 rule all:

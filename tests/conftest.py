@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import copy
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 import yaml
+
+from slippulse.store import load_table, save_table
 
 PROJECT = Path(__file__).resolve().parents[1]
 
@@ -28,3 +31,24 @@ def paper_accuracy() -> dict:
     """Order and step of the preset "paper"."""
     config = yaml.safe_load((PROJECT / "config/config.yaml").read_text(encoding="utf-8"))
     return {key: config["presets"]["paper"][key] for key in ("max_step", "order")}
+
+
+@pytest.fixture(scope="session")
+def study(project, tmp_path_factory):
+    """A function that runs a study with the shipped settings and returns its table, through the CSV."""
+    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
+    folder = tmp_path_factory.mktemp("studies")
+    done = {}
+
+    def run(name: str):
+        if name not in done:
+            settings = config["studies"][name] | {
+                "front_window": config["measure"]["front_window"],
+                "presets": config["presets"],
+            }
+            table = import_module(f"slippulse.studies.{name}").table(settings)
+            save_table(table, folder / f"{name}.csv")
+            done[name] = load_table(folder / f"{name}.csv")
+        return done[name]
+
+    return run

@@ -57,6 +57,12 @@ AMPLIFICATION_WEAK = 1.01e-4
 BELOW_BOUND, ABOVE_BOUND = 0.98, 1.03
 # Far enough above that the growth shows although events cut most steps of the localised scheme.
 WELL_ABOVE_BOUND = 1.25
+# Measured boundary below the derived one: the resolution of the bisection.
+BOUNDARY_BELOW = 0.011
+# And above it: within 400 steps a mode that grows by less than a few per cent a step is not seen.
+BOUNDARY_ABOVE = 0.03
+# Without damping the growth beyond the bound of order 4 begins more slowly.
+BOUNDARY_ABOVE_UNDAMPED = 0.05
 
 # --- Physics ----------------------------------------------------------------------------------------------------
 

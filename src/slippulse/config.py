@@ -111,11 +111,11 @@ def _spacing(block: Mapping, width: float, gamma: float, spacing: float | None) 
 
 
 def _step(block: Mapping, gamma_dx2: float, ratio: float) -> float:
-    """The block's own step, or the preset's, or nine tenths of the bound where strong damping allows less."""
-    from .lattice.stability import largest_step
+    """The block's own step, or the preset's, or the safe share of the bound where strong damping allows less."""
+    from .lattice.stability import MARGIN, largest_step
 
     bound = largest_step(block["scheme"], block["accuracy"]["order"], ratio, gamma_dx2)
-    step = block.get("max_step", min(block["accuracy"]["max_step"], 0.9 * bound))
+    step = block.get("max_step", min(block["accuracy"]["max_step"], MARGIN * bound))
     return float(step * block["coarser"] if "fixed" in block.get("spacing", {}) else step)
 
 

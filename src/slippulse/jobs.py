@@ -168,6 +168,13 @@ def _finite(entry: dict) -> dict:
     }
 
 
+def run_study(study: str, settings: Mapping, output: str | Path) -> None:
+    """Run one study of the solver and write its table."""
+    from .store import save_table
+
+    save_table(import_module(f".studies.{study}", __package__).table(settings), output)
+
+
 def draw_figure(
     figure: str, settings: Mapping, data: Sequence[str], measured: Sequence[str], outputs: Mapping[str, str]
 ) -> None:

@@ -109,6 +109,9 @@ class Scene:
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
         check_number("max_step", self.max_step, above=0.0)
+        # Single-precision or integer parameters would be computed with as such, and compiled for.
+        for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
+            object.__setattr__(self, name, float(getattr(self, name)))
         bound = self.largest_stable_step
         if self.max_step > bound:
             raise ValueError(

@@ -53,6 +53,8 @@ class Prestress:
             check_number(f"prestress.{name}", getattr(self, name), below=1.0)
         check_number("prestress.peak", self.peak)
         check_number("prestress.width", self.width, above=0.0)
+        for name in ("left", "right", "width", "peak"):
+            object.__setattr__(self, name, float(getattr(self, name)))
         object.__setattr__(self, "steps", _tuples("prestress.steps", self.steps, ("position", "level")))
         object.__setattr__(
             self, "bumps", _tuples("prestress.bumps", self.bumps, ("centre", "amplitude", "width"))

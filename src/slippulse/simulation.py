@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -120,6 +121,8 @@ def judge(scene: Scene, run: LatticeRun) -> dict:
         flags.append("reverse_sliding")
     if 0 < pulse_blocks < scene.resolved_blocks:
         flags.append("unresolved_pulse")
+    if died_out(run):
+        flags.append("died_out")
     # The textbook scheme overshoots zero once a stick by construction: reported as min_velocity, not flagged.
     overshoot = -NEGATIVE_VELOCITY * max(1.0, float(np.max(run.slip_velocity)))
     if scene.scheme == "localised" and run.numbers["min_velocity"] < overshoot:
@@ -130,14 +133,38 @@ def judge(scene: Scene, run: LatticeRun) -> dict:
 
 
 def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:
-    """Blocks across the narrowest pulse at the end; under a stress boundary the Gaussian sets the scale."""
+    """Blocks across the narrowest pulse at the end; under a stress boundary the nucleation peak sets the scale."""
     if scene.boundary == "stress":
-        return int(scene.prestress.width / scene.dx)
+        return int(nucleation_size(scene) / scene.dx)
     sliding = np.isfinite(run.release_time) & ~np.isfinite(run.stick_time)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], sliding, [False]]).astype(np.int8)))
     lengths = edges[1::2] - edges[0::2]
     # The pulses are the outermost sliding runs; pieces left over behind them are not.
     return int(min(lengths[0], lengths[-1])) if lengths.size else 0
+
+
+def nucleation_size(scene: Scene) -> float:
+    """Width of the Gaussian, or the distance to where it falls to 0 on the way to a strongly negative level."""
+    profile = scene.prestress
+    sizes = [profile.width]
+    for level in (profile.left, profile.right):
+        if level < 0.0 < profile.peak:
+            sizes.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
+    return min(sizes)
+
+
+def died_out(run: LatticeRun) -> bool:
+    """Whether a front stands still on a side where the pre-stress ahead of it would drive it on for ever."""
+    released = np.isfinite(run.release_time)
+    sliding = released & ~np.isfinite(run.stick_time)
+    for side in (-1.0, 1.0):
+        half = side * run.x >= 0.0
+        reach = side * run.x[half & released]
+        if reach.size and not np.any(half & sliding):
+            ahead = half & (side * run.x > reach.max())
+            if ahead.any() and run.prestress[ahead][np.argmin(side * run.x[ahead])] > 0.0:
+                return True
+    return False
 
 
 def describe_flags(scene: Scene, numbers: dict) -> str:

@@ -43,7 +43,11 @@ INPUTS = {
     "study_exact_transition": ["scaling_displacement", "scaling_stress", "transition_convergence"],
     "study_arrest": ["arrest"],
     "study_stability_of_pulses": ["pulses_across_a_step", "regimes_beyond"],
+    "study_extremes": [],
+    "study_stability": [],
 }
+# Studies of the solver, whose tables come from runs of their own.
+TABLES = {"study_extremes": ["extremes"], "study_stability": ["stability"]}
 
 
 def thinned(values: list, count: int) -> list:
@@ -55,7 +59,7 @@ def thinned(values: list, count: int) -> list:
 
 
 @pytest.fixture(scope="session")
-def draw(project, tmp_path_factory):
+def draw(project, tmp_path_factory, study):
     """A function that draws a figure by name and returns its table, its Figure and what it was drawn from."""
     config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
     folder = tmp_path_factory.mktemp("tables")
@@ -86,6 +90,7 @@ def draw(project, tmp_path_factory):
             }
             data = {source: pair[0] for source, pair in inputs.items()}
             measured = {source: pair[1] for source, pair in inputs.items()}
+            measured |= {source: study(source) for source in TABLES.get(name, [])}
             save_table(module.table(data, measured, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")
             drawn[name] = SimpleNamespace(

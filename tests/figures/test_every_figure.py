@@ -12,7 +12,7 @@ from slippulse.figures.style import PAGE, save_figure
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
-SKETCHES = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone"}
+SKETCHES = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone", "study_extremes"}
 
 
 def test_no_figure_is_left_out(names):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 import slippulse as sp
@@ -96,3 +97,20 @@ def test_every_parameter_is_an_attribute_of_the_data():
         assert attributes[field.name] == getattr(scene, field.name), field.name
     for name in ("left", "right", "width", "peak"):
         assert attributes[name] == getattr(scene.prestress, name), name
+
+
+@pytest.mark.parametrize("kind", [np.float32, int])
+def test_parameters_are_computed_with_in_double_precision(kind):
+    """Whatever their type: a float32 spacing squared in float32 would change the answer in the seventh digit."""
+    values = {
+        "boundary": "displacement",
+        "duration": kind(7),
+        "dx": kind(1),
+        "gamma": kind(1),
+        "beta": kind(0),
+    }
+    scene = sp.Scene(**values, prestress=sp.Prestress(kind(0), kind(0), kind(2), kind(1)))
+    for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
+        assert type(getattr(scene, name)) is float
+    for name in ("left", "right", "width", "peak"):
+        assert type(getattr(scene.prestress, name)) is float

@@ -108,3 +108,39 @@ def test_a_run_can_be_interrupted():
 
     with pytest.raises(KeyboardInterrupt):
         sp.simulate(sp.Scene(**PUBLISHED), progress=stop)
+
+
+DYING = {"boundary": "displacement", "gamma": 0.65, "beta": 0.01, "dx": 0.1, "duration": 60.0}
+
+
+def test_a_pulse_that_dies_where_the_prestress_would_drive_it_on_is_flagged():
+    """tau_0 = 0.01: the steady pulse goes on for ever, the lattice of dx = 0.1 is too coarse to carry it."""
+    run = sp.simulate(sp.Scene(**DYING, prestress=sp.Prestress(0.01, 0.01)))
+    assert run.attrs["stopped_because"] == "everything is stuck"
+    assert run.attrs["flags"] == "died_out"
+
+
+def test_a_pulse_that_dies_on_one_side_is_flagged():
+    run = sp.simulate(sp.Scene(**DYING, prestress=sp.Prestress(0.01, 0.5)))
+    assert run.attrs["stopped_because"] == "duration reached"
+    assert "died_out" in run.attrs["flags"].split(",")
+
+
+@pytest.mark.parametrize("level", [-0.5, 0.0])
+def test_an_arrest_without_prestress_to_drive_it_is_not_flagged(level):
+    run = sp.simulate(sp.Scene(**DYING | {"dx": 0.02}, prestress=sp.Prestress(level, level)))
+    assert run.attrs["stopped_because"] == "everything is stuck"
+    assert run.attrs["flags"] == ""
+
+
+def test_a_peak_that_falls_to_zero_within_a_few_blocks_is_flagged():
+    """Level -100: the pre-stress is positive over a seventh of the Gaussian's width on each side."""
+    values = {
+        "boundary": "stress",
+        "prestress": sp.Prestress(-100.0, 0.0),
+        "duration": 4.0,
+        "friction_ratio": 60.0,
+    }
+    coarse = sp.simulate(sp.Scene(**values, dx=0.1, beta=0.01))
+    assert coarse.attrs["flags"] == "unresolved_pulse" and coarse.attrs["pulse_blocks"] == 1
+    assert sp.simulate(sp.Scene(**values, dx=0.005, beta=5e-4)).attrs["flags"] == ""

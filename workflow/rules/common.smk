@@ -108,6 +108,8 @@ STUDIES = {
     },
     "study_arrest": {"data": ["arrest"], "measured": ["arrest"]},
     "study_stability_of_pulses": {"data": ["pulses_across_a_step", "regimes_beyond"]},
+    "study_extremes": {"studies": ["extremes"]},
+    "study_stability": {"studies": ["stability"]},
 }
 
 # The replication report: the figures that it includes, the simulations whose numbers it quotes, what it is made of.
@@ -147,6 +149,17 @@ def coarser_blocks(wildcards):
     return {
         float(factor): resolve(block, config["model"], ACCURACY, float(factor))
         for factor in ACCURACY["coarser"]
+    }
+
+
+def study_settings(wildcards):
+    """What a study of the solver takes from the configuration."""
+    if wildcards.study not in config["studies"]:
+        raise WorkflowError(f"study: {wildcards.study!r}; allowed: {', '.join(config['studies'])}")
+    return {
+        **config["studies"][wildcards.study],
+        "front_window": config["measure"]["front_window"],
+        "presets": config["presets"],
     }
 
 

@@ -6,9 +6,16 @@ for figure, needs in (FIGURES | STUDIES).items():
         name:
             figure
         input:
-            sources("figures/style.py", f"figures/{figure}.py", "figures/shared/*.py", "theory/*.py"),
+            sources(
+                "figures/style.py",
+                f"figures/{figure}.py",
+                "figures/shared/*.py",
+                "theory/*.py",
+                "studies/edges.py",
+            ),
             data=[f"results/data/{name}.nc" for name in needs.get("data", [])],
-            measured=[f"results/measurements/{name}.csv" for name in needs.get("measured", [])],
+            measured=[f"results/measurements/{name}.csv" for name in needs.get("measured", [])]
+            + [f"results/studies/{name}.csv" for name in needs.get("studies", [])],
         output:
             png=report(
                 f"results/figures/{figure}.png",

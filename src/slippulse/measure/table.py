@@ -13,6 +13,7 @@ from ..sweep import point
 from .fronts import front_speed, position_at
 from .pulses import acceleration_amplitude, leading_pulse, slip_variation
 from .regime import classify
+from .steadiness import pulse_state
 from .transition import transition_displacement, transition_stress
 
 PARAMETERS = (
@@ -65,6 +66,7 @@ def measure(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
                 "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
                 "pulse_acceleration": acceleration_amplitude(run, pulse),
                 "slip_variation": slip_variation(run, pulse),
+                "pulse_state": pulse_state(run, pulse),
             }
         if "sample_velocity" in run and run.sizes["sample_position"] > 1:
             row |= classify(run, settings["still"], settings["steady_tolerance"])

@@ -1,0 +1,72 @@
+"""Measured stability boundaries on the derived ones, and the steps that the presets take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..lattice.stability import MARGIN
+from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
+
+# Below this the damping axis is linear, so that 0 has a place.
+LINEAR = 0.01
+
+
+def table(
+    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+) -> pd.DataFrame:
+    """The rows of the study as they are drawn."""
+    return measured["stability"]
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """Left: the largest step against damping. Right: measured over derived, in two scenes, above the margin."""
+    figure = new_figure(PAGE, 3.4)
+    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
+    rows = table[table["kind"] == "boundary"]
+    for colour, ((scheme, order), curve) in zip(CYCLE, rows.groupby(["scheme", "order"]), strict=True):
+        name = "textbook scheme" if scheme == "fixed_step" else f"localised, order {order}"
+        left.plot(
+            curve["damping_ratio"], curve["derived"], color=colour, linewidth=0.9, label=name, gid="derived"
+        )
+        left.plot(
+            curve["damping_ratio"], curve["measured"], "o", color=colour, markersize=3.2, gid="measured"
+        )
+        for column, marker in (("measured_ratio", "o"), ("measured_rupture_ratio", "^")):
+            right.plot(
+                curve["damping_ratio"], curve[column], marker, color=colour, markersize=3.2,
+                markerfacecolor=colour if marker == "o" else "none", linestyle="none", gid=column,
+            )  # fmt: skip
+    styles = ("-", "--", ":", "-.")
+    for style, (name, curve) in zip(
+        styles, table[table["kind"] != "boundary"].groupby("kind", sort=False), strict=False
+    ):
+        left.plot(
+            curve["damping_ratio"], curve["measured"], color=GREY, linewidth=1.8, alpha=0.7, linestyle=style,
+            label=f"preset {name}", gid="preset",
+        )  # fmt: skip
+    left.set_yscale("log")
+    left.set_ylabel(r"time step $\Delta t\,/\,\mathrm{d}\bar x$")
+    left.legend(loc="lower left", labelspacing=0.2)
+    right.axhline(1.0, color=BLACK, linewidth=0.7)
+    right.axhline(MARGIN, color=GREY, linewidth=1.8, alpha=0.7)
+    right.text(0.98, MARGIN - 0.004, "largest step taken", color="0.4", ha="right", va="top", fontsize=6.5,
+               transform=right.get_yaxis_transform())  # fmt: skip
+    top = float(rows["measured_rupture_ratio"].max())
+    right.set_ylim(MARGIN - 0.05, top + 0.05)
+    right.set_ylabel("largest sound step / derived bound")
+    for marker, face, name in (
+        ("o", "0.3", "chain between walls"),
+        ("^", "none", "rupture (fronts cut the steps)"),
+    ):
+        right.plot([], [], marker, color="0.3", markerfacecolor=face, linestyle="none", label=name)
+    right.legend(loc="center right", bbox_to_anchor=(1.0, 0.72))
+    for axes, letter in ((left, "a"), (right, "b")):
+        axes.set_xscale("symlog", linthresh=LINEAR, linscale=0.4)
+        axes.set_xlim(-0.004, None)
+        axes.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
+        panel_letter(axes, letter)
+    return figure
