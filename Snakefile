@@ -26,3 +26,6 @@ rule all:
         "results/claims.json",
     message:
         "Done: every figure is in results/figures, as PDF, PNG and the CSV that it is drawn from"
+
+
+refuse_unknown_targets()
