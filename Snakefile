@@ -17,6 +17,7 @@ include: "workflow/rules/simulate.smk"
 include: "workflow/rules/measure.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
+include: "workflow/rules/scenes.smk"
 
 
 rule all:
@@ -28,4 +29,4 @@ rule all:
         "Done: every figure is in results/figures, as PDF, PNG and the CSV that it is drawn from"
 
 
-refuse_unknown_targets()
+include: "workflow/rules/targets.smk"

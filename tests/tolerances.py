@@ -103,3 +103,8 @@ FRONT_SPEED_THEORY = 3e-4
 FRONT_SPEED_STUDY = 5e-5
 # The damped pulse at dx = 0.01: it is a continuum theory behind a front that is some blocks wide.
 PULSE_SLIP_THEORY, PULSE_PEAK_THEORY, PULSE_WIDTH_BLOCKS = 5e-4, 2e-3, 2.0
+
+# --- Scenes -----------------------------------------------------------------------------------------------------
+
+# Measured numbers of a draft scene beside theory: the draft preset's own error in the peak (see config/README.md).
+SCENE_SHARE = 1.5e-2

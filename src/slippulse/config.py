@@ -27,6 +27,7 @@ from .refusals import (
     some,
     unknown_names,
 )
+from .scenes import check_scene, scene_block
 from .theory.transition import prestress_balance_position
 
 
@@ -168,12 +169,16 @@ def validate(config: Mapping, schema_path: str | Path, shipped: Mapping | None =
         raise ConfigError(some(sorted(set(problems))))
     accuracy = config["presets"][config["preset"]]
     for name, simulation in config["simulations"].items():
-        with np.errstate(all="ignore"):
-            problems += _check_block(f"simulations.{name}", simulation, config, accuracy)
+        problems += _check_block(f"simulations.{name}", simulation, config, accuracy)
+    for name, scene in config.get("scenes", {}).items():
+        problems += check_scene(scene, f"scenes.{name}") or _check_block(
+            f"scenes.{name}", scene_block(scene, config["model"]), config, accuracy
+        )
     if problems:
         raise ConfigError(some(problems))
 
 
+@np.errstate(all="ignore")
 def _check_block(key: str, simulation: Mapping, config: Mapping, accuracy: Mapping) -> list[str]:
     """What is wrong with one block of scenes, on its own lattice and on those of its grid study."""
     companion = ""

@@ -126,6 +126,14 @@ CASES = {
         OWN + "gamma: [1.0], left: [0.1], right: same, dx: [0.5]}}",
         ["mine.resolved_blocks: 8", "blocks; allowed: a pulse of at least 4 blocks", "a smaller dx"],
     ),
+    # scenes
+    "scene in which nothing moves": ("scenes: {barrier: {peak: 0.9}}", ["scenes.barrier.peak: 0.9", "reaches 1"]),
+    "misspelt key of a scene": ("scenes: {barrier: {gama: 0.3}}", ["scenes.barrier.gama", "did you mean 'gamma'"]),
+    "misspelt scene": ("scenes: {bariere: {gamma: 0.3}}", ["scenes.bariere.boundary", "did you mean 'barrier'"]),
+    "scene with a path as a name": ("scenes: {../barrier: {}}", ["'../barrier'", "lower-case letters"]),
+    "title of two lines": ('scenes: {barrier: {title: "a\\nb"}}', [r"scenes.barrier.title: 'a\nb'", "one line"]),
+    "gamma under stress in a scene": ("scenes: {one_way_pulse: {gamma: 0.5}}", ["one_way_pulse.gamma", "left out"]),
+    "two dampings in a scene": ("scenes: {barrier: {beta: 0.1, damping_ratio: 0.1}}", ["barrier.beta", "one or the"]),
     # sweeps
     "empty axis": (STEADY + "{gamma: []}}", ["gamma: []", "at least one"]),
     "duplicate value": (STEADY + "{left: [0.5, 0.5]}}", ["left: [0.5, 0.5]", "different"]),
@@ -289,7 +297,8 @@ COMMANDS = {
     "python tag": ("preset: !!python/name:os.system\n", [], ["no tags"]),
     "list": ("[1, 2]\n", [], ["with keys at top level"]),
     "preset on the command line": ("preset: draft\n", ["--config", "preset=$(touch written)"], ["'$(touch written)'"]),
-    "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["did you mean 'results/figures/fig05_scaling."]),
+    "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
+    "unknown scene": ("preset: draft\n", ["results/scenes/bariere.html"], ["did you mean 'results/scenes/barrier"]),
 }  # fmt: skip
 
 

@@ -1,13 +1,11 @@
 # What the rules share: the checked configuration, the sources that results depend on, and who draws from what.
 
-import sys
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
 from slippulse.config import ConfigError, resolve, validate
 from slippulse.overlay import read_overlay
-from slippulse.refusals import check_targets
 
 try:
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
@@ -146,14 +144,3 @@ def figure_settings(name):
         "paper_damping_ratio": config["model"]["damping_ratio"],
         **config["figures"].get(name, {}),
     }
-
-
-def refuse_unknown_targets():
-    """A misspelt file on the command line is refused with the nearest one that a rule makes."""
-    known = [str(file) for rule in workflow.rules for file in rule.output if not file.contains_wildcard()]
-    try:
-        check_targets(
-            sys.argv[1:], lambda file: any(rule.is_producer(file) for rule in workflow.rules), known
-        )
-    except ConfigError as error:
-        raise WorkflowError(str(error)) from None
