@@ -7,6 +7,9 @@ CORES ?= 2
 PRESET ?=
 OVERLAY ?=
 TARGET ?=
+ALLOW_LARGE ?=
+# Through the environment, so that no value is read as a command.
+export CORES PRESET OVERLAY TARGET
 VENV := .venv
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
@@ -40,8 +43,10 @@ lock:
 	    --group dev --quiet pyproject.toml -o requirements.lock
 
 replicate: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores $(CORES) \
-	    $(if $(PRESET),--config preset=$(PRESET)) $(if $(OVERLAY),--configfile "$(OVERLAY)") -- $(TARGET)
+	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.overlay "$$OVERLAY"
+	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
+	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large=true)) \
+	    $(if $(OVERLAY),--configfile "$$OVERLAY") -- $$TARGET
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest

@@ -19,6 +19,7 @@ include: "workflow/rules/figures.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/manuscript.smk"
 include: "workflow/rules/studies.smk"
+include: "workflow/rules/scenes.smk"
 
 
 rule all:
@@ -30,3 +31,6 @@ rule all:
         "results/manuscript/replication.pdf",
     message:
         "Done: every figure is in results/figures, the replication report in results/manuscript"
+
+
+include: "workflow/rules/targets.smk"

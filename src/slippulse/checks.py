@@ -2,8 +2,29 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import re
+from collections.abc import Iterable
 from numbers import Real
+
+
+class ConfigError(ValueError):
+    """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
+
+
+def shown(value: object) -> str:
+    """A value as a refusal prints it: on one line, short, and as plain text where it is a plain name."""
+    if isinstance(value, str) and re.fullmatch(r"[\w.:+-]{1,60}", value, re.ASCII):
+        return repr(value)
+    text = repr(value) if not isinstance(value, int | float) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def nearest(name: object, known: Iterable[str]) -> str:
+    """A hint at the known name that was probably meant; empty where none is near."""
+    near = difflib.get_close_matches(str(name)[:80], list(known), n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""
 
 
 def check_number(

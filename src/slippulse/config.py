@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import math
 import re
@@ -13,14 +12,23 @@ import jsonschema
 import numpy as np
 import yaml
 
+from .checks import ConfigError, nearest, shown
 from .lattice.samples import Samples
 from .model import Scene
 from .prestress import Prestress
+from .refusals import (
+    check_cost,
+    check_resolved,
+    corners,
+    counted,
+    misspelt_parent,
+    not_finite,
+    remedy,
+    some,
+    unknown_names,
+)
+from .scenes import check_scene, scene_block
 from .theory.transition import prestress_balance_position
-
-
-class ConfigError(ValueError):
-    """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
 
 
 def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping, coarser: float = 1.0) -> dict:
@@ -137,8 +145,14 @@ def _samples(rule: Mapping | None, scene: Scene) -> Samples | None:
     return Samples(times=np.linspace(0.0, scene.duration, rule["times"]), positions=positions)
 
 
-def validate(config: Mapping, schema_path: str | Path) -> None:
-    """Refuse a configuration that the schema does not allow, or whose scenes are refused.
+def validate(config: Mapping, schema_path: str | Path, shipped: Mapping | None = None) -> None:
+    """Refuse a configuration that the schema does not allow, or whose scenes are refused or cost too much.
+
+    Parameters
+    ----------
+    config : the configuration, overlays included
+    schema_path : its JSON Schema
+    shipped : the configuration without overlays; names of claims that it does not know are then refused
 
     Raises
     ------
@@ -147,21 +161,44 @@ def validate(config: Mapping, schema_path: str | Path) -> None:
     """
     schema = yaml.safe_load(Path(schema_path).read_text(encoding="utf-8"))
     validator = jsonschema.Draft202012Validator(schema)
-    problems = [line for error in validator.iter_errors(_builtins(config)) for line in _describe(error)]
+    config = _builtins(config)
+    problems = not_finite(config)
+    problems += [line for error in validator.iter_errors(config) for line in _describe(error, shipped)]
+    problems = problems or unknown_names(config, shipped)
     if problems:
-        raise ConfigError("\n".join(sorted(set(problems))))
-    if config["preset"] not in config["presets"]:
-        raise ConfigError(f"preset: {config['preset']!r}; allowed: {', '.join(config['presets'])}")
+        raise ConfigError(some(sorted(set(problems))))
+    accuracy = config["presets"][config["preset"]]
     for name, simulation in config["simulations"].items():
-        try:
-            _check_simulation(simulation)
-            accuracy = config["presets"][config["preset"]]
-            for coarser in (1.0, *accuracy["coarser"]):
-                expand(resolve(simulation, config["model"], accuracy, coarser))
-        except ValueError as error:
-            problems.append(f"simulations.{name}.{error}")
+        problems += _check_block(f"simulations.{name}", simulation, config, accuracy)
+    for name, scene in config.get("scenes", {}).items():
+        problems += check_scene(scene, f"scenes.{name}") or _check_block(
+            f"scenes.{name}", scene_block(scene, config["model"]), config, accuracy
+        )
     if problems:
-        raise ConfigError("\n".join(problems))
+        raise ConfigError(some(problems))
+
+
+@np.errstate(all="ignore")
+def _check_block(key: str, simulation: Mapping, config: Mapping, accuracy: Mapping) -> list[str]:
+    """What is wrong with one block of scenes, on its own lattice and on those of its grid study."""
+    companion = ""
+    try:
+        _check_simulation(simulation)
+        large = config.get("allow_large", False)
+        for coarser in (1.0, *accuracy["coarser"]):
+            block = resolve(simulation, config["model"], accuracy, coarser)
+            if coarser > 1.0:
+                companion = f" (on the lattice {coarser:g} times coarser of the grid study, presets.{config['preset']})"
+            scenes, samples = expand(corners(block) if large else counted(block))
+            if coarser == 1.0:
+                check_resolved(scenes)
+                if not large:
+                    check_cost(scenes, samples)
+    except ArithmeticError:
+        return [f"{key}: a number too large or too small to compute with; allowed: numbers near 1"]
+    except ValueError as error:
+        return [f"{key}.{error}{companion}"]
+    return []
 
 
 def _check_simulation(simulation: Mapping) -> None:
@@ -189,8 +226,9 @@ def _check_simulation(simulation: Mapping) -> None:
         raise ValueError("samples: missing; allowed: times, positions and extent when record has 'samples'")
 
 
-def _describe(error: jsonschema.ValidationError) -> list[str]:
-    key = ".".join(str(part) for part in error.absolute_path)
+def _describe(error: jsonschema.ValidationError, shipped: Mapping | None) -> list[str]:
+    path = [str(part) for part in error.absolute_path]
+    key = ".".join(part if re.fullmatch(r"\w{1,80}", part, re.ASCII) else shown(part) for part in path)
     if error.validator == "additionalProperties":
         known = list(error.schema.get("properties", {}))
         lines = []
@@ -198,28 +236,24 @@ def _describe(error: jsonschema.ValidationError) -> list[str]:
             patterns = error.schema.get("patternProperties", {})
             if name in known or any(re.search(pattern, str(name)) for pattern in patterns):
                 continue
-            near = difflib.get_close_matches(str(name), known, n=1)
-            hint = f" (did you mean {near[0]!r}?)" if near else ""
-            full = f"{key}.{name}" if key else str(name)
-            lines.append(f"{full}: unknown key{hint}; allowed: {', '.join(known)}")
+            word = name if re.fullmatch(r"\w{1,60}", name, re.ASCII) else shown(name)
+            full = f"{key}.{word}" if key else word
+            lines.append(f"{full}: unknown key{nearest(name, known)}; allowed: {', '.join(known)}")
         return lines
-    allowed = error.schema.get("description") or _allowed(error)
-    value = repr(error.instance)
-    value = value if len(value) <= 60 else value[:57] + "..."
-    remedy = ""
-    if isinstance(error.instance, str) and re.fullmatch(r"[-+]?\d+[eE][-+]?\d+", error.instance.strip()):
-        mantissa, exponent = re.split("[eE]", error.instance.strip())
-        remedy = f" (YAML reads {error.instance} as text: write {mantissa}.0e{exponent})"
     if error.validator == "required":
         missing = [name for name in error.validator_value if name not in error.instance]
-        return [f"{key}.{name}".lstrip(".") + ": missing; it is required" for name in missing]
-    return [f"{key}: {value}; allowed: {allowed}{remedy}"]
+        hint = misspelt_parent(path, shipped)
+        return [f"{key}.{name}".lstrip(".") + f": missing; it is required{hint}" for name in missing]
+    allowed = error.schema.get("description") or _allowed(error)
+    return [
+        f"{key or 'the configuration'}: {shown(error.instance)}; allowed: {allowed}{remedy(error.instance)}"
+    ]
 
 
 def _allowed(error: jsonschema.ValidationError) -> str:
     if error.validator == "enum":
         return ", ".join(map(str, error.validator_value))
-    return error.message
+    return error.schema.get("title") or {"object": "a mapping"}.get(str(error.validator_value), error.message)
 
 
 def _builtins(value):

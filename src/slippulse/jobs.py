@@ -220,3 +220,32 @@ def write_report(
         shipped_config=absolute(files["shipped"]),
     )
     build_report(inputs, outputs)
+
+
+def draw_scene(
+    name: str, title: str, data: str, study: str, share: float, outputs: Mapping[str, str]
+) -> None:
+    """Write the numbers, the table, the figure and the page of one scene."""
+    from .figures import scene
+    from .figures.style import save_figure
+    from .measure.beside_theory import scene_numbers
+    from .scene_page import scene_page
+    from .store import load_dataset, load_table, save_table, write_whole
+    from .sweep import point
+
+    run = point(load_dataset(data), 0)
+    numbers = scene_numbers(run.attrs, load_table(study), share)
+    save_table(numbers, outputs["numbers"])
+    save_table(scene.table(run, numbers, {"title": title}), outputs["csv"])
+    save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
+    text = scene_page(name, title, outputs["png"], numbers, run.attrs)
+    write_whole(outputs["html"], lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def animate_scene(title: str, data: str, output: str) -> None:
+    """Write the animation of one scene."""
+    from .figures.scene_animation import animate, save_animation
+    from .store import load_dataset
+    from .sweep import point
+
+    save_animation(animate(point(load_dataset(data), 0), title), output)

@@ -5,9 +5,12 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 
 from slippulse.config import ConfigError, resolve, validate
+from slippulse.overlay import read_overlay
 
 try:
-    validate(config, Path(workflow.basedir) / "workflow/schemas/config.schema.yaml")
+    OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
+    SHIPPED = read_overlay(Path(workflow.basedir) / "config/config.yaml")
+    validate(config, Path(workflow.basedir) / "workflow/schemas/config.schema.yaml", SHIPPED)
 except ConfigError as error:
     raise WorkflowError(f"The configuration is refused:\n{error}") from None
 

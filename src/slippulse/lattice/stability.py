@@ -42,18 +42,19 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
     allowed = 1.0 + (WEAK_GROWTH if order in WEAK_ORDERS else ROUNDING)
 
-    def stable(step: float) -> bool:
-        return taylor_amplification(order, step, modes + gamma_dx2, damping_ratio * modes) <= allowed
+    def stable(steps: np.ndarray) -> np.ndarray:
+        largest = _amplifications(order, steps[:, None], modes + gamma_dx2, damping_ratio * modes)
+        return np.max(largest, axis=-1) <= allowed
 
-    good, step = 0.0, 0.0
-    for step in np.geomspace(0.01 / (1.0 + damping_ratio), 8.0, 160):
-        if not stable(step):
-            break
-        good = step
-    lower, upper = good, float(step)
+    steps = np.geomspace(0.01 / (1.0 + damping_ratio), 8.0, 160)
+    unstable = np.flatnonzero(~stable(steps))
+    if unstable.size == 0:
+        return float(steps[-1])
+    first = int(unstable[0])
+    lower, upper = float(steps[first - 1]) if first else 0.0, float(steps[first])
     for _ in range(40):
         middle = 0.5 * (lower + upper)
-        lower, upper = (middle, upper) if stable(middle) else (lower, middle)
+        lower, upper = (middle, upper) if stable(np.array([middle]))[0] else (lower, middle)
     return float(lower)
 
 
@@ -66,8 +67,13 @@ def taylor_amplification(order: int, step: float, stiffness: np.ndarray, damping
     step : in units of dx
     stiffness, damping : of each mode, d^2u/dt^2 = -stiffness u - damping du/dt
     """
+    return float(np.max(_amplifications(order, step, stiffness, damping)))
+
+
+def _amplifications(order: int, step, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """Amplification of each mode, for a step or a column of steps."""
     # Time derivatives of slip, each a combination of slip and velocity at the start.
-    derivatives = [np.array([np.ones_like(stiffness), np.zeros_like(stiffness)])]
+    derivatives = [np.array([np.ones_like(stiffness), np.zeros_like(stiffness)])[:, None, :]]
     derivatives.append(derivatives[0][::-1])
     for _ in range(order):
         derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
@@ -79,4 +85,4 @@ def taylor_amplification(order: int, step: float, stiffness: np.ndarray, damping
         power *= step / (k + 1)
     half_trace = 0.5 * (slip[0] + velocity[1])
     root = np.sqrt((half_trace**2 - (slip[0] * velocity[1] - slip[1] * velocity[0])).astype(complex))
-    return float(np.max(np.abs([half_trace + root, half_trace - root])))
+    return np.maximum(np.abs(half_trace + root), np.abs(half_trace - root))

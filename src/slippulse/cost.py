@@ -1,0 +1,81 @@
+"""What a list of scenes costs to run, before it runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .lattice.samples import Samples
+from .model import Scene
+
+# Block updates a second on one core, samples and events included: the slow end of the shipped sweeps.
+RATE = 1.5e8
+# What runs without being asked twice: a night on one core, the memory of a small machine, a large sweep.
+LARGEST_HOURS = 12.0
+LARGEST_BYTES = 4e9
+LARGEST_RUNS = 20_000
+HOW_TO_GO_ON = "--config allow_large=true to go on"
+
+
+@dataclass(frozen=True)
+class Cost:
+    """An estimate, right to a factor of about 3 over the shipped sweeps.
+
+    Attributes
+    ----------
+    runs : scenes
+    block_updates : all of them
+    bytes : recorded data, and the lattice of the largest scene
+    """
+
+    runs: int
+    block_updates: float
+    bytes: float
+
+    @property
+    def hours(self) -> float:
+        """On one core."""
+        return self.block_updates / RATE / 3600.0
+
+    def __str__(self) -> str:
+        return (
+            f"{self.runs} runs, {self.block_updates:.2g} block updates, about {self.hours:.2g} hours on one core,"
+            f" {self.bytes / 1e9:.2g} GB"
+        )
+
+
+def expected_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) -> Cost:
+    """Cost of a list of scenes with what each records.
+
+    Fronts run at about the wave speed; between them slides a crack (Gamma = 0) or two pulses of about one half period
+    of the leaf springs; a step is cut by about one release a front and block.
+    """
+    updates, recorded, lattice = 0.0, 0.0, 0.0
+    for scene, recording in zip(scenes, samples, strict=True):
+        fold = 0.5 if scene.symmetric else 1.0
+        blocks = 2.0 * fold * scene.duration / scene.dx
+        sliding = 2.0 * fold * _sliding_length(scene) / scene.dx
+        updates += scene.duration / scene.dx * (1.0 / scene.max_step + 1.0) * sliding
+        lattice = max(lattice, 8.0 * (scene.order + 12) * blocks)
+        recorded += 8.0 * 7.0 * blocks
+        if recording is not None:
+            recorded += 16.0 * recording.times.size * recording.positions.size
+    return Cost(len(scenes), updates, recorded + lattice)
+
+
+def _sliding_length(scene: Scene) -> float:
+    if scene.boundary == "displacement":
+        return min(scene.duration, math.pi / math.sqrt(scene.gamma))
+    return scene.duration
+
+
+def too_large(cost: Cost) -> str:
+    """What a cost exceeds, in words; empty when it is within bounds."""
+    if cost.runs > LARGEST_RUNS:
+        return f"up to {LARGEST_RUNS} runs"
+    if not cost.hours <= LARGEST_HOURS:
+        return f"up to {LARGEST_HOURS:g} hours on one core"
+    if not cost.bytes <= LARGEST_BYTES:
+        return f"up to {LARGEST_BYTES / 1e9:g} GB"
+    return ""

@@ -1,0 +1,68 @@
+"""One scene as an animation: slip velocity and slip over position, as time goes on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.animation import FuncAnimation, PillowWriter
+
+from ..store import write_whole
+from .shared.space_time import limits, thin
+from .style import BLUE, GREY, ORANGE, new_figure
+
+FRAMES, PER_SECOND, DOTS_PER_INCH = 61, 12, 90
+
+
+def animate(run: xr.Dataset, title: str) -> FuncAnimation:
+    """Frames evenly over the samples of a run.
+
+    Parameters
+    ----------
+    run : one run with samples
+    title : what stands above
+    """
+    lower, upper = limits(run)
+    x, times = run["sample_position"].values, run["sample_time"].values
+    inside = (x >= lower) & (x <= upper)
+    frames = thin(times.size, FRAMES)
+    figure = new_figure(6.4, 3.6)
+    panels = figure.subplots(2, 1, sharex=True)
+    lines = []
+    for axes, name, label, colour in zip(
+        panels,
+        ("sample_velocity", "sample_slip"),
+        (r"slip velocity $\dot{\bar u}$", r"slip $\bar u$"),
+        (BLUE, ORANGE),
+        strict=True,
+    ):
+        values = run[name].values[:, inside]
+        axes.axhline(0.0, color=GREY, linewidth=0.5)
+        (line,) = axes.plot(x[inside], values[0], color=colour)
+        axes.set_ylabel(label)
+        axes.set_ylim(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values))
+        lines.append((line, values))
+    panels[0].set_xlim(lower, upper)
+    panels[1].set_xlabel(r"position $\bar x$")
+    clock = figure.suptitle("", fontsize=8.0)
+    plain = title.replace("$", r"\$")
+
+    def draw(frame: int) -> list:
+        for line, values in lines:
+            line.set_ydata(values[frame])
+        clock.set_text(rf"{plain}: $\bar t = {times[frame]:.2f}$")
+        return [line for line, _ in lines]
+
+    # Laid out once, with the longest title, and then left alone: the frames must not jump.
+    draw(int(frames[-1]))
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    return FuncAnimation(figure, draw, frames=frames, interval=1000 / PER_SECOND, blit=False)
+
+
+def save_animation(animation: FuncAnimation, path: str | Path) -> None:
+    """Write an animated GIF."""
+    write_whole(
+        path, lambda part: animation.save(part, writer=PillowWriter(fps=PER_SECOND), dpi=DOTS_PER_INCH)
+    )

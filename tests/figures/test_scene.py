@@ -1,0 +1,145 @@
+"""A scene by name: recorded where its fronts go, drawn from its table, its numbers beside theory, a page alone."""
+
+from __future__ import annotations
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import tolerances as tol
+from PIL import Image
+
+from slippulse.config import expand, resolve
+from slippulse.figures import scene as figure
+from slippulse.figures.scene import number_text
+from slippulse.figures.scene_animation import FRAMES, animate, save_animation
+from slippulse.figures.style import save_figure
+from slippulse.measure.beside_theory import scene_numbers
+from slippulse.measure.table import PARAMETERS, measure
+from slippulse.measure.uncertainty import grid_tables
+from slippulse.scene_page import scene_page
+from slippulse.scenes import check_scene, scene_block
+from slippulse.store import load_table, save_table
+from slippulse.sweep import point, run_sweep
+
+TITLE = "A <scene> & its $title"
+SCENES = {
+    "displacement": {
+        "boundary": "displacement", "left": 0.6, "right": 0.6, "gamma": 0.65, "dx": 0.04, "duration": 40.0,
+    },
+    "stress": {"boundary": "stress", "left": -0.75, "right": 0.0, "width": 2.0, "dx": 0.08, "duration": 25.0},
+    "barrier": {
+        "boundary": "displacement", "left": 0.5, "right": 0.2, "gamma": 0.65, "dx": 0.05, "duration": 15.0,
+        "bumps": [[10.0, -2.5, 1.0]], "damping_ratio": 0.0,
+    },
+    "arrested at once": {"boundary": "stress", "left": -3.0, "right": -3.0, "width": 0.5, "dx": 0.05, "duration": 2.0},
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def drawn(project, tmp_path_factory):
+    """Each scene through the same steps as in the pipeline."""
+    import yaml
+
+    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
+    folder, accuracy, made = tmp_path_factory.mktemp("scenes"), config["presets"]["draft"], {}
+
+    def sweep(scene, coarser):
+        block = resolve(scene_block(scene, config["model"]), config["model"], accuracy, coarser)
+        scenes, samples = expand(block)
+        return run_sweep(scenes, samples, block["record"])
+
+    for name, scene in SCENES.items():
+        runs = [sweep(scene, coarser) for coarser in (1.0, *accuracy["coarser"])]
+        tables = tuple(measure(run, config["measure"]) for run in runs)
+        study = grid_tables(tables, tuple(accuracy["coarser"]), PARAMETERS)
+        run = point(runs[0], 0)
+        numbers = scene_numbers(run.attrs, study, config["measure"]["share"])
+        save_table(figure.table(run, numbers, {"title": TITLE}), folder / f"{name}.csv")
+        table = load_table(folder / f"{name}.csv")
+        made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, folder=folder)
+    return made
+
+
+def test_shipped_scenes_move_and_are_recorded_far_enough(config):
+    assert len(config["scenes"]) >= 2
+    for name, scene in (config["scenes"] | SCENES).items():
+        assert check_scene(scene, name) == []
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_samples_reach_beyond_the_fronts(drawn, name):
+    run = drawn[name].run
+    slipped = run["x"].values[np.isfinite(run["release_time"].values)]
+    assert run["sample_position"].values[0] < slipped[0]
+    assert run["sample_position"].values[-1] > slipped[-1]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_figure_shows_what_was_simulated(drawn, name, tmp_path):
+    scene = drawn[name]
+    drawing = figure.plot(scene.table)
+    save_figure(drawing, tmp_path / "scene.png", tmp_path / "scene.pdf")
+    assert (tmp_path / "scene.png").stat().st_size > 20_000
+    labelled = [axes for axes in drawing.axes if axes.get_xlabel() or axes.get_ylabel()]
+    assert len(labelled) >= 4
+    (profile,) = (
+        axes for axes in drawing.axes if "slip velocity" in axes.get_ylabel() and "end" in axes.get_ylabel()
+    )
+    shown = profile.lines[1].get_ydata()
+    assert np.max(shown) == pytest.approx(float(scene.run["slip_velocity"].max()), rel=1e-8)
+    texts = " ".join(text.get_text() for part in drawing.subfigs for text in part.texts)
+    for label in scene.numbers["label"]:
+        assert label.split("_")[0].strip("|") in texts
+
+
+def test_numbers_agree_with_theory_where_a_pulse_is_steady(drawn):
+    numbers = drawn["displacement"].numbers.set_index("quantity")
+    for quantity in ("front_speed_right", "transition_time", "pulse_peak_velocity", "pulse_slip"):
+        row = numbers.loc[quantity]
+        assert abs(row["value"] - row["theory"]) < max(
+            tol.SCENE_SHARE * row["theory"], 2.0 * row["uncertainty"]
+        )
+
+
+def test_a_barrier_leaves_the_transition_without_theory(drawn):
+    numbers = drawn["barrier"].numbers.set_index("quantity")
+    assert np.isnan(numbers["theory"].get("first_stick_time", np.nan))
+    assert np.isfinite(numbers["theory"]["front_speed_left"])
+
+
+@pytest.mark.parametrize(
+    ("number", "text"),
+    [
+        ((1.23456, 0.0123, 1.25), "1.235 ± 0.012 (theory 1.250)"),
+        ((-2.0, np.nan, np.nan), "−2.0000 ± ?"),
+        ((3.5, 0.0, 3.5), "3.5000 (theory 3.5000)"),
+    ],
+)
+def test_a_number_is_written_to_its_uncertainty(number, text):
+    assert number_text(*number) == text
+
+
+@pytest.mark.parametrize("name", ["displacement", "barrier"])
+def test_the_page_stands_alone_and_escapes_what_it_shows(drawn, name, tmp_path):
+    scene = drawn[name]
+    save_figure(figure.plot(scene.table), tmp_path / "scene.png", tmp_path / "scene.pdf")
+    text = scene_page(name, TITLE, tmp_path / "scene.png", scene.numbers, scene.run.attrs)
+    assert "A &lt;scene&gt; &amp; its $title" in text and "<scene>" not in text
+    assert not re.search(r'(src|href)="(https?:|//|file:|/)', text)
+    assert re.findall(r'<img src="(.{21})', text) == ["data:image/png;base64"]
+    assert re.search(r'<img [^>]*alt="[^"]{40,}"', text) and '<html lang="en">' in text
+    for label in scene.numbers["label"]:
+        assert label in text
+
+
+def test_the_animation_runs_from_rest_to_the_end(drawn, tmp_path):
+    run = drawn["displacement"].run
+    save_animation(animate(run, TITLE), tmp_path / "scene.gif")
+    with Image.open(tmp_path / "scene.gif") as film:
+        assert film.n_frames == FRAMES
+        first, last = film.convert("RGB"), None
+        film.seek(film.n_frames - 1)
+        last = film.convert("RGB")
+    assert np.any(np.asarray(first) != np.asarray(last))

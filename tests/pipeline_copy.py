@@ -1,0 +1,60 @@
+"""A copy of the project's sources in which a test may run, edit and break things."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+PARTS = ("Snakefile", "workflow", "config", "src", "manuscript", "requirements.lock")
+
+
+def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
+    """Copy what a run needs, or link it where nothing is edited, which saves compiling; returns the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for part in PARTS:
+        source = project / part
+        if link and source.exists():
+            (folder / part).symlink_to(source)
+        elif source.is_dir():
+            shutil.copytree(source, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+        elif source.exists():
+            shutil.copy2(source, folder / part)
+    return folder
+
+
+def snakemake(
+    folder: Path,
+    *arguments: str,
+    overlay: str = "",
+    cores: int = 1,
+    environment: dict | None = None,
+    timeout: int = 300,
+) -> subprocess.CompletedProcess:
+    """Run Snakemake in a folder, with that folder's library."""
+    command = [sys.executable, "-m", "snakemake", "--cores", str(cores)]
+    command += ["--configfile", overlay] if overlay else []
+    library = (folder / "src").resolve()
+    return subprocess.run(
+        [*command, *arguments],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(library)} | (environment or {}),
+        capture_output=True,
+        text=True,
+        timeout=timeout,
+        check=False,
+    )
+
+
+def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
+    """Rules and how often each is to run, from a dry run."""
+    assert result.returncode == 0, result.stderr + result.stdout
+    text = result.stdout + result.stderr
+    table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\ntotal", text, re.S)
+    if table is None:
+        assert "Nothing to be done" in text
+        return {}
+    return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}

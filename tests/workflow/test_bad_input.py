@@ -1,0 +1,345 @@
+"""Wrong input is refused before any job: one line that names the key, the value and what is allowed."""
+
+from __future__ import annotations
+
+import copy
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+import slippulse as sp
+from slippulse.config import ConfigError, expand, resolve, validate
+from slippulse.overlay import LARGEST_FILE, main, read_overlay
+
+SCHEMA = "workflow/schemas/config.schema.yaml"
+# Enough of the shipped simulations for every case, so that a refusal of scenes is quick.
+KEPT = ("steady_displacement", "space_time_displacement", "space_time_stress", "burridge_knopoff_stress")
+STEADY, STRESS = "simulations: {steady_displacement: ", "simulations: {space_time_stress: "
+OWN = "simulations: {mine: {boundary: displacement, duration: {time: 10.0}, record: [fronts], "
+OWN_STRESS = "simulations: {mine: {boundary: stress, left: [-1.0], record: [fronts], "
+MANY = "[" + ", ".join(f"{0.001 * i:.3f}" for i in range(1, 801)) + "]"
+
+# Overlay, and what the refusal must name: the key, the value, what is allowed or the remedy.
+CASES = {
+    # unknown and misspelt keys
+    "misspelt root key": ("simulation: {}", ["simulation", "did you mean 'simulations'"]),
+    "unknown root key": ("colour: red", ["colour: unknown key", "allowed: preset"]),
+    "misspelt key of a simulation": (STEADY + "{gama: [0.3]}}", ["steady_displacement.gama", "did you mean 'gamma'"]),
+    "misspelt key of a preset": ("presets: {paper: {max_stepp: 0.1}}", ["max_stepp", "did you mean 'max_step'"]),
+    "misspelt key of the model": ("model: {dampingratio: 0.1}", ["model.dampingratio", "did you mean 'damping_ratio'"]),
+    "misspelt key of measure": ("measure: {shares: 0.9}", ["measure.shares", "did you mean 'share'"]),
+    "misspelt figure": ("figures: {fig07_damage_zon: {}}", ["fig07_damage_zon", "did you mean 'fig07_damage_zone'"]),
+    "misspelt simulation": (
+        "simulations: {steady_displacment: {gamma: [0.3]}}",
+        ["steady_displacment.boundary", "did you mean 'steady_displacement'"],
+    ),
+    "misspelt preset": ("presets: {drafts: {dx: 0.1}}", ["presets.drafts", "did you mean 'draft'"]),
+    "misspelt claim": (
+        "claims: {front_speed_undampd: {tolerance: 0.1, reason: why}}",
+        ["claims.front_speed_undampd", "did you mean 'front_speed_undamped'"],
+    ),
+    "preset that is not there": ("preset: papre", ["'papre'", "did you mean 'paper'", "draft, paper, reference"]),
+    "simulation that is not there": (
+        "published: {front_speed: {simulation: space_time_displacemnt}}",
+        ["published.front_speed.simulation", "did you mean 'space_time_displacement'"],
+    ),
+    "reading without its claim": (
+        "published: {more: {simulation: space_time_stress, quantity: q, statement: s, value: 1.0, reading_error: 0.1}}",
+        ["claims.published_more: missing"],
+    ),
+    # wrong types
+    "1e-3 is text": ("presets: {paper: {dx: 1e-3}}", ["presets.paper.dx", "'1e-3'", "write 1.0e-3"]),
+    "number in quotes": ("presets: {paper: {dx: '0.01'}}", ["presets.paper.dx", "'0.01'", "without quotes"]),
+    "decimal comma": ("model: {friction_ratio: '5,5'}", ["friction_ratio", "'5,5'", "write 5.5"]),
+    "one number for a list": (STEADY + "{gamma: 0.3}}", ["gamma: 0.3", "a list of different numbers"]),
+    "a list for one number": ("model: {damping_ratio: [0.1]}", ["model.damping_ratio: [0.1]", "a number >= 0"]),
+    "a switch for a number": ("model: {damping_ratio: true}", ["model.damping_ratio: True", "a number >= 0"]),
+    "nothing for a number": ("model: {damping_ratio: }", ["model.damping_ratio: None", "a number >= 0"]),
+    "a fraction for a whole number": ("presets: {paper: {order: 4.5}}", ["order: 4.5", "a whole number from 3 to 8"]),
+    "a list for a mapping": ("simulations: [1, 2]", ["simulations: [1, 2]", "a mapping"]),
+    "text for a mapping": (STEADY + "{duration: long}}", ["duration: 'long'", "one of time"]),
+    "text for a switch": ("allow_large: 'yes'", ["allow_large: 'yes'", "true or false"]),
+    "a preset that is a number": ("preset: 3", ["preset: 3", "the name of a preset"]),
+    # ranges
+    "negative spacing": ("presets: {paper: {dx: -0.1}}", ["presets.paper.dx: -0.1", "> 0"]),
+    "spacing above 1": ("presets: {paper: {dx: 2.0}}", ["presets.paper.dx: 2.0", "<= 1"]),
+    "order 9": ("presets: {paper: {order: 9}}", ["order: 9", "from 3 to 8"]),
+    "negative damping": (STEADY + "{damping_ratio: [-0.1]}}", ["damping_ratio.0: -0.1", ">= 0"]),
+    "zero gamma": (STEADY + "{gamma: [0.0]}}", ["gamma.0: 0.0", "> 0"]),
+    "level at the threshold": (STEADY + "{left: [1.0]}}", ["prestress.left: 1.0", "< 1"]),
+    "infinity": ("measure: {share: .inf}", ["measure.share: inf", "a finite number"]),
+    "not a number": (STEADY + "{left: [.nan]}}", ["left.0: nan", "a finite number"]),
+    "share above 1": ("measure: {share: 1.5}", ["measure.share: 1.5", "between 0 and 1"]),
+    "zero duration": (STEADY + "{duration: {time: 0.0}}}", ["duration.time: 0.0", "> 0"]),
+    "one factor in the grid study": ("presets: {paper: {coarser: [2.0]}}", ["coarser: [2.0]", "two different factors"]),
+    "release rule": ("model: {release: both}", ["model.release: 'both'", "total, elastic"]),
+    "scheme": ("model: {scheme: euler}", ["model.scheme: 'euler'", "localised, fixed_step"]),
+    "boundary": (STEADY + "{boundary: free}}", ["boundary: 'free'", "displacement, stress"]),
+    "record": (STEADY + "{record: [everything]}}", ["record.0: 'everything'", "fronts, fields, samples"]),
+    "range of stiffness turned round": (
+        "figures: {fig07_damage_zone: {stiffness_ratios: {from: 2.0}}}",
+        ["stiffness_ratios.to: 1.0", "> from = 2"],
+    ),
+    # what belongs together
+    "gamma under stress": (STRESS + "{gamma: [0.5]}}", ["space_time_stress.gamma: [0.5]", "left out under"]),
+    "no gamma under displacement": (OWN + "left: [0.5], right: same}}", ["mine.gamma: missing"]),
+    "no levels": (OWN + "gamma: [0.5]}}", ["mine.left, right: missing"]),
+    "profiles and levels": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, profiles: [{left: 0.5, right: 0.5}]}}",
+        ["mine.profiles", "one or the other"],
+    ),
+    "beta and damping ratio": (STEADY + "{beta: [0.001]}}", ["beta", "damping_ratio", "one or the other"]),
+    "dx and spacing": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, dx: [0.1], spacing: {scale: 2.0}}}",
+        ["mine.dx", "spacing", "one or the other"],
+    ),
+    "two durations": (STEADY + "{duration: {half_periods: 3.0}}}", ["duration", "one of time"]),
+    "half periods under stress": (
+        OWN_STRESS + "right: [0.0], duration: {half_periods: 1.0}}}",
+        ["duration.half_periods", "displacement"],
+    ),
+    "samples not stated": (
+        OWN.replace("fronts", "samples") + "gamma: [0.5], left: [0.5], right: same}}",
+        ["mine.samples: missing"],
+    ),
+    "balance that does not exist": (
+        OWN_STRESS + "right: [0.2], duration: {balance_distances: 2.0}}}",
+        ["prestress.right: 0.2", "allowed: 0"],
+    ),
+    # the lattice
+    "peak narrower than the spacing": (
+        "simulations: {burridge_knopoff_stress: {width: [0.5]}}",
+        ["prestress.width: 0.5", ">= dx = 1"],
+    ),
+    "unstable step": (STEADY + "{max_step: 3.0}}", ["max_step: 3.0", "stability bound"]),
+    "unstable on a coarser lattice": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, width: [0.3], dx: [0.1]}}",
+        ["prestress.width: 0.3", "4 times coarser of the grid study"],
+    ),
+    "pulse of a few blocks": (
+        OWN + "gamma: [1.0], left: [0.1], right: same, dx: [0.5]}}",
+        ["mine.resolved_blocks: 8", "blocks; allowed: a pulse of at least 4 blocks", "a smaller dx"],
+    ),
+    # scenes
+    "scene in which nothing moves": ("scenes: {barrier: {peak: 0.9}}", ["scenes.barrier.peak: 0.9", "reaches 1"]),
+    "misspelt key of a scene": ("scenes: {barrier: {gama: 0.3}}", ["scenes.barrier.gama", "did you mean 'gamma'"]),
+    "misspelt scene": ("scenes: {bariere: {gamma: 0.3}}", ["scenes.bariere.boundary", "did you mean 'barrier'"]),
+    "scene with a path as a name": ("scenes: {../barrier: {}}", ["'../barrier'", "lower-case letters"]),
+    "title of two lines": ('scenes: {barrier: {title: "a\\nb"}}', [r"scenes.barrier.title: 'a\nb'", "one line"]),
+    "gamma under stress in a scene": ("scenes: {one_way_pulse: {gamma: 0.5}}", ["one_way_pulse.gamma", "left out"]),
+    "two dampings in a scene": ("scenes: {barrier: {beta: 0.1, damping_ratio: 0.1}}", ["barrier.beta", "one or the"]),
+    # sweeps
+    "empty axis": (STEADY + "{gamma: []}}", ["gamma: []", "at least one"]),
+    "duplicate value": (STEADY + "{left: [0.5, 0.5]}}", ["left: [0.5, 0.5]", "different"]),
+    "duplicate profile": (
+        "simulations: {steady_stress: {profiles: [{left: -1.0, right: 0.0}, {left: -1.0, right: 0.0}]}}",
+        ["profiles", "different"],
+    ),
+    "too many runs": (
+        STEADY + f"{{left: {MANY}, gamma: {MANY}}}}}",
+        ["runs: 1920000", "left 800, gamma 800", "allow_large=true"],
+    ),
+    "too many hours": (
+        STEADY + "{duration: {time: 1.0e+8}}}",
+        ["cost: 12 runs", "hours on one core", "allow_large=true"],
+    ),
+    "too much memory": (
+        "simulations: {space_time_stress: {samples: {times: 100000, positions: 100000}}}",
+        ["GB", "allow_large=true"],
+    ),
+    "a number that overflows": (STEADY + "{gamma: [1.0e+300]}}", ["steady_displacement"]),
+    # hostile
+    "path as a name": ("simulations: {../../etc/passwd: {}}", ["'../../etc/passwd'", "lower-case letters"]),
+    "command as a name": ("simulations: {$(touch written): {}}", ["'$(touch written)'", "lower-case letters"]),
+    "newline in a name": ('simulations: {"a\\nb": {}}', [r"'a\nb'", "lower-case letters"]),
+    "command as a preset": ("preset: '`touch written`'", ["preset: '`touch written`'", "draft, paper, reference"]),
+    "newline in a preset": ('preset: "paper\\ndraft"', [r"'paper\ndraft'", "draft, paper, reference"]),
+    "a very long name": ("simulations: {" + "a" * 900 + ": {}}", ["'aaaa", "..."]),
+}  # fmt: skip
+
+# Files that are no overlay at all.
+FILES = {
+    "text": (b"just some text\n", ["text", "a mapping of keys"]),
+    "list": (b"- preset\n- draft\n", ["a list", "a mapping of keys"]),
+    "number": (b"42\n", ["a number", "a mapping of keys"]),
+    "empty": (b"# nothing\n", ["empty", "a mapping of keys"]),
+    "broken": (b"preset: [draft\n", ["not YAML", "line 2"]),
+    "tabs": (b"simulations:\n\tmine: 1\n", ["not YAML", "line 2"]),
+    "binary": (b"\x89PNG\r\n\x1a\n\xff\xfe", ["not text"]),
+    "python tag": (b"preset: !!python/object/apply:os.system [touch written]\n", ["line 1", "no tags"]),
+    "own tag": (b"preset: !preset draft\n", ["line 1", "'!preset'", "no tags"]),
+    "alias": (b"model: &a {release: total}\nmeasure: *a\n", ["line 1", "anchor or alias"]),
+    "template": (b"__use_yte__: true\n?if True:\n  preset: draft\n", ["template key '__use_yte__'"]),
+    "duplicate key": (b"preset: draft\npreset: paper\n", ["line 2", "'preset' a second time"]),
+    "two documents": (b"preset: draft\n---\npreset: paper\n", ["a second document"]),
+    "deep": (b"[" * 5000, ["levels"]),
+    "collection as a key": (b"{[1, 2]: 3}\n", ["a collection as a key"]),
+    "huge": (b"# " + b"x" * LARGEST_FILE, [f"more than {LARGEST_FILE} bytes"]),
+    "laughs": (
+        b"a0: &a0 [x]\n" + b"".join(b"a%d: &a%d [%s*a0]\n" % (i, i, b"*a%d, " % (i - 1) * 10) for i in range(1, 30)),
+        ["anchor or alias"],
+    ),
+    "ten megabytes of aliases": (
+        b"a: &a [x]\nb: [" + b"*a, " * 2_600_000 + b"*a]\n",
+        [f"more than {LARGEST_FILE} bytes"],
+    ),
+}  # fmt: skip
+
+
+def merged(base: dict, overlay: dict) -> dict:
+    """Mappings are merged, all else is replaced, as Snakemake does it."""
+    out = dict(base)
+    for key, value in overlay.items():
+        both = isinstance(value, dict) and isinstance(out.get(key), dict)
+        out[key] = merged(out[key], value) if both else value
+    return out
+
+
+@pytest.fixture(scope="module")
+def shipped(project) -> dict:
+    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
+    config["simulations"] = {name: config["simulations"][name] for name in KEPT}
+    return config
+
+
+def assert_one_clear_message(message: str, named: list[str]) -> None:
+    for part in named:
+        assert part in message
+    for line in message.splitlines():
+        assert re.search(r"allowed: |it is required", line), line
+        assert len(line) < 400
+    assert len(message.splitlines()) <= 6
+    assert "Traceback" not in message
+
+
+def test_what_is_shipped_passes_here_too(shipped, project):
+    validate(copy.deepcopy(shipped), project / SCHEMA, shipped)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_mistake_in_an_overlay_is_refused(shipped, project, tmp_path, case):
+    text, named = CASES[case]
+    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    config = merged(copy.deepcopy(shipped), read_overlay(tmp_path / "mine.yaml"))
+    with pytest.raises(ValueError) as refusal:
+        validate(config, project / SCHEMA, shipped)
+    assert type(refusal.value) is ConfigError
+    assert_one_clear_message(str(refusal.value), named)
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.yaml"]
+
+
+@pytest.mark.parametrize("case", FILES)
+def test_a_file_that_is_no_overlay_is_refused(tmp_path, case, capsys):
+    content, named = FILES[case]
+    (tmp_path / "mine.yaml").write_bytes(content)
+    assert main([str(tmp_path / "mine.yaml")]) == 1
+    heading, message = capsys.readouterr().err.split("\n", 1)
+    assert heading == "The configuration is refused:"
+    assert message.count("\n") == 1
+    assert_one_clear_message(message, [f"{tmp_path}/mine.yaml: ", *named])
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.yaml"]
+
+
+def test_there_are_enough_cases():
+    assert len(CASES) + len(FILES) + len(COMMANDS) >= 40
+
+
+def test_asking_twice_lets_a_large_sweep_pass(shipped, project):
+    levels = [round(0.001 * i, 3) for i in range(1, 801)]
+    overlay = {
+        "simulations": {"steady_displacement": {"left": levels, "gamma": levels}},
+        "allow_large": True,
+    }
+    validate(merged(copy.deepcopy(shipped), overlay), project / SCHEMA, shipped)
+
+
+@pytest.mark.parametrize(
+    ("changes", "overlay"),
+    [
+        ({"gamma": -1.0}, None),
+        ({"dx": 2.0, "prestress": sp.Prestress(0.5, 0.5, width=0.5)}, None),
+        ({"max_step": 3.0}, {"max_step": 3.0}),
+        ({"boundary": "free"}, None),
+        ({"release": "both"}, None),
+    ],
+)
+def test_the_library_raises_the_same_text(shipped, project, changes, overlay):
+    good = {
+        "boundary": "displacement", "prestress": sp.Prestress(0.2, 0.2), "duration": 120.0, "dx": 0.01, "gamma": 0.65,
+    }  # fmt: skip
+    with pytest.raises(ValueError) as refusal:
+        sp.Scene(**good | changes)
+    assert re.fullmatch(r"[\w.]+: .+; allowed: .+", str(refusal.value))
+    if overlay:
+        config = merged(copy.deepcopy(shipped), {"simulations": {"steady_displacement": overlay}})
+        with pytest.raises(ValueError) as of_scenes:
+            expand(
+                resolve(
+                    config["simulations"]["steady_displacement"], config["model"], config["presets"]["paper"]
+                )
+            )
+        with pytest.raises(ConfigError) as of_config:
+            validate(config, project / SCHEMA, shipped)
+        assert str(of_scenes.value) in str(of_config.value)
+
+
+# The pipeline's own command: overlay, more arguments, what is named.
+COMMANDS = {
+    "misspelt key": ("simulations: {steady_displacement: {gama: [0.3]}}", [], ["did you mean 'gamma'"]),
+    "cost": (STEADY + "{duration: {time: 1.0e+8}}}", [], ["hours on one core", "allow_large=true"]),
+    "alias": ("model: &a {release: total}\n", [], ["anchor or alias"]),
+    "python tag": ("preset: !!python/name:os.system\n", [], ["no tags"]),
+    "list": ("[1, 2]\n", [], ["with keys at top level"]),
+    "preset on the command line": ("preset: draft\n", ["--config", "preset=$(touch written)"], ["'$(touch written)'"]),
+    "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
+    "unknown scene": ("preset: draft\n", ["results/scenes/bariere.html"], ["did you mean 'results/scenes/barrier"]),
+}  # fmt: skip
+
+
+@pytest.mark.workflow
+@pytest.mark.parametrize("case", COMMANDS)
+def test_the_command_refuses_before_any_job(project, tmp_path, case):
+    overlay, arguments, named = COMMANDS[case]
+    for part in ("Snakefile", "workflow", "config", "src", "requirements.lock"):
+        (tmp_path / part).symlink_to(project / part)
+    (tmp_path / "mine.yaml").write_text(overlay, encoding="utf-8")
+    options = arguments if arguments[:1] == ["--config"] else []
+    targets = [] if options else arguments
+    result = subprocess.run(
+        [sys.executable, "-m", "snakemake", "--cores", "1", *options, "--configfile", "mine.yaml", "--", *targets],
+        cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    said = result.stdout + result.stderr
+    assert result.returncode != 0
+    assert "Traceback" not in said and "localrule" not in said and "Select jobs" not in said
+    for part in named:
+        assert part in said
+    assert not (tmp_path / "results").exists() and not (tmp_path / "written").exists()
+
+
+@pytest.mark.workflow
+@pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
+def test_make_checks_an_overlay_before_snakemake_reads_it(project, tmp_path):
+    (tmp_path / "mine.yaml").write_text(
+        "__use_yte__: true\npreset: ?open('written', 'w')\n", encoding="utf-8"
+    )
+    for part in ("Snakefile", "workflow", "config", "src", "requirements.lock", "Makefile", "pyproject.toml"):
+        (tmp_path / part).symlink_to(project / part)
+    (tmp_path / "requirements-build.lock").symlink_to(project / "requirements-build.lock")
+    (tmp_path / ".venv/bin").mkdir(parents=True)
+    (tmp_path / ".venv/bin/python").symlink_to(sys.executable)
+    (tmp_path / ".venv/.ready").touch()
+    environment = os.environ | {"PYTHONPATH": str(project / "src")}
+    result = subprocess.run(
+        ["make", "replicate", "OVERLAY=mine.yaml"],
+        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert result.returncode != 0
+    assert "template key '__use_yte__'" in result.stderr
+    assert not Path(tmp_path / "written").exists() and not Path(tmp_path / "results").exists()

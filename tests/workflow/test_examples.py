@@ -1,0 +1,108 @@
+"""Every example overlay runs, at draft, and does what its comment promises."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import tolerances as tol
+from pipeline_copy import copy_project, snakemake
+
+from slippulse import theory
+from slippulse.overlay import read_overlay
+
+pytestmark = pytest.mark.workflow
+
+# A small target of each example: cheap, and enough to see what it promises.
+TARGETS = {
+    "another_gamma": "results/measurements/steady_displacement.csv",
+    "asymmetric_levels": "results/scenes/data/asymmetric_levels.csv",
+    "stress_barrier": "results/scenes/stress_barrier.html",
+    "two_nucleation_sites": "results/scenes/data/two_sites.csv",
+    "elastic_release": "results/measurements/space_time_displacement.csv",
+    "halved_spacing": "results/measurements/space_time_displacement.csv",
+    "own_sweep": "results/measurements/own_sweep.csv",
+}
+
+
+@pytest.fixture(scope="module")
+def run(project, tmp_path_factory):
+    """A function that makes an example's target and returns its measured table."""
+    folder = copy_project(project, tmp_path_factory.mktemp("examples"), link=True)
+
+    def make(name: str) -> tuple[pd.DataFrame, Path]:
+        result = snakemake(
+            folder, "--config", "preset=draft", "--", TARGETS[name], overlay=f"config/examples/{name}.yaml"
+        )
+        assert result.returncode == 0, result.stderr
+        path = folder / TARGETS[name]
+        table = path if path.suffix == ".csv" else path.parent / f"data/{path.stem}.csv"
+        return pd.read_csv(table), path
+
+    return make
+
+
+def test_every_example_is_tested_and_explained(project):
+    examples = sorted((project / "config/examples").glob("*.yaml"))
+    assert [path.stem for path in examples] == sorted(TARGETS)
+    for path in examples:
+        read_overlay(path)
+        text = path.read_text(encoding="utf-8")
+        assert text.startswith("# ") and f"OVERLAY=config/examples/{path.name}" in text
+
+
+def test_another_gamma_changes_the_size_and_not_the_speed(run):
+    table, _ = run("another_gamma")
+    assert set(table["gamma"]) == {0.3}
+    undamped = table[table["damping_ratio"] == 0.0]
+    assert np.allclose(undamped["pulse_slip"], 2.0 * undamped["left"] / 0.3, rtol=tol.DRAFT_SLIP)
+    assert np.allclose(
+        undamped["front_speed_right"], 1.0 / np.sqrt(1.0 - undamped["left"] ** 2), rtol=tol.DRAFT_SPEED
+    )
+
+
+def test_asymmetric_levels_have_each_sides_speed(run):
+    table, _ = run("asymmetric_levels")
+    for side, level in (("left", 0.3), ("right", 0.7)):
+        assert table[f"front_speed_{side}"][0] == pytest.approx(
+            theory.front_speed(level, 0.1), rel=tol.DRAFT_SPEED
+        )
+
+
+def test_a_wide_barrier_stops_a_pulse(run):
+    table, page = run("stress_barrier")
+    assert table["front_speed_left"][0] == pytest.approx(theory.front_speed(0.5, 0.1), rel=tol.DRAFT_SPEED)
+    fronts = pd.read_csv(page.with_suffix(".csv"))
+    fronts = fronts[fronts["role"] == "front"]
+    # The barrier stands at 18, the undisturbed front on the left is beyond 35 by the end.
+    assert 12.0 < fronts["position"].max() < 22.0 and fronts["position"].min() < -35.0
+    assert "A pulse dies in a wide barrier" in page.read_text(encoding="utf-8")
+
+
+def test_two_sites_send_two_pulses(run):
+    table, _ = run("two_nucleation_sites")
+    speed = theory.front_speed(0.5, 0.1)
+    assert table["front_speed_left"][0] == pytest.approx(speed, rel=tol.DRAFT_SPEED)
+    assert table["front_speed_right"][0] == pytest.approx(speed, rel=tol.DRAFT_SPEED)
+
+
+def test_the_elastic_rule_is_slower(run):
+    table, _ = run("elastic_release")
+    assert set(table["release"]) == {"elastic"}
+    elastic, total = (theory.front_speed(0.25, 0.1, rule) for rule in ("elastic", "total"))
+    # The run of the space-time figure ends before its front is steady.
+    assert table["front_speed_right"][0] < 0.5 * (elastic + total)
+
+
+def test_halved_spacing_is_half_of_the_presets(run):
+    table, _ = run("halved_spacing")
+    assert set(table["dx"]) == {0.02}
+    assert table["beta"][0] == pytest.approx(0.002)
+
+
+def test_a_sweep_of_ones_own_is_the_product_of_its_lists(run):
+    table, _ = run("own_sweep")
+    assert len(table) == 12
+    assert np.isfinite(table["pulse_slip"]).all()

@@ -1,0 +1,134 @@
+# Single scenes by name: data, a figure, a page that stands alone, an animation. Not part of the paper.
+
+from slippulse.scenes import scene_block
+
+SCENES = config.get("scenes", {})
+SCENE_NAMES = "|".join(SCENES) or "(?!)"
+
+
+def block_of_scene(wildcards):
+    """Everything that the data of a scene depend on, in one dict of builtins."""
+    coarser = float(getattr(wildcards, "coarser", 1.0))
+    return resolve(
+        scene_block(SCENES[wildcards.simulation], config["model"]), config["model"], ACCURACY, coarser
+    )
+
+
+rule scenes:
+    input:
+        expand("results/scenes/{scene}.{ending}", scene=SCENES, ending=["png", "html", "gif"]),
+    message:
+        "Done: every scene is in results/scenes, as HTML, PNG, PDF, CSV and GIF"
+
+
+use rule simulate as simulate_scene with:
+    output:
+        "results/scenes/data/{simulation}.nc",
+    log:
+        "results/logs/simulate_scene/{simulation}.log",
+    benchmark:
+        "results/benchmarks/simulate_scene/{simulation}.tsv"
+    wildcard_constraints:
+        simulation=SCENE_NAMES,
+    params:
+        block=block_of_scene,
+    message:
+        "Simulating scene {wildcards.simulation}"
+
+
+use rule simulate_scene as simulate_scene_coarser with:
+    output:
+        "results/scenes/data/{simulation}_x{coarser}.nc",
+    log:
+        "results/logs/simulate_scene/{simulation}_x{coarser}.log",
+    benchmark:
+        "results/benchmarks/simulate_scene/{simulation}_x{coarser}.tsv"
+    message:
+        "Simulating scene {wildcards.simulation} on a lattice {wildcards.coarser} times coarser"
+
+
+use rule measure as measure_scene with:
+    input:
+        MEASURE_SOURCES,
+        data="results/scenes/data/{simulation}.nc",
+    output:
+        "results/scenes/data/{simulation}.csv",
+    log:
+        "results/logs/measure_scene/{simulation}.log",
+    benchmark:
+        "results/benchmarks/measure_scene/{simulation}.tsv"
+    wildcard_constraints:
+        simulation=rf"({SCENE_NAMES})(_x\d+\.\d+)?",
+    message:
+        "Measuring scene {wildcards.simulation}"
+
+
+use rule estimate_uncertainty as estimate_uncertainty_of_scene with:
+    input:
+        MEASURE_SOURCES,
+        finest="results/scenes/data/{simulation}.csv",
+        coarser=[f"results/scenes/data/{{simulation}}_x{float(factor)}.csv" for factor in ACCURACY["coarser"]],
+    output:
+        "results/scenes/data/{simulation}_study.csv",
+    log:
+        "results/logs/estimate_uncertainty_of_scene/{simulation}.log",
+    benchmark:
+        "results/benchmarks/estimate_uncertainty_of_scene/{simulation}.tsv"
+    wildcard_constraints:
+        simulation=SCENE_NAMES,
+    message:
+        "Grid study of scene {wildcards.simulation}"
+
+
+rule draw_scene:
+    input:
+        sources("figures/style.py", "figures/scene.py", "figures/shared/*.py", "pages.py", "scene_page.py"),
+        MEASURE_SOURCES,
+        data="results/scenes/data/{scene}.nc",
+        study="results/scenes/data/{scene}_study.csv",
+    output:
+        png=report(
+            "results/scenes/{scene}.png",
+            caption="../report/scene.rst",
+            category="Scenes",
+            labels={"scene": "{scene}"},
+        ),
+        pdf="results/scenes/{scene}.pdf",
+        csv="results/scenes/{scene}.csv",
+        numbers="results/scenes/{scene}_numbers.csv",
+        html="results/scenes/{scene}.html",
+    log:
+        "results/logs/draw_scene/{scene}.log",
+    benchmark:
+        "results/benchmarks/draw_scene/{scene}.tsv"
+    wildcard_constraints:
+        scene=SCENE_NAMES,
+    params:
+        scene=lambda wildcards: {
+            "title": SCENES[wildcards.scene]["title"],
+            "share": config["measure"]["share"],
+        },
+    message:
+        "Drawing scene {wildcards.scene}"
+    script:
+        "../scripts/draw_scene.py"
+
+
+rule animate_scene:
+    input:
+        sources("figures/style.py", "figures/scene_animation.py", "figures/shared/*.py"),
+        data="results/scenes/data/{scene}.nc",
+    output:
+        "results/scenes/{scene}.gif",
+    log:
+        "results/logs/animate_scene/{scene}.log",
+    benchmark:
+        "results/benchmarks/animate_scene/{scene}.tsv"
+    wildcard_constraints:
+        scene=SCENE_NAMES,
+    params:
+        title=lambda wildcards: SCENES[wildcards.scene]["title"],
+    message:
+        "Animating scene {wildcards.scene}"
+    script:
+        "../scripts/animate_scene.py"

@@ -1,0 +1,20 @@
+# Included last: what is asked for on the command line is something that a rule makes.
+
+import sys
+
+from slippulse.refusals import check_targets
+
+
+def refuse_unknown_targets():
+    """A misspelt file on the command line is refused with the nearest one that a rule makes."""
+    known = [str(file) for rule in workflow.rules for file in rule.output if not file.contains_wildcard()]
+    known += [f"results/scenes/{name}.{ending}" for name in SCENES for ending in ("png", "html", "gif")]
+    try:
+        check_targets(
+            sys.argv[1:], lambda file: any(rule.is_producer(file) for rule in workflow.rules), known
+        )
+    except ConfigError as error:
+        raise WorkflowError(str(error)) from None
+
+
+refuse_unknown_targets()

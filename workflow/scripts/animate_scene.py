@@ -1,0 +1,6 @@
+"""Animate one scene."""
+
+from slippulse.jobs import animate_scene, logged
+
+with logged(snakemake.log[0]):
+    animate_scene(snakemake.params.title, snakemake.input.data, snakemake.output[0])

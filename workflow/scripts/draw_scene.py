@@ -1,0 +1,13 @@
+"""Draw one scene and write its page."""
+
+from slippulse.jobs import draw_scene, logged
+
+with logged(snakemake.log[0]):
+    draw_scene(
+        snakemake.wildcards.scene,
+        snakemake.params.scene["title"],
+        snakemake.input.data,
+        snakemake.input.study,
+        snakemake.params.scene["share"],
+        {key: snakemake.output[key] for key in ("numbers", "csv", "png", "pdf", "html")},
+    )
