@@ -34,16 +34,11 @@ OVERLAY = {
     "simulations": {"space_time_displacement": {"duration": {"time": 5.0}, "samples": {"times": 11, "positions": 21}}},
     "scenes": {"one": SCENE, "two": SCENE | {"title": "Two", "left": 0.6, "right": 0.5}},
 }  # fmt: skip
-CHAIN = {"simulate": 1, "simulate_coarser": 2, "measure": 1, "measure_coarser": 2, "estimate_uncertainty": 1}
-ONE_DATA = {
-    "simulate_scene": 1,
-    "simulate_scene_coarser": 2,
-    "measure_scene": 3,
-    "estimate_uncertainty_of_scene": 1,
-}
-ONE = ONE_DATA | {"draw_scene": 1, "animate_scene": 1}
+CHAIN = {"simulate": 1, "measure": 1, "study_grid": 1}
+ONE = {"simulate_scene": 1, "measure_scene": 1, "study_grid_of_scene": 1, "draw_scene": 1, "animate_scene": 1}
 # The second scene is asked for its measured numbers only.
-BOTH = ONE | {"simulate_scene": 2, "measure_scene": 4}
+BOTH = ONE | {"simulate_scene": 2, "measure_scene": 2}
+MEASURED = {"measure": 1, "study_grid": 1, "measure_scene": 2, "study_grid_of_scene": 1, "draw_scene": 1}
 
 
 @pytest.fixture(scope="module")
@@ -71,13 +66,11 @@ CONFIGURATIONS = {
     "another level": ({"simulations": {"space_time_displacement": {"left": [0.3]}}}, CHAIN),
     "another measure": (
         {"measure": {"front_window": 0.4}},
-        {"measure": 1, "measure_coarser": 2, "estimate_uncertainty": 1, "measure_scene": 4,
-         "estimate_uncertainty_of_scene": 1, "draw_scene": 1, "fig07_damage_zone": 1},
+        MEASURED | {"fig07_damage_zone": 1},
     ),
     "another coarser lattice": (
         {"presets": {"draft": {"coarser": [1.5, 2.5]}}},
-        {"simulate_coarser": 1, "measure_coarser": 1, "estimate_uncertainty": 1, "simulate_scene_coarser": 1,
-         "measure_scene": 1, "estimate_uncertainty_of_scene": 1, "draw_scene": 1},
+        {"study_grid": 1, "study_grid_of_scene": 1, "draw_scene": 1},
     ),
     "another release rule": ({"model": {"release": "elastic"}}, CHAIN | BOTH),
     "another damping": ({"model": {"damping_ratio": 0.2}}, CHAIN | BOTH | {"fig07_damage_zone": 1}),
@@ -113,10 +106,7 @@ EDITS = {
     "src/slippulse/figures/style.py": {"fig07_damage_zone": 1, "draw_scene": 1, "animate_scene": 1},
     "src/slippulse/lattice/localised.py": EVERY_DATA,
     "src/slippulse/sweep.py": {key: count for key, count in EVERY_DATA.items() if key != "compile_kernels"},
-    "src/slippulse/measure/fronts.py": {
-        "measure": 1, "measure_coarser": 2, "estimate_uncertainty": 1, "measure_scene": 4,
-        "estimate_uncertainty_of_scene": 1, "draw_scene": 1,
-    },
+    "src/slippulse/measure/fronts.py": MEASURED,
     "src/slippulse/claims/pulse.py": {},
     "requirements.lock": EVERY_DATA,
     "workflow/report/scene.rst": {},

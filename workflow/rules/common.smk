@@ -35,10 +35,11 @@ SIMULATION_SOURCES = KERNEL_SOURCES + sources(
     "sweep.py",
     "versions.py",
     "theory/transition.py",
+    "roots.py",
 )
-MEASURE_SOURCES = sources("measure/*.py", "theory/*.py")
+MEASURE_SOURCES = sources("measure/*.py", "theory/*.py", "roots.py")
 
-CLAIM_SOURCES = sources("claims/*.py", "theory/*.py")
+CLAIM_SOURCES = sources("claims/*.py", "theory/*.py", "roots.py")
 CLAIM_SIMULATIONS = [
     "any_prestress",
     "burridge_knopoff_speed",

@@ -6,12 +6,15 @@ SCENES = config.get("scenes", {})
 SCENE_NAMES = "|".join(SCENES) or "(?!)"
 
 
-def block_of_scene(wildcards):
+def block_of_scene(wildcards, coarser=1.0):
     """Everything that the data of a scene depend on, in one dict of builtins."""
-    coarser = float(getattr(wildcards, "coarser", 1.0))
-    return resolve(
-        scene_block(SCENES[wildcards.simulation], config["model"]), config["model"], ACCURACY, coarser
-    )
+    scene = scene_block(SCENES[wildcards.simulation], config["model"])
+    return resolve(scene, config["model"], ACCURACY, coarser)
+
+
+def coarser_blocks_of_scene(wildcards):
+    """The same on the two coarser lattices of the grid study."""
+    return {float(factor): block_of_scene(wildcards, float(factor)) for factor in ACCURACY["coarser"]}
 
 
 rule scenes:
@@ -36,17 +39,6 @@ use rule simulate as simulate_scene with:
         "Simulating scene {wildcards.simulation}"
 
 
-use rule simulate_scene as simulate_scene_coarser with:
-    output:
-        "results/scenes/data/{simulation}_x{coarser}.nc",
-    log:
-        "results/logs/simulate_scene/{simulation}_x{coarser}.log",
-    benchmark:
-        "results/benchmarks/simulate_scene/{simulation}_x{coarser}.tsv"
-    message:
-        "Simulating scene {wildcards.simulation} on a lattice {wildcards.coarser} times coarser"
-
-
 use rule measure as measure_scene with:
     input:
         MEASURE_SOURCES,
@@ -58,24 +50,30 @@ use rule measure as measure_scene with:
     benchmark:
         "results/benchmarks/measure_scene/{simulation}.tsv"
     wildcard_constraints:
-        simulation=rf"({SCENE_NAMES})(_x\d+\.\d+)?",
+        simulation=SCENE_NAMES,
     message:
         "Measuring scene {wildcards.simulation}"
 
 
-use rule estimate_uncertainty as estimate_uncertainty_of_scene with:
+use rule study_grid as study_grid_of_scene with:
     input:
+        SIMULATION_SOURCES,
         MEASURE_SOURCES,
+        LOCK,
+        kernels="results/kernels.txt",
         finest="results/scenes/data/{simulation}.csv",
-        coarser=[f"results/scenes/data/{{simulation}}_x{float(factor)}.csv" for factor in ACCURACY["coarser"]],
     output:
-        "results/scenes/data/{simulation}_study.csv",
+        uncertainties="results/scenes/data/{simulation}_study.csv",
+        tables="results/scenes/data/{simulation}_coarser.csv",
     log:
-        "results/logs/estimate_uncertainty_of_scene/{simulation}.log",
+        "results/logs/study_grid_of_scene/{simulation}.log",
     benchmark:
-        "results/benchmarks/estimate_uncertainty_of_scene/{simulation}.tsv"
+        "results/benchmarks/study_grid_of_scene/{simulation}.tsv"
     wildcard_constraints:
         simulation=SCENE_NAMES,
+    params:
+        blocks=coarser_blocks_of_scene,
+        settings=config["measure"],
     message:
         "Grid study of scene {wildcards.simulation}"
 
