@@ -5,6 +5,7 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 
 from slippulse.config import ConfigError, resolve, validate
+from slippulse.scenes import scene_block
 from slippulse.overlay import read_overlay
 
 try:
@@ -174,3 +175,19 @@ def figure_settings(name):
         "paper_damping_ratio": config["model"]["damping_ratio"],
         **config["figures"].get(name, {}),
     }
+
+
+# Single scenes by name, beside the paper.
+SCENES = config.get("scenes", {})
+SCENE_NAMES = "|".join(SCENES) or "(?!)"
+
+
+def block_of_scene(wildcards, coarser=1.0):
+    """Everything that the data of a scene depend on, in one dict of builtins."""
+    scene = scene_block(SCENES[wildcards.simulation], config["model"])
+    return resolve(scene, config["model"], ACCURACY, coarser)
+
+
+def coarser_blocks_of_scene(wildcards):
+    """The same on the two coarser lattices of the grid study."""
+    return {float(factor): block_of_scene(wildcards, float(factor)) for factor in ACCURACY["coarser"]}

@@ -1,21 +1,5 @@
 # Single scenes by name: data, a figure, a page that stands alone, an animation. Not part of the paper.
 
-from slippulse.scenes import scene_block
-
-SCENES = config.get("scenes", {})
-SCENE_NAMES = "|".join(SCENES) or "(?!)"
-
-
-def block_of_scene(wildcards, coarser=1.0):
-    """Everything that the data of a scene depend on, in one dict of builtins."""
-    scene = scene_block(SCENES[wildcards.simulation], config["model"])
-    return resolve(scene, config["model"], ACCURACY, coarser)
-
-
-def coarser_blocks_of_scene(wildcards):
-    """The same on the two coarser lattices of the grid study."""
-    return {float(factor): block_of_scene(wildcards, float(factor)) for factor in ACCURACY["coarser"]}
-
 
 rule scenes:
     input:
