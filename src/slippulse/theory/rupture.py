@@ -11,6 +11,8 @@ until du/dt returns to 0 somewhere (Gamma = 1) or a front stops outrunning the w
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -112,6 +114,30 @@ class Fronts:
             out[chosen] = times[panel] + legendre.legval(inside, self.within[sign][:, panel], tensor=False)
         return out
 
+    def arrival_at(self, x: float) -> float:
+        """T at one point, as `arrival`: root finding asks for thousands, one at a time."""
+        sign = -1.0 if x < 0.0 else 1.0
+        edges, starts, within = self._lists[sign]
+        distance = abs(x)
+        if distance > edges[-1]:
+            return math.nan
+        panel = min(bisect_right(edges, distance) - 1, len(edges) - 2)
+        s = 2.0 * (distance - edges[panel]) / (edges[panel + 1] - edges[panel]) - 1.0
+        # Clenshaw's recurrence for a Legendre series.
+        coefficients = within[panel]
+        b1 = b2 = 0.0
+        for k in range(len(coefficients) - 1, 0, -1):
+            b1, b2 = coefficients[k] + (2 * k + 1) / (k + 1) * s * b1 - (k + 1) / (k + 2) * b2, b1
+        return starts[panel] + coefficients[0] + s * b1 - 0.5 * b2
+
+    @cached_property
+    def _lists(self) -> dict[float, tuple[list, list, list]]:
+        """Panel edges, times and coefficients by side as lists, which are quicker one element at a time."""
+        return {
+            sign: (self.edges[sign].tolist(), self.times[sign].tolist(), self.within[sign].T.tolist())
+            for sign in (-1.0, 1.0)
+        }
+
     def quadrature(self, left: float, right: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Nodes x of an integral of tau from left to right, weights with tau in them, and T at the nodes."""
         x, weight, entered, edges = self._whole
@@ -143,7 +169,7 @@ class Fronts:
                 f"time: {time!r}; allowed: < {self.times[sign][-1]:g}, when the fronts were asked for"
             )
         return float(
-            root_between(lambda x: float(self.arrival(np.array([sign * x]))[0]) - time, 0.0, last, xtol=1e-13)
+            root_between(lambda x: self.arrival_at(sign * x) - time, 0.0, last, xtol=1e-13)
         )
 
     def cone(self, y: float, time: float) -> tuple[float, float]:
@@ -153,7 +179,7 @@ class Fronts:
             last = float(self.edges[sign][-1])
 
             def late(x: float, s: float = sign) -> float:
-                return time - float(self.arrival(np.array([x]))[0]) - s * (x - y)
+                return time - self.arrival_at(x) - s * (x - y)
 
             # From y itself when it has slipped, or from x = 0.
             start = y
@@ -205,7 +231,7 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
 
     Source: Riemann's solution (module docstring).
     """
-    arrived = fronts.arrival(np.array([y]))[0]
+    arrived = fronts.arrival_at(y)
     if not arrived < time:
         return 0.0
     left, right = fronts.cone(y, time)
@@ -304,9 +330,9 @@ class ArrestingCrack:
     def time_at(self, position: float) -> float:
         """When the left front reaches a position in (x_minus, 0]."""
         if position >= self.zero:
-            return float(self.fronts.arrival(np.array([position]))[0])
+            return self.fronts.arrival_at(position)
         entry = self.entry_for(position)
-        return entry + float(self.fronts.arrival(np.array([entry]))[0]) - position
+        return entry + self.fronts.arrival_at(entry) - position
 
     def share_time(self, share: float) -> float:
         """When the left front has covered a share of |x_minus|, in (0, 1)."""
