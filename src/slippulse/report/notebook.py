@@ -29,6 +29,7 @@ __all__ = [
     "config",
     "errata",
     "figure",
+    "further",
     "gallery",
     "grid_studies",
     "inputs",
@@ -70,6 +71,12 @@ def prose(text: str) -> None:
 def figure(name: str) -> None:
     """Put a figure into the report, if this run has it."""
     show(gallery.figure(name))
+
+
+def further() -> None:
+    """Put the included figures that the text does not place into the report."""
+    for name in gallery.unplaced:
+        figure(name)
 
 
 def errata() -> str:
