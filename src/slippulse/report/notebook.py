@@ -16,12 +16,13 @@ from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs
 from .ledger import Ledger
-from .markdown import NARROW, WIDE
+from .markdown import CLOSE, SMALL, WIDE
 from .numerals import number, percent, setting
 from .prose import fill
 
 __all__ = [
-    "NARROW",
+    "CLOSE",
+    "SMALL",
     "WIDE",
     "Prestress",
     "alteration_note",
