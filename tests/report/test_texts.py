@@ -68,11 +68,16 @@ def test_every_citation_is_in_the_bibliography_and_every_entry_is_cited(source, 
     assert set(re.findall(r"@([A-Z]\w+)", source)) == entries
 
 
-def test_a_figure_without_a_caption_or_a_place_is_refused():
-    with pytest.raises(ValueError, match="'b': no caption"):
-        Gallery(["b"], ["a", "b"], {"a": "text"}, "folder")
-    with pytest.raises(ValueError, match="'b': has no place"):
-        Gallery(["b"], ["a"], {"a": "text", "b": "text"}, "folder")
+def test_a_figure_that_the_text_does_not_place_comes_last():
+    gallery = Gallery(["new_one", "a"], ["a"], {"a": "text"}, "folder")
+    assert gallery.unplaced == ["new_one"]
+    assert "**Figure 2.** new one" in gallery.figure("new_one")
+
+
+def test_every_figure_of_the_workflow_has_a_caption_and_a_place(project, source, manuscript):
+    figures = {path.stem for path in (project / "workflow/report").glob("*.rst")}
+    assert len(figures) >= 17
+    assert figures <= set(placed_figures(source))
 
 
 def test_figures_are_numbered_in_the_order_of_the_text():

@@ -69,9 +69,9 @@ def test_strong_damping_under_the_elastic_rule(v):
 
 
 def test_strong_damping_under_the_total_rule():
-    """M_+(0) falls as 1/b at fixed speed."""
+    """M_+(0) falls as 1/b at fixed speed, up to a correction that falls as ln(b)/b."""
     products = [sp.theory.prestress_for_speed(1.5, b) * b for b in (4.0, 20.0, 100.0)]
-    assert 0.0 < products[2] - products[1] < 0.5 * (products[1] - products[0])
+    assert 0.0 < products[2] - products[1] < 0.6 * (products[1] - products[0])
 
 
 @pytest.mark.parametrize(("tau", "gamma", "dx"), [(0.5, 0.65, 0.5), (0.3, 0.2, 0.2), (0.6, 0.3, 1.0)])

@@ -25,21 +25,15 @@ class Gallery:
     captions : per name, Markdown
     folder : where NAME.pdf and NAME.png are
 
-    Raises
-    ------
-    ValueError
-        If an included figure has no caption or no place in the text, naming it.
+    An included figure that the text does not place comes after those that it does; one without a caption has its name.
     """
 
     def __init__(
         self, included: list[str], placed: list[str], captions: Mapping[str, str], folder: str
     ) -> None:
-        for name in included:
-            if name not in captions:
-                raise ValueError(f"figure {name!r}: no caption; allowed: {', '.join(captions)}")
-            if name not in placed:
-                raise ValueError(f"figure {name!r}: has no place in the text; allowed: {', '.join(placed)}")
         self.order = [name for name in placed if name in included]
+        self.unplaced = [name for name in included if name not in placed]
+        self.order += self.unplaced
         self.captions = captions
         self.folder = Path(folder)
 
@@ -47,7 +41,7 @@ class Gallery:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
         if name not in self.order:
             return ""
-        caption = " ".join(self.captions[name].split())
+        caption = " ".join(self.captions.get(name, name.replace("_", " ")).split())
         number = self.order.index(name) + 1
         alternative = f"Figure {number}: {name.partition('_')[2].replace('_', ' ')}"
         # No extension: the vector file for print, the picture for the browser.

@@ -7,9 +7,14 @@ from collections.abc import Sequence
 # Wide enough that pandoc takes the dashes as relative widths.
 FULL = 200
 
-# What stands between the two is on pages on their side in print, and in small type in a browser.
-WIDE = '`````{=html}\n<div class="wide">\n`````\n\n`````{=typst}\n#sideways[\n`````'
-NARROW = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
+
+def _between(typst: str) -> str:
+    return f'`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{typst}[\n`````'
+
+
+# A long table stands between WIDE or SMALL and CLOSE: on pages on their side, or in small type over several pages.
+WIDE, SMALL = _between("sideways"), _between("small")
+CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], widths: Sequence[int], align: str) -> str:

@@ -16,12 +16,13 @@ from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs
 from .ledger import Ledger
-from .markdown import NARROW, WIDE
+from .markdown import CLOSE, SMALL, WIDE
 from .numerals import number, percent, setting
 from .prose import fill
 
 __all__ = [
-    "NARROW",
+    "CLOSE",
+    "SMALL",
     "WIDE",
     "Prestress",
     "alteration_note",
@@ -29,6 +30,7 @@ __all__ = [
     "config",
     "errata",
     "figure",
+    "further",
     "gallery",
     "grid_studies",
     "inputs",
@@ -70,6 +72,12 @@ def prose(text: str) -> None:
 def figure(name: str) -> None:
     """Put a figure into the report, if this run has it."""
     show(gallery.figure(name))
+
+
+def further() -> None:
+    """Put the included figures that the text does not place into the report."""
+    for name in gallery.unplaced:
+        figure(name)
 
 
 def errata() -> str:
