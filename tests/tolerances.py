@@ -63,6 +63,8 @@ BOUNDARY_BELOW = 0.011
 BOUNDARY_ABOVE = 0.03
 # Without damping the growth beyond the bound of order 4 begins more slowly.
 BOUNDARY_ABOVE_UNDAMPED = 0.05
+# A locked front advances one block in whole steps: what is left is the fit over a path that ends within a step.
+LOCKED = 1e-3
 
 # --- Physics ----------------------------------------------------------------------------------------------------
 
