@@ -27,6 +27,7 @@ rule all:
     input:
         figure_files(FIGURES | STUDIES),
         "results/claims.json",
+        "results/studies/requirements.csv",
         "results/manuscript/replication.html",
         "results/manuscript/replication.pdf",
     message:

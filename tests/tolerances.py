@@ -63,6 +63,12 @@ BOUNDARY_BELOW = 0.011
 BOUNDARY_ABOVE = 0.03
 # Without damping the growth beyond the bound of order 4 begins more slowly.
 BOUNDARY_ABOVE_UNDAMPED = 0.05
+# A locked front advances one block in whole steps: what is left is the fit over a path that ends within a step.
+LOCKED = 1e-3
+# Work over sliding blocks and steps: the mean over time against the mean over steps, which events crowd.
+WORK = 0.02
+# Exponents of the work, from lattices of 60 blocks a pulse up and after 50 units of time, a crack at first.
+EXPONENT = 0.02
 
 # --- Physics ----------------------------------------------------------------------------------------------------
 

@@ -45,9 +45,14 @@ INPUTS = {
     "study_stability_of_pulses": ["pulses_across_a_step", "regimes_beyond"],
     "study_extremes": [],
     "study_stability": [],
+    "study_accuracy_cost": [],
 }
 # Studies of the solver, whose tables come from runs of their own.
-TABLES = {"study_extremes": ["extremes"], "study_stability": ["stability"]}
+TABLES = {
+    "study_extremes": ["extremes"],
+    "study_stability": ["stability"],
+    "study_accuracy_cost": ["accuracy_cost"],
+}
 
 
 def thinned(values: list, count: int) -> list:

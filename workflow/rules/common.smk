@@ -115,6 +115,7 @@ STUDIES = {
     "study_stability_of_pulses": {"data": ["pulses_across_a_step", "regimes_beyond"]},
     "study_extremes": {"studies": ["extremes"]},
     "study_stability": {"studies": ["stability"]},
+    "study_accuracy_cost": {"studies": ["accuracy_cost"]},
 }
 
 # The replication report: the figures that it includes, the simulations whose numbers it quotes, what it is made of.

@@ -1,0 +1,137 @@
+"""Error against cost for every scheme, order, step and spacing, and how the textbook front locks on its step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from .style import BLACK, BLUE, CYCLE, GREY, PAGE, new_figure, panel_letter
+
+PANELS = {
+    "front_speed": "front speed",
+    "peak_velocity": "peak velocity",
+    "width": "pulse width",
+    "transition_time": r"$T_\mathrm{trans}$, $\Gamma = 1$",
+    "arrest_position": r"$\bar x_-$, $\Gamma = 0$",
+    "energy": "energy balance",
+}
+# Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
+SIZES = {1.0: 5.0, 0.5: 3.6, 0.25: 2.2}
+# How far below the exact speed a plateau may lie and still be named.
+REACH = 0.3
+
+
+def table(
+    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+) -> pd.DataFrame:
+    """The rows of the study as they are drawn."""
+    return measured["accuracy_cost"]
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """Six quantities against the work, and the speed of the front against the step."""
+    figure = new_figure(PAGE, 6.8)
+    grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 1.05])
+    trade = table[table["part"] == "trade"]
+    for number, (name, title) in enumerate(PANELS.items()):
+        axes = figure.add_subplot(grid[number // 3, number % 3])
+        draw_trade(axes, trade, name)
+        axes.set_title(title, fontsize=8)
+        panel_letter(axes, "abcdef"[number])
+        if number % 3 == 0:
+            axes.set_ylabel("relative error")
+        if number >= 3:
+            axes.set_xlabel("work (stencil passes over a block)")
+    figure.legend(
+        handles=handles(trade), loc="outside upper center", ncols=9, columnspacing=1.0, handletextpad=0.3
+    )
+    below = figure.add_subplot(grid[2, :])
+    draw_locking(below, table[table["part"] == "locking"])
+    panel_letter(below, "g")
+    return figure
+
+
+def draw_trade(axes, rows: pd.DataFrame, name: str) -> None:
+    """One mark a setting; the textbook scheme joined over its steps, presets ringed and joined over their spacings."""
+    textbook = rows[rows["scheme"] == "fixed_step"]
+    axes.plot(
+        textbook["work"], textbook[name], "x-", color=BLACK, markersize=3.5, linewidth=0.6, gid="textbook"
+    )
+    local = rows[rows["scheme"] == "localised"]
+    for colour, (_, of_order) in zip(CYCLE, local.groupby("order"), strict=False):
+        for step, marks in of_order.groupby("step"):
+            axes.plot(
+                marks["work"], marks[name], "o", color=colour, markersize=SIZES.get(step, 3.0), alpha=0.8,
+                markeredgewidth=0.0, gid="localised",
+            )  # fmt: skip
+    presets = rows[rows["preset"].notna()]
+    axes.plot(
+        presets["work"], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none", gid="preset"
+    )
+    for preset in presets.itertuples():
+        axes.annotate(
+            preset.preset,
+            (preset.work, getattr(preset, name)),
+            xytext=(4, 6),
+            textcoords="offset points",
+            fontsize=6,
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(right=6.0 * rows["work"].max())
+
+
+def handles(rows: pd.DataFrame) -> list[Line2D]:
+    """Legend: colours are orders, sizes steps."""
+    orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
+    spacings = ", ".join(f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique())
+    out = [Line2D([], [], color=BLACK, marker="x", linewidth=0.6, label=f"textbook, dx = {spacings}")]
+    out += [
+        Line2D([], [], color=colour, marker="o", linestyle="none", label=f"order {order:g}")
+        for colour, order in zip(CYCLE, orders, strict=False)
+    ]
+    return out + [
+        Line2D([], [], color=GREY, marker="o", linestyle="none", markersize=size, label=f"step {step:g} dx")
+        for step, size in SIZES.items()
+    ]
+
+
+def draw_locking(axes, rows: pd.DataFrame) -> None:
+    """Front speed of both schemes, the exact one, and the speeds dx/(n dt) that the textbook scheme locks on."""
+    exact = float(rows["exact"].iloc[0])
+    fixed = rows[rows["scheme"] == "fixed_step"]
+    steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
+    low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03
+    for n in range(1, 12):
+        locked = 1.0 / (n * steps)
+        shown = np.where((locked > low) & (locked < high), locked, np.nan)
+        axes.plot(steps, shown, color="0.75", linewidth=0.8, gid="locked")
+    axes.axhline(exact, color=BLUE, linewidth=0.9)
+    axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, markersize=3.5, gid="fixed_step")
+    local = rows[rows["scheme"] == "localised"]
+    axes.plot(
+        local["step"],
+        local["front_speed"],
+        "o",
+        color=BLUE,
+        fillstyle="none",
+        markersize=4.0,
+        gid="localised",
+    )
+    axes.set_ylim(low, high)
+    axes.set_xlabel(r"time step $\Delta t\,/\,\mathrm{d}\bar x$")
+    axes.set_ylabel("front speed")
+    marks = [
+        Line2D([], [], color=BLACK, marker="x", linestyle="none", label="textbook scheme"),
+        Line2D([], [], color=BLUE, marker="o", fillstyle="none", linestyle="none", label="localised scheme"),
+        Line2D([], [], color=BLUE, linewidth=0.9, label="exact"),
+        Line2D(
+            [], [], color="0.75", linewidth=0.8, label=r"$\mathrm{d}\bar x/(n\,\Delta t)$, $n = 1, 2, \dots$"
+        ),
+    ]
+    axes.legend(handles=marks, loc="upper left", ncols=2)
