@@ -8,17 +8,19 @@ PRESET ?=
 OVERLAY ?=
 TARGET ?=
 ALLOW_LARGE ?=
+AGAINST ?=
 # Through the environment, so that no value is read as a command.
-export CORES PRESET OVERLAY TARGET
+export CORES PRESET OVERLAY TARGET AGAINST
 VENV := .venv
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
 
-.PHONY: help setup lock replicate test check clean distclean
+.PHONY: help setup lock replicate verify test check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
+	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make check       format and lint"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
@@ -47,6 +49,9 @@ replicate: $(READY)
 	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
 	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large=true)) \
 	    $(if $(OVERLAY),--configfile "$$OVERLAY") -- $$TARGET
+
+verify: $(READY)
+	@"$(BIN)/python" -m slippulse.verify results $(if $(AGAINST),--against "$$AGAINST")
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest

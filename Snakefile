@@ -20,6 +20,7 @@ include: "workflow/rules/claims.smk"
 include: "workflow/rules/manuscript.smk"
 include: "workflow/rules/studies.smk"
 include: "workflow/rules/scenes.smk"
+include: "workflow/rules/provenance.smk"
 
 
 rule all:
@@ -30,8 +31,10 @@ rule all:
         "results/studies/requirements.csv",
         "results/manuscript/replication.html",
         "results/manuscript/replication.pdf",
+        "results/provenance.json",
+        "results/index.html",
     message:
-        "Done: every figure is in results/figures, the replication report in results/manuscript"
+        "Done: open results/index.html; the figures are in results/figures, the report in results/manuscript"
 
 
 include: "workflow/rules/targets.smk"

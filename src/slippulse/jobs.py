@@ -249,3 +249,62 @@ def animate_scene(title: str, data: str, output: str) -> None:
     from .sweep import point
 
     save_animation(animate(point(load_dataset(data), 0), title), output)
+
+
+def write_provenance(
+    root: str,
+    config: Mapping,
+    shipped: Mapping,
+    files: Sequence[str],
+    captions: Mapping[str, str],
+    outputs: Mapping[str, str],
+) -> None:
+    """Write what the results were made from, their checksums and their manifest."""
+    import json
+
+    from .provenance import checksums, manifest, provenance
+    from .store import write_whole
+
+    base = Path(outputs["provenance"]).parent
+    facts = provenance(root, config, shipped, base / "benchmarks")
+    comments = {
+        name: " ".join(Path(path).read_text(encoding="utf-8").split(". ")[0].split())
+        for name, path in captions.items()
+    }
+    texts = {
+        "checksums": checksums(files, base),
+        "manifest": manifest(files, base, comments),
+        "provenance": json.dumps(facts, indent=1, ensure_ascii=False) + "\n",
+    }
+    for name, text in texts.items():
+        write_whole(outputs[name], lambda part, text=text: part.write_text(text, encoding="utf-8"))
+
+
+def write_index(
+    figures: Mapping[str, str],
+    studies: Mapping[str, str],
+    scenes: Mapping[str, str],
+    inputs: Mapping[str, str],
+    output: str,
+) -> None:
+    """Write the page that leads to all results."""
+    import json
+
+    from .index_page import captions_from, index_page
+    from .store import write_whole
+
+    claims, facts = (
+        json.loads(Path(inputs[key]).read_text(encoding="utf-8")) for key in ("claims", "provenance")
+    )
+    text = index_page(
+        Path(output).parent, captions_from(figures), captions_from(studies), claims, facts, scenes
+    )
+    write_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def write_scenes_page(scenes: Mapping[str, str], output: str) -> None:
+    """Write the list of scenes."""
+    from .index_page import scenes_page
+    from .store import write_whole
+
+    write_whole(output, lambda part: part.write_text(scenes_page(scenes), encoding="utf-8"))

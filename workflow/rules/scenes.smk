@@ -4,6 +4,7 @@
 rule scenes:
     input:
         expand("results/scenes/{scene}.{ending}", scene=SCENES, ending=["png", "html", "gif"]),
+        "results/scenes/index.html",
     message:
         "Done: every scene is in results/scenes, as HTML, PNG, PDF, CSV and GIF"
 
@@ -114,3 +115,21 @@ rule animate_scene:
         "Animating scene {wildcards.scene}"
     script:
         "../scripts/animate_scene.py"
+
+
+rule write_scenes_page:
+    input:
+        sources("index_page.py", "pages.py"),
+        expand("results/scenes/{scene}.png", scene=SCENES),
+    output:
+        "results/scenes/index.html",
+    log:
+        "results/logs/write_scenes_page.log",
+    benchmark:
+        "results/benchmarks/write_scenes_page.tsv"
+    params:
+        scenes={name: scene["title"] for name, scene in SCENES.items()},
+    message:
+        "Writing the list of scenes"
+    script:
+        "../scripts/write_scenes_page.py"

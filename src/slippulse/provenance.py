@@ -1,0 +1,181 @@
+"""Who made what from what: the one file of a run that holds times, and the manifest of everything it made."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import yaml
+
+from .versions import PACKAGES
+
+
+def file_digest(path: str | Path) -> str:
+    """SHA-256 of a file."""
+    digest = hashlib.sha256()
+    with open(path, "rb") as file:
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def tree_digest(root: str | Path, paths: Iterable[str | Path]) -> str:
+    """SHA-256 over names and contents of files, independent of their order."""
+    root, digest = Path(root), hashlib.sha256()
+    for path in sorted(Path(path) for path in paths):
+        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def source_files(root: str | Path) -> list[Path]:
+    """Everything that a result may depend on besides the configuration: library, workflow, report."""
+    root = Path(root)
+    found = [root / "Snakefile"]
+    for folder, pattern in (("src", "*.py"), ("workflow", "*"), ("manuscript", "*")):
+        found += [
+            path
+            for path in (root / folder).rglob(pattern)
+            if path.is_file() and "__pycache__" not in path.parts
+        ]
+    return found
+
+
+def changes(shipped: object, config: object, key: str = "") -> list[dict]:
+    """What an overlay changed: one entry a value, with the shipped one beside it.
+
+    Parameters
+    ----------
+    shipped, config : the configuration without and with overlays
+    key : where in the configuration both stand
+
+    Returns
+    -------
+    list of dicts with key, shipped, here; None where one side has nothing
+    """
+    if isinstance(shipped, Mapping) and isinstance(config, Mapping):
+        names = [*shipped, *(name for name in config if name not in shipped)]
+        return [
+            change
+            for name in names
+            for change in changes(shipped.get(name), config.get(name), f"{key}.{name}".lstrip("."))
+        ]
+    return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
+
+
+def git_state(root: str | Path) -> dict | None:
+    """Commit and whether files differ from it; None outside a repository or without git."""
+
+    def ask(*arguments: str) -> str:
+        done = subprocess.run(
+            ["git", "-C", str(root), *arguments], capture_output=True, text=True, timeout=30, check=True
+        )
+        return done.stdout.strip()
+
+    try:
+        changed = ask("status", "--porcelain", "--untracked-files=no").splitlines()
+        return {"commit": ask("rev-parse", "HEAD"), "changed_files": sorted(line[3:] for line in changed)}
+    except (OSError, subprocess.SubprocessError):
+        return None
+
+
+def machine_class() -> dict:
+    """What kind of machine: no name of a host or a user."""
+    memory = None
+    if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
+        memory = round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30)
+    model = ""
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
+        model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
+    return {
+        "system": platform.system(),
+        "architecture": platform.machine(),
+        "processor": model,
+        "cores": os.cpu_count(),
+        "memory_GiB": memory,
+    }
+
+
+def job_times(benchmarks: str | Path) -> dict[str, float]:
+    """Seconds that the jobs of each rule took, all together, from their benchmark files."""
+    totals: dict[str, float] = {}
+    for path in sorted(Path(benchmarks).rglob("*.tsv")):
+        rule = path.relative_to(benchmarks).parts[0].removesuffix(".tsv")
+        rows = path.read_text(encoding="utf-8").splitlines()[1:]
+        totals[rule] = totals.get(rule, 0.0) + sum(float(row.split("\t")[0]) for row in rows)
+    return {rule: round(seconds, 2) for rule, seconds in totals.items()}
+
+
+def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: str | Path) -> dict:
+    """Everything that a result depends on.
+
+    Parameters
+    ----------
+    root : folder of the project
+    config, shipped : the configuration with and without overlays
+    benchmarks : folder of the jobs' benchmark files
+    """
+    from importlib.metadata import version
+
+    return {
+        "overlay": changes(shipped, config),
+        "config": dict(config),
+        "source_digest": tree_digest(root, source_files(root)),
+        "lock_digest": file_digest(Path(root) / "requirements.lock"),
+        "git": git_state(root),
+        "versions": {"python": platform.python_version()}
+        | {package: version(package) for package in (*PACKAGES, "snakemake", "matplotlib", "pandas")},
+        "implementation": sys.implementation.name,
+        "machine": machine_class(),
+        "times": {
+            "written": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
+            "seconds_of_jobs": job_times(benchmarks),
+        },
+    }
+
+
+def checksums(files: Sequence[str], base: str | Path) -> str:
+    """Lines as of sha256sum, with paths relative to a folder, in order of the path."""
+    names = sorted(str(Path(file).relative_to(base)) for file in files)
+    return "".join(f"{file_digest(Path(base) / name)}  {name}\n" for name in names)
+
+
+def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
+    """A CODECHECK manifest that lists every output, with what it is."""
+
+    def comment(name: str) -> str:
+        path = Path(name)
+        if path.stem in comments:
+            return f"{comments[path.stem]} ({path.suffix[1:].upper()})"
+        return COMMENTS.get(path.parts[0], COMMENTS.get(name, "result"))
+
+    names = sorted(str(Path(file).relative_to(base)) for file in files)
+    content = {
+        "version": "https://codecheck.org.uk/spec/config/1.0/",
+        "paper": {
+            "title": "A minimal model for the onset of slip pulses in frictional rupture",
+            "authors": [
+                {"name": name}
+                for name in ("Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard")
+            ],
+            "reference": "https://doi.org/10.1103/PhysRevE.103.052802",
+        },
+        "manifest": [{"file": name, "comment": comment(name)} for name in names],
+    }
+    return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
+
+
+COMMENTS = {
+    "data": "simulated data, netCDF-4",
+    "measurements": "measured numbers, one row a run",
+    "uncertainties": "grid study of every measured number",
+    "manuscript": "the replication report",
+    "claims.json": "what the paper says, what was measured, the verdict",
+}

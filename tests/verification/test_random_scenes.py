@@ -1,0 +1,91 @@
+"""Invariants of the model over hundreds of random valid scenes, extremes included."""
+
+from __future__ import annotations
+
+import collections
+
+import numpy as np
+import tolerances as tol
+from hypothesis import HealthCheck, given, settings
+from reference.random_scenes import mirrored, random_scenes, sampled
+
+import slippulse as sp
+
+FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
+EXAMPLES = 600
+SETTINGS = settings(
+    max_examples=EXAMPLES,
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+seen: collections.Counter = collections.Counter()
+
+
+@SETTINGS
+@given(random_scenes())
+def test_invariants(scene):
+    run = sp.simulate(scene, sampled(scene))
+    localised = scene.scheme == "localised"
+    release, stick = run["release_time"].values, run["stick_time"].values
+    seen.update(
+        {
+            "scenes": 1,
+            "in which blocks slip": int(np.isfinite(release).any()),
+            "in which blocks stick": int(np.isfinite(stick).any()),
+            "asymmetric": int(not scene.symmetric),
+            "stress boundary": int(scene.boundary == "stress"),
+            "textbook scheme": int(not localised),
+            "strongly damped": int(scene.damping_ratio >= 1.0),
+        }
+    )
+
+    # Slip velocity is never negative, slip never decreases.
+    for name in ("slip_velocity", "sample_velocity"):
+        assert np.nanmin(run[name].values) >= 0.0
+    assert np.nanmin(np.diff(run["sample_slip"].values, axis=0)) >= 0.0
+
+    # Nothing is released before a neighbour: fronts run outwards from what was released at the start.
+    late = np.where(np.isfinite(release), release, np.inf)
+    after = np.flatnonzero(np.isfinite(release) & (release > 0.0))
+    assert np.all(np.minimum(late[after - 1], late[after + 1]) <= release[after])
+    # A block sticks after it was released.
+    assert np.all(stick[np.isfinite(stick)] >= release[np.isfinite(stick)])
+
+    if localised:
+        assert largest_stress_of_stuck_blocks(scene, run) <= 1.0 + tol.STRESS_AT_END
+        allowed = tol.RANDOM_ENERGY if run.attrs["steps"] >= 20 else tol.RANDOM_ENERGY_FEW_STEPS
+        assert run.attrs["energy_residual"] < allowed or scene.damping_ratio > 1.0
+        assert ("energy" in run.attrs["flags"]) == (run.attrs["energy_residual"] > 1e-2)
+
+    other = sp.simulate(mirrored(scene))
+    assert other.sizes == {"x": run.sizes["x"]}
+    for name in FIELDS:
+        one, two = run[name].values, other[name].values[::-1]
+        assert np.array_equal(np.isfinite(one), np.isfinite(two))
+        assert np.max(np.abs(one - two), where=np.isfinite(one), initial=0.0) < tol.MIRROR
+
+
+def largest_stress_of_stuck_blocks(scene: sp.Scene, run) -> float:
+    """From the fields at the end, by the equation as it is printed (damping only where the rule includes it)."""
+    slip, velocity = run["slip"].values, run["slip_velocity"].values
+    stress = run["prestress"].values - scene.gamma * slip
+    stress[1:-1] += np.diff(slip, 2) / scene.dx**2
+    if scene.release == "total":
+        stress[1:-1] += scene.beta * np.diff(velocity, 2) / scene.dx**2
+    sliding = np.isfinite(run["release_time"].values) & ~np.isfinite(run["stick_time"].values)
+    return float(np.max(stress[1:-1][~sliding[1:-1]], initial=-np.inf))
+
+
+def test_the_scenes_were_as_varied_as_meant():
+    assert seen["scenes"] >= 500
+    assert seen["in which blocks slip"] > 0.5 * seen["scenes"]
+    for kind in (
+        "in which blocks stick",
+        "asymmetric",
+        "stress boundary",
+        "textbook scheme",
+        "strongly damped",
+    ):
+        assert 0.1 * seen["scenes"] < seen[kind] < 0.95 * seen["scenes"], (kind, seen)

@@ -1,0 +1,79 @@
+# What the results were made from, and what they are: provenance, checksums, manifest.
+
+NEEDS = list((FIGURES | STUDIES).values())
+# Every file of the paper but logs, benchmarks and what is written here.
+RESULTS = sorted(
+    {
+        *figure_files(FIGURES | STUDIES),
+        *(f"results/data/{name}.nc" for needs in NEEDS for name in needs.get("data", [])),
+        *(f"results/data/{name}.nc" for needs in NEEDS for name in needs.get("measured", [])),
+        *(f"results/data/{name}.nc" for name in CLAIM_SIMULATIONS),
+        *(f"results/measurements/{name}.csv" for needs in NEEDS for name in needs.get("measured", [])),
+        *(f"results/measurements/{name}.csv" for name in CLAIM_SIMULATIONS),
+        *(f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS),
+        "results/claims.json",
+        "results/manuscript/replication.html",
+        "results/manuscript/replication.pdf",
+    }
+)
+
+
+def builtins_of(value):
+    """Plain dicts and lists, whose changes Snakemake sees."""
+    if isinstance(value, dict):
+        return {key: builtins_of(entry) for key, entry in value.items()}
+    return [builtins_of(entry) for entry in value] if isinstance(value, list) else value
+
+
+def captions_of(names):
+    """Path of each figure's caption."""
+    return {name: str(Path(workflow.basedir) / f"workflow/report/{name}.rst") for name in names}
+
+
+rule write_provenance:
+    input:
+        sources("provenance.py"),
+        list(captions_of(FIGURES | STUDIES).values()),
+        LOCK,
+        files=RESULTS,
+    output:
+        provenance="results/provenance.json",
+        checksums="results/checksums.txt",
+        manifest="results/codecheck.yml",
+    log:
+        "results/logs/write_provenance.log",
+    benchmark:
+        "results/benchmarks/write_provenance.tsv"
+    params:
+        root=str(workflow.basedir),
+        config=builtins_of(config),
+        shipped=builtins_of(SHIPPED),
+        captions=captions_of(FIGURES | STUDIES),
+    message:
+        "Noting what the results were made from"
+    script:
+        "../scripts/write_provenance.py"
+
+
+rule write_index:
+    input:
+        sources("index_page.py", "pages.py"),
+        list(captions_of(FIGURES | STUDIES).values()),
+        pngs=[f"results/figures/{name}.png" for name in FIGURES | STUDIES],
+        claims="results/claims.json",
+        provenance="results/provenance.json",
+        report="results/manuscript/replication.html",
+    output:
+        "results/index.html",
+    log:
+        "results/logs/write_index.log",
+    benchmark:
+        "results/benchmarks/write_index.tsv"
+    params:
+        figures=captions_of(FIGURES),
+        studies=captions_of(STUDIES),
+        scenes={name: scene["title"] for name, scene in SCENES.items()},
+    message:
+        "Writing results/index.html, the page to open"
+    script:
+        "../scripts/write_index.py"

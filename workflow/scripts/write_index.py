@@ -1,0 +1,12 @@
+"""Write the page that leads to all results."""
+
+from slippulse.jobs import logged, write_index
+
+with logged(snakemake.log[0]):
+    write_index(
+        snakemake.params.figures,
+        snakemake.params.studies,
+        snakemake.params.scenes,
+        {key: snakemake.input[key] for key in ("claims", "provenance")},
+        snakemake.output[0],
+    )

@@ -1,0 +1,13 @@
+"""Write provenance, checksums and manifest of the results."""
+
+from slippulse.jobs import logged, write_provenance
+
+with logged(snakemake.log[0]):
+    write_provenance(
+        snakemake.params.root,
+        snakemake.params.config,
+        snakemake.params.shipped,
+        snakemake.input.files,
+        snakemake.params.captions,
+        {key: snakemake.output[key] for key in ("provenance", "checksums", "manifest")},
+    )
