@@ -133,3 +133,5 @@ SCENE_SHARE = 1.5e-2
 # The draft preset's largest errors in front speed and final slip over the shipped levels, as config/README.md lists
 # them, doubled: the examples stop earlier.
 DRAFT_SPEED, DRAFT_SLIP = 2e-3, 6e-3
+# Strong damping under the total rule, at b = 1600: the next term of an expansion in 1/sqrt(b).
+STRONG_DAMPING_ORDER, STRONG_DAMPING_LIMIT = 0.03, 3e-3

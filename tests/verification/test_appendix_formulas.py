@@ -68,10 +68,14 @@ def test_strong_damping_under_the_elastic_rule(v):
     assert errors[1] < 0.3 * errors[0] and errors[2] < 0.3 * errors[1]
 
 
-def test_strong_damping_under_the_total_rule():
-    """M_+(0) falls as 1/b at fixed speed, up to a correction that falls as ln(b)/b."""
-    products = [sp.theory.prestress_for_speed(1.5, b) * b for b in (4.0, 20.0, 100.0)]
-    assert 0.0 < products[2] - products[1] < 0.6 * (products[1] - products[0])
+@pytest.mark.parametrize("v", [1.2, 3.0])
+def test_strong_damping_under_the_total_rule(v):
+    """b tau tends to v - 1/v at fixed speed, with a correction that falls as 1/sqrt(b)."""
+    products = [sp.theory.prestress_for_speed(v, b) * b for b in (100.0, 400.0, 1600.0)]
+    first, second = np.diff(products)
+    assert second / first == pytest.approx(0.5, abs=tolerances.STRONG_DAMPING_ORDER)
+    # Halved by each factor of 4: what is left is as much again.
+    assert products[2] + second == pytest.approx(v - 1.0 / v, rel=tolerances.STRONG_DAMPING_LIMIT)
 
 
 @pytest.mark.parametrize(("tau", "gamma", "dx"), [(0.5, 0.65, 0.5), (0.3, 0.2, 0.2), (0.6, 0.3, 1.0)])
