@@ -5,6 +5,8 @@ from pathlib import Path
 from snakemake.exceptions import WorkflowError
 
 from slippulse.config import ConfigError, resolve, validate
+from slippulse.config import expand as expand_block
+from slippulse.cost import expected_cost
 from slippulse.scenes import scene_block
 from slippulse.overlay import read_overlay
 
@@ -19,6 +21,8 @@ ACCURACY = config["presets"][config["preset"]]
 
 SOURCES = Path(workflow.basedir) / "src/slippulse"
 LOCK = "requirements.lock"
+# Expected seconds on one core.
+LONG_SWEEP = 6.0
 
 
 def sources(*patterns):
@@ -147,6 +151,12 @@ def simulation_block(wildcards):
             f"simulation: {wildcards.simulation!r}; allowed: {', '.join(config['simulations'])}"
         )
     return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+
+
+def sweep_threads(wildcards):
+    """Both cores for a sweep of more than some seconds; two short ones side by side waste less on starting up."""
+    cost = expected_cost(*expand_block(simulation_block(wildcards)))
+    return 2 if cost.hours * 3600 > LONG_SWEEP else 1
 
 
 def coarser_blocks(wildcards):

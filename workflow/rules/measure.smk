@@ -33,7 +33,7 @@ rule study_grid:
         "results/logs/study_grid/{simulation}.log",
     benchmark:
         "results/benchmarks/study_grid/{simulation}.tsv"
-    threads: 2
+    threads: 1
     params:
         blocks=coarser_blocks,
         settings=config["measure"],

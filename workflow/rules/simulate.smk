@@ -32,7 +32,7 @@ rule simulate:
         "results/logs/simulate/{simulation}.log",
     benchmark:
         "results/benchmarks/simulate/{simulation}.tsv"
-    threads: 2
+    threads: sweep_threads
     params:
         block=simulation_block,
     message:
