@@ -135,3 +135,5 @@ SCENE_SHARE = 1.5e-2
 DRAFT_SPEED, DRAFT_SLIP = 2e-3, 6e-3
 # Strong damping under the total rule, at b = 1600: the next term of an expansion in 1/sqrt(b).
 STRONG_DAMPING_ORDER, STRONG_DAMPING_LIMIT = 0.03, 3e-3
+# The exact slip velocity over space and time at dx = 0.01: first order in dx over the Gaussian's width.
+VELOCITY_MAP = 1e-2
