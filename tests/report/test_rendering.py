@@ -119,6 +119,15 @@ def test_a_claim_that_was_not_measured_is_said_to_be_so(make_inputs):
     )
 
 
+def test_a_scene_outside_the_theory_leaves_the_report_standing(make_inputs, shipped):
+    config = copy.deepcopy(shipped)
+    config["simulations"]["space_time_displacement"]["left"] = [-0.3]
+    config["simulations"]["space_time_stress"]["left"] = [0.3]
+    inputs = make_inputs(config)
+    text = execute(f"{inputs.manuscript}/replication.md", inputs)
+    assert "$T_\\mathrm{trans}$ = not measured" in text and r"$\tau_0$ = −0.3" in text
+
+
 def test_the_users_own_kernels_take_no_part(make_inputs, tmp_path, monkeypatch):
     broken = tmp_path / "kernels/python3"
     broken.mkdir(parents=True)

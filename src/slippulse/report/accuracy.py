@@ -9,6 +9,7 @@ import pandas as pd
 
 from ..theory.front_speed import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
+from .attempt import attempt
 from .markdown import table
 from .numerals import number, percent, setting
 
@@ -87,14 +88,14 @@ def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
     for row in measured.itertuples():
         if taus is not None and not np.isclose(row.left, taus).any():
             continue
-        speed = float(front_speed(row.left, row.damping_ratio, row.release))
-        pulse = steady_pulse(row.left, row.gamma, row.beta, speed)
+        speed = attempt(front_speed, row.left, row.damping_ratio, row.release)
+        pulse = attempt(steady_pulse, row.left, row.gamma, row.beta, speed)
         rows.append(
             [
                 setting(row.left),
                 setting(row.damping_ratio),
                 number(row.front_speed_right, 5),
-                number(speed, 5),
+                number(float(speed), 5),
                 number(float(front_speed_undamped(row.left)), 5),
                 number(row.pulse_peak_velocity, 4),
                 number(pulse.peak_velocity, 4),

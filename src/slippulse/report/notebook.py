@@ -12,6 +12,7 @@ from .. import theory
 from ..prestress import Prestress
 from .accuracy import grid_studies, presets, speeds
 from .alterations import alteration_note
+from .attempt import attempt
 from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs
@@ -26,6 +27,7 @@ __all__ = [
     "WIDE",
     "Prestress",
     "alteration_note",
+    "attempt",
     "claim",
     "config",
     "errata",
