@@ -54,7 +54,7 @@ verify: $(READY)
 	@"$(BIN)/python" -m slippulse.verify results $(if $(AGAINST),--against "$$AGAINST")
 
 test: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile
 
 check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check

@@ -16,6 +16,7 @@ use rule simulate as simulate_scene with:
         "results/logs/simulate_scene/{simulation}.log",
     benchmark:
         "results/benchmarks/simulate_scene/{simulation}.tsv"
+    threads: 1
     wildcard_constraints:
         simulation=SCENE_NAMES,
     params:
