@@ -168,9 +168,7 @@ class Fronts:
             raise ValueError(
                 f"time: {time!r}; allowed: < {self.times[sign][-1]:g}, when the fronts were asked for"
             )
-        return float(
-            root_between(lambda x: self.arrival_at(sign * x) - time, 0.0, last, xtol=1e-13)
-        )
+        return float(root_between(lambda x: self.arrival_at(sign * x) - time, 0.0, last, xtol=1e-13))
 
     def cone(self, y: float, time: float) -> tuple[float, float]:
         """The entry points x_l < x_r of the characteristics through (y, time): |x - y| = time - T(x)."""
