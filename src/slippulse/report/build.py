@@ -13,6 +13,7 @@ from .inputs import Inputs
 from .render import render_html, render_pdf
 
 SOURCE = "replication.md"
+HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"
 
 
 def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
@@ -32,4 +33,4 @@ def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
     render_html(text, inputs.manuscript, outputs["html"])
     render_pdf(text, inputs.manuscript, outputs["pdf"])
     verdicts = yaml.safe_dump({claim["id"]: claim["verdict"] for claim in inputs.claims}, sort_keys=False)
-    write_whole(outputs["verdicts"], lambda part: part.write_text(verdicts, encoding="utf-8"))
+    write_whole(outputs["verdicts"], lambda part: part.write_text(HEAD + verdicts, encoding="utf-8"))
