@@ -198,7 +198,7 @@ def negative_level(settings: Mapping, window: float, tolerances: Mapping) -> Ite
             return Measured(time, found["transition_time"], flags, run.attrs["block_updates"])
 
         yield Edge(
-            "negative level", f"tau_l = {level:g}, dx = {dx:g}, b = {ratio:g}, r = {friction_ratio:g}", "T_trans",
+            "negative level", f"tau_l = {level:g}, dx {dx:g}, b {ratio:g}, r {friction_ratio:g}", "T_trans",
             "right" if sound else "flagged", tolerances["share_time"], covered,
         )  # fmt: skip
 
