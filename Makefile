@@ -16,12 +16,13 @@ READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
 
-.PHONY: help setup lock replicate verify test check clean distclean
+.PHONY: help setup lock replicate verify test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
+	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make check       format and lint"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
@@ -55,6 +56,10 @@ verify: $(READY)
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile
+
+benchmark: $(READY)
+	@mkdir -p results/benchmarks
+	@"$(BIN)/python" -m slippulse.benchmark config/config.yaml results/benchmarks
 
 check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check

@@ -29,6 +29,7 @@ rule all:
         figure_files(FIGURES | STUDIES),
         "results/claims.json",
         "results/studies/requirements.csv",
+        "results/figures/study_pipeline_time.png",
         "results/manuscript/replication.html",
         "results/manuscript/replication.pdf",
         "results/provenance.json",

@@ -69,6 +69,9 @@ LOCKED = 1e-3
 WORK = 0.02
 # Exponents of the work, from lattices of 60 blocks a pulse up and after 50 units of time, a crack at first.
 EXPONENT = 0.02
+# The textbook scheme in numpy against the compiled one: a block that overshoots zero sticks with the velocity of the
+# step before in one of them, over 320 steps.
+TEXTBOOK_SLIP = 1e-9
 
 # --- Physics ----------------------------------------------------------------------------------------------------
 

@@ -175,6 +175,16 @@ def run_study(study: str, settings: Mapping, output: str | Path) -> None:
     save_table(import_module(f".studies.{study}", __package__).table(settings), output)
 
 
+def draw_pipeline_time(benchmarks: str, results: str, outputs: Mapping[str, str]) -> None:
+    """Summarise Snakemake's benchmark files in a table and a figure drawn from it."""
+    from .figures.pipeline_time import plot, table
+    from .figures.style import save_figure
+    from .store import load_table, save_table
+
+    save_table(table(benchmarks, results), outputs["csv"])
+    save_figure(plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
+
+
 def draw_figure(
     figure: str, settings: Mapping, data: Sequence[str], measured: Sequence[str], outputs: Mapping[str, str]
 ) -> None:

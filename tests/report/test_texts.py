@@ -76,6 +76,8 @@ def test_a_figure_that_the_text_does_not_place_comes_last():
 
 def test_every_figure_of_the_workflow_has_a_caption_and_a_place(project, source, manuscript):
     figures = {path.stem for path in (project / "workflow/report").glob("*_*.rst")}
+    # Drawn from clocks, so it would make two equal reports differ.
+    figures -= {"study_pipeline_time"}
     assert len(figures) >= 17
     assert figures <= set(placed_figures(source))
 

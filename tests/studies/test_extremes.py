@@ -54,7 +54,7 @@ def test_the_edges_reach_as_far_as_stated(config):
     assert (min(rule["damping_ratio"]["total"]), max(rule["damping_ratio"]["total"])) == (0.0, 100.0)
     assert max(rule["dx"]["pulse"]) == 1.0 and min(rule["dx"]["transition"]) == 1e-3
     assert min(rule["width"]["blocks"]) == 0.5 and max(rule["width"]["wide"]) == 1000.0
-    assert min(level for level, *_ in rule["negative_level"]["level_dx_friction_ratio"]) == -100.0
+    assert min(level for level, *_ in rule["negative_level"]["level_dx_friction_ratio_damping"]) == -100.0
     assert rule["long_run"]["duration"] == 1e5
 
 
@@ -68,7 +68,7 @@ def test_flags_name_their_reason(study):
     table = study("extremes")
     flagged = table[table["verdict"] == FLAGGED]
     found = {flag for text in flagged["message"] for flag in text.split(",")}
-    assert {"died_out", "unresolved_pulse", "reverse_sliding", "unsteady"} <= found
+    assert {"died_out", "unresolved_pulse", "reverse_sliding", "unsteady", "stalled"} <= found
 
 
 def test_the_figure_shows_every_outcome(study):

@@ -10,6 +10,8 @@ RESULTS = sorted(
         *(f"results/data/{name}.nc" for name in CLAIM_SIMULATIONS),
         *(f"results/measurements/{name}.csv" for needs in NEEDS for name in needs.get("measured", [])),
         *(f"results/measurements/{name}.csv" for name in CLAIM_SIMULATIONS),
+        *(f"results/studies/{name}.csv" for needs in NEEDS for name in needs.get("studies", [])),
+        "results/studies/requirements.csv",
         *(f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS),
         "results/claims.json",
         "results/manuscript/replication.html",

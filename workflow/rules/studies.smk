@@ -21,3 +21,28 @@ rule study:
         "Studying {wildcards.study}"
     script:
         "../scripts/run_study.py"
+
+
+rule study_pipeline_time:
+    input:
+        sources("figures/style.py", "figures/pipeline_time.py", "benchmark/records.py"),
+        figure_files(FIGURES | STUDIES),
+        "results/claims.json",
+        "results/studies/requirements.csv",
+    output:
+        png=report(
+            "results/figures/study_pipeline_time.png",
+            caption="../report/study_pipeline_time.rst",
+            category="Studies",
+            labels={"figure": "study_pipeline_time"},
+        ),
+        pdf="results/figures/study_pipeline_time.pdf",
+        csv="results/figures/study_pipeline_time.csv",
+    log:
+        "results/logs/study_pipeline_time.log",
+    benchmark:
+        "results/benchmarks/study_pipeline_time.tsv"
+    message:
+        "Drawing where the time went"
+    script:
+        "../scripts/draw_pipeline_time.py"

@@ -50,6 +50,15 @@ def arrival(run: xr.Dataset, distance: float, side: str = "right") -> float:
     return float(np.interp(distance, distances, np.maximum.accumulate(times)))
 
 
+def longest_wait(run: xr.Dataset, distance: float, side: str = "right") -> float:
+    """Longest time between two blocks of a front on its way to a distance; NaN if it never gets there."""
+    times, distances = path(run, side)
+    if times.size == 0 or distances[-1] < distance:
+        return float("nan")
+    on_the_way = np.maximum.accumulate(times)[: np.searchsorted(distances, distance) + 1]
+    return float(np.max(np.diff(on_the_way), initial=0.0))
+
+
 def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[float, float, float]:
     """Speed, intercept and standard error of a straight line through the last share of a front's path.
 

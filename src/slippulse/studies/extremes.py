@@ -10,8 +10,9 @@ import numpy as np
 import pandas as pd
 
 from ..lattice.driver import run_scene
-from ..measure.fronts import arrival, front_speed, path
+from ..measure.fronts import front_speed, path
 from ..measure.pulses import leading_pulse
+from ..measure.transition import STALL, transition_stress
 from ..prestress import Prestress
 from ..simulation import simulate
 from ..theory.front_speed import front_speed as exact_speed
@@ -173,24 +174,31 @@ def nucleation_width(settings: Mapping, window: float, tolerances: Mapping) -> I
 
 
 def negative_level(settings: Mapping, window: float, tolerances: Mapping) -> Iterator[Edge]:
-    """Levels down to -100 under a stress boundary: reverse sliding, a peak of few blocks, or the right time."""
+    """Levels down to -100 under a stress boundary: reverse sliding, a front that the lattice stalls, the right time."""
     rule = settings["negative_level"]
-    for level, dx, friction_ratio in rule["level_dx_friction_ratio"]:
+    for level, dx, friction_ratio, ratio in rule["level_dx_friction_ratio_damping"]:
         profile = Prestress(level, 0.0)
-        of = scene(profile, 0.0, RATIO, dx, 1.0, friction_ratio=friction_ratio)
-        blocks = math.sqrt(2.0 * math.log1p(-1.0 / level)) / dx
-        reverse = level <= of.reverse_threshold
-        sound = not reverse and blocks >= of.resolved_blocks
+        of = scene(profile, 0.0, ratio, dx, 1.0, friction_ratio=friction_ratio)
+        crack = ArrestingCrack(profile, ratio)
+        time = crack.share_time(rule["share"])
+        distance = abs(crack.balance_position)
+        # Without damping the ringing of the lattice stalls the left front; with it only a coarse lattice does.
+        smooth = (
+            (time - crack.share_time(rule["share"] - dx / distance)) / time if dx < distance else math.inf
+        )
+        sound = level > of.reverse_threshold and ratio > 0.0 and smooth <= STALL
 
-        def covered(of=of, profile=profile) -> Measured:
-            crack = ArrestingCrack(profile, RATIO)
-            time = crack.share_time(rule["share"])
-            run = simulate(scene(profile, 0.0, RATIO, of.dx, 1.3 * time, friction_ratio=of.friction_ratio))
-            found = arrival(run, rule["share"] * abs(crack.balance_position), "left")
-            return Measured(time, found, run.attrs["flags"], run.attrs["block_updates"])
+        def covered(of=of, profile=profile, ratio=ratio, time=time) -> Measured:
+            # A coarse lattice comes late.
+            run = simulate(scene(profile, 0.0, ratio, of.dx, 1.5 * time, friction_ratio=of.friction_ratio))
+            found = transition_stress(run, rule["share"])
+            state = found["transition_state"]
+            flags = [run.attrs["flags"], state if state != "resolved" else ""]
+            flags = ",".join(flag for flag in flags if flag)
+            return Measured(time, found["transition_time"], flags, run.attrs["block_updates"])
 
         yield Edge(
-            "negative level", f"tau_l = {level:g}, dx = {dx:g}, mu ratio {friction_ratio:g}", "T_trans",
+            "negative level", f"tau_l = {level:g}, dx {dx:g}, b {ratio:g}, r {friction_ratio:g}", "T_trans",
             "right" if sound else "flagged", tolerances["share_time"], covered,
         )  # fmt: skip
 

@@ -1,0 +1,31 @@
+"""Snakemake's own records of what each job took."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+
+
+def read_records(folder: str | Path) -> pd.DataFrame:
+    """One row a job: rule (its folder, or its name), job, seconds, processor seconds, memory (MB).
+
+    Parameters
+    ----------
+    folder : where the pipeline's benchmark files are
+    """
+    folder = Path(folder)
+    rows = []
+    for path in sorted(folder.rglob("*.tsv")):
+        inside = path.relative_to(folder)
+        record = pd.read_csv(path, sep="\t", na_values="-").iloc[-1]
+        rows.append(
+            {
+                "rule": inside.parts[0] if len(inside.parts) > 1 else inside.stem,
+                "job": str(inside.with_suffix("").as_posix()),
+                "seconds": float(record["s"]),
+                "processor_seconds": float(record["cpu_time"]),
+                "memory": float(record["max_rss"]),
+            }
+        )
+    return pd.DataFrame(rows, columns=["rule", "job", "seconds", "processor_seconds", "memory"])

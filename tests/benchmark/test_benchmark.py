@@ -1,0 +1,130 @@
+"""What the benchmark compares with does the same work, and its records are read as Snakemake writes them."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import slippulse as sp
+from slippulse.benchmark import __main__ as command
+from slippulse.benchmark import measure, stencils
+from slippulse.benchmark.records import read_records
+from slippulse.figures import pipeline_time
+
+GAMMA, BETA, STEP = 0.3, 0.2, 0.4
+
+
+def sine(blocks: int) -> np.ndarray:
+    """A mode of a chain between fixed ends, at rest there."""
+    return np.sin(np.pi * 7 * np.arange(blocks) / (blocks - 1))
+
+
+def test_the_branch_free_step_is_a_taylor_step_of_order_four():
+    """One mode: slip to order 5 and velocity to order 4 of the damped oscillator, dx = 1."""
+    blocks = 50
+    stiffness = 4.0 * math.sin(0.5 * np.pi * 7 / (blocks - 1)) ** 2
+    derivatives = [1.0, 2.0]
+    for _ in range(4):
+        derivatives.append(-(stiffness + GAMMA) * derivatives[-2] - BETA * stiffness * derivatives[-1])
+    w = np.zeros((6, blocks))
+    w[0], w[1] = sine(blocks), 2.0 * sine(blocks)
+    stencils.taylor_steps(w, np.zeros(blocks), 1, STEP, 1.0, GAMMA, BETA)
+    slip = sum(STEP**k / math.factorial(k) * derivatives[k] for k in range(6))
+    velocity = sum(STEP**k / math.factorial(k) * derivatives[k + 1] for k in range(5))
+    assert w[0] == pytest.approx(slip * sine(blocks), abs=tol.STENCIL)
+    assert w[1] == pytest.approx(velocity * sine(blocks), abs=tol.STENCIL)
+
+
+def test_the_two_stage_stencil_is_symplectic_euler():
+    blocks = 50
+    stiffness = 4.0 * math.sin(0.5 * np.pi * 7 / (blocks - 1)) ** 2
+    slip, velocity = sine(blocks), 2.0 * sine(blocks)
+    stencils.two_stage_steps(slip, velocity, np.zeros(blocks), np.zeros(blocks), 1, STEP, 1.0, GAMMA, BETA)
+    after = 2.0 - STEP * (stiffness + GAMMA + 2.0 * BETA * stiffness)
+    assert velocity == pytest.approx(after * sine(blocks), abs=tol.STENCIL)
+    assert slip == pytest.approx((1.0 + STEP * after) * sine(blocks), abs=tol.STENCIL)
+
+
+def test_plain_numpy_is_the_textbook_scheme():
+    """Against the compiled one, on the same lattice: a crack that turns into two pulses."""
+    scene = sp.Scene(
+        "displacement",
+        sp.Prestress(0.5, 0.5),
+        8.0,
+        0.1,
+        gamma=0.65,
+        beta=0.01,
+        scheme="fixed_step",
+        max_step=0.25,
+    )
+    run = sp.simulate(scene)
+    x = 0.1 * np.arange(-150, 151)
+    slip = stencils.numpy_steps(scene.prestress(x), 320, 0.025, 0.1, 0.65, 0.01)
+    compared = np.interp(run["x"], x, slip)
+    assert compared == pytest.approx(run["slip"].values, abs=tol.TEXTBOOK_SLIP)
+    assert run.attrs["sticks"] > 0
+
+
+def test_the_kernel_is_timed_with_everything_included():
+    scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 5.0, 0.05, gamma=0.65, beta=0.005)
+    rate, blocks = measure.kernel_rate(scene, 10.0)
+    assert rate > 0.0
+    assert 30 < blocks < 80
+
+
+def test_records_are_read_by_rule(tmp_path):
+    head = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n"
+    (tmp_path / "simulate").mkdir()
+    for name, seconds, memory in (
+        ("simulate/a", 2.5, "150.0"),
+        ("simulate/b", 1.5, "-"),
+        ("write_claims", 1.0, "90"),
+    ):
+        text = head + f"{seconds}\t0:00:02\t{memory}\t1\t1\t1\t0\t0\t100\t{2 * seconds}\n"
+        (tmp_path / f"{name}.tsv").write_text(text, encoding="utf-8")
+    records = read_records(tmp_path)
+    assert list(records["rule"]) == ["simulate", "simulate", "write_claims"]
+    assert list(records["job"]) == ["simulate/a", "simulate/b", "write_claims"]
+    assert records["processor_seconds"].sum() == 10.0
+    assert records["memory"].max() == 150.0
+    assert measure.pipeline(tmp_path)["by_rule"] == {"simulate": 4.0, "write_claims": 1.0}
+
+    (tmp_path / "data").mkdir()
+    (tmp_path / "figures").mkdir()
+    (tmp_path / "data/a.nc").write_bytes(b"x" * 1000)
+    (tmp_path / "figures/a.csv").write_bytes(b"x" * 10)
+    table = pipeline_time.table(tmp_path, tmp_path)
+    sizes = table[table["part"] == "bytes"].set_index("rule")["bytes"]
+    assert (sizes["recorded"], sizes["drawn"]) == (1000, 10)
+    left, right = pipeline_time.plot(table).axes
+    assert [patch.get_width() for patch in left.patches] == [4.0, 1.0]
+    assert [patch.get_width() for patch in right.patches if patch.get_gid() == "job"] == [2.5, 1.5, 1.0]
+
+
+def test_without_records_there_is_nothing_to_say(tmp_path):
+    assert measure.pipeline(tmp_path) == {}
+
+
+def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatch, capsys):
+    """On scenes a hundredth of the size."""
+    for name, value in {"DURATION": 20.0, "DX": 0.05, "REPEATS": 1, "POWERS": (3, 4), "LENGTH": 60.0}.items():
+        monkeypatch.setattr(measure, name, value)
+    monkeypatch.setattr(measure, "CRACK", (60.0, 90.0))
+    monkeypatch.setattr(measure, "PULSE", (20.0, 30.0))
+    monkeypatch.setattr(measure, "DURATIONS", (10.0, 20.0))
+    monkeypatch.setattr(measure, "SPACINGS", (0.1, 0.05))
+    command.main(str(project / "config/config.yaml"), str(tmp_path))
+    found = json.loads((tmp_path / "benchmark.json").read_text(encoding="utf-8"))
+    assert set(found) == {
+        "machine", "kernel", "whole_scene", "exponents", "settings", "requirements", "pipeline",
+    }  # fmt: skip
+    assert found["machine"]["cores"] >= 1 and "numba" in found["machine"]["versions"]
+    scene = found["whole_scene"]
+    for kind in ("numba", "numpy"):
+        total = scene["textbook_steps"] * scene["textbook_seconds_a_step"][kind]
+        assert scene["times_faster_than_textbook"][kind] == pytest.approx(total / scene["seconds"])
+    assert "twice the duration" in capsys.readouterr().out
