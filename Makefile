@@ -9,6 +9,7 @@ OVERLAY ?=
 TARGET ?=
 ALLOW_LARGE ?=
 AGAINST ?=
+KILLS ?= 24
 # Through the environment, so that no value is read as a command.
 export CORES PRESET OVERLAY TARGET AGAINST
 VENV := .venv
@@ -16,13 +17,14 @@ READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
 
-.PHONY: help setup lock replicate verify test benchmark check clean distclean
+.PHONY: help setup lock replicate verify faults test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
+	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
 	@echo "make check       format and lint"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
@@ -47,12 +49,16 @@ lock:
 
 replicate: $(READY)
 	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.overlay "$$OVERLAY"
+	@"$(BIN)/python" workflow/unlock.py .
 	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
 	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large=true)) \
 	    $(if $(OVERLAY),--configfile "$$OVERLAY") -- $$TARGET
 
 verify: $(READY)
 	@"$(BIN)/python" -m slippulse.verify results $(if $(AGAINST),--against "$$AGAINST")
+
+faults: $(READY)
+	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile

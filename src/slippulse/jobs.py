@@ -14,18 +14,26 @@ from pathlib import Path
 @contextlib.contextmanager
 def logged(path: str | Path) -> Iterator[None]:
     """Copy what a job says to its log; a failure is one line on the terminal and a traceback in the log."""
-    Path(path).parent.mkdir(parents=True, exist_ok=True)
-    with open(path, "w", encoding="utf-8") as log:
-        terminal = sys.stderr
-        sys.stderr = _Both(terminal, log)
-        try:
-            yield
-        except Exception as error:
+    terminal = sys.stderr
+    try:
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        log = open(path, "w", encoding="utf-8")  # noqa: SIM115
+    except OSError as error:
+        terminal.write(f"{path}: {error.strerror}; allowed: a results folder that can be written\n")
+        raise SystemExit(1) from None
+    sys.stderr = _Both(terminal, log)
+    try:
+        yield
+    except Exception as error:
+        # A disk that is full has no room for the log either.
+        with contextlib.suppress(OSError):
             log.write(traceback.format_exc())
-            terminal.write(f"{type(error).__name__}: {error} (details: {path})\n")
-            raise SystemExit(1) from None
-        finally:
-            sys.stderr = terminal
+        terminal.write(f"{type(error).__name__}: {error} (details: {path})\n")
+        raise SystemExit(1) from None
+    finally:
+        sys.stderr = terminal
+        with contextlib.suppress(OSError):
+            log.close()
 
 
 class _Both:

@@ -38,9 +38,28 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     write_whole(path, lambda part: dataset.to_netcdf(part, engine="h5netcdf", format="NETCDF4"))
 
 
+class UnreadableFile(ValueError):
+    """A file of the pipeline that is cut short, corrupted or edited beyond reading."""
+
+    def __init__(self, path: str | Path, reason: object) -> None:
+        text = " ".join(str(reason).split())[:120]
+        super().__init__(f"{path}: cannot be read ({text}); delete it and run again, and it is made anew")
+
+
 def load_dataset(path: str | Path) -> xr.Dataset:
-    """Read a Dataset into memory and close the file."""
-    return xr.load_dataset(path, engine="h5netcdf")
+    """Read a Dataset into memory and close the file.
+
+    Raises
+    ------
+    UnreadableFile
+        Naming the file and the remedy.
+    """
+    try:
+        return xr.load_dataset(path, engine="h5netcdf")
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        raise UnreadableFile(path, error) from error
 
 
 def save_table(table: pd.DataFrame, path: str | Path) -> None:
@@ -49,5 +68,14 @@ def save_table(table: pd.DataFrame, path: str | Path) -> None:
 
 
 def load_table(path: str | Path) -> pd.DataFrame:
-    """Read a table; empty text stays text."""
-    return pd.read_csv(path, keep_default_na=True, na_filter=True)
+    """Read a table; empty text stays text.
+
+    Raises
+    ------
+    UnreadableFile
+        Naming the file and the remedy.
+    """
+    try:
+        return pd.read_csv(path, keep_default_na=True, na_filter=True)
+    except ValueError as error:
+        raise UnreadableFile(path, error) from error

@@ -1,0 +1,200 @@
+"""Kill a reduced draft run at random instants, over and over; what comes out must be what a quiet run gives.
+
+    make faults             24 kills
+    python tests/faults.py --kills 3 --seed 7
+
+Each run is killed by SIGKILL: Snakemake alone, a job alone, or everything, in turn. The next run clears the lock
+as the make target does and goes on from what is there. Results are compared file by file, byte by byte.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import yaml
+from pipeline_copy import copy_project
+
+PROJECT = Path(__file__).resolve().parents[1]
+TARGETS = (
+    "results/figures/fig07_damage_zone.png",
+    "results/figures/fig08_steady_state_displacement.png",
+    "results/uncertainties/steady_displacement.csv",
+    "results/scenes/one.html",
+)
+OVERLAY = {
+    "preset": "draft",
+    "simulations": {
+        "steady_displacement": {"left": [0.4, 0.5, 0.6, 0.7], "damping_ratio": [0.0, 0.1], "duration": {"time": 20.0}}
+    },
+    "scenes": {
+        "one": {
+            "title": "One", "boundary": "displacement", "left": 0.5, "right": 0.6, "gamma": 0.65, "dx": 0.04,
+            "duration": 10.0,
+        }
+    },
+}  # fmt: skip
+WHOM = ("Snakemake", "a job", "everything")
+
+
+@dataclass
+class Report:
+    """What happened: kills by victim, runs that finished before they were killed, files compared."""
+
+    kills: dict[str, int] = field(default_factory=lambda: dict.fromkeys(WHOM, 0))
+    finished_first: int = 0
+    unlocked: int = 0
+    comparisons: int = 0
+    files: int = 0
+
+
+def prepare(folder: Path) -> Path:
+    """A folder in which the reduced run can be made, its sources linked."""
+    copy_project(PROJECT, folder, link=True)
+    (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
+    return folder
+
+
+def start(folder: Path) -> subprocess.Popen:
+    """A run in a process group of its own."""
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--cores",
+        "2",
+        "--configfile",
+        "overlay.yaml",
+        "--",
+        *TARGETS,
+    ]
+    with open(folder / "said.txt", "a", encoding="utf-8") as said:
+        return subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, start_new_session=True)
+
+
+def unlock(folder: Path) -> bool:
+    """As the make target does before a run; whether there was a lock."""
+    done = subprocess.run(
+        [sys.executable, PROJECT / "workflow/unlock.py", "."],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return "lock is removed" in done.stderr
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Every result but logs and times."""
+    results = folder / "results"
+    return {
+        str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(results.rglob("*"))
+        if path.is_file() and path.relative_to(results).parts[0] not in ("logs", "benchmarks")
+    }
+
+
+def group(leader: int) -> list[int]:
+    """Live members of a process group."""
+    members = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                fields = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+            except OSError:
+                continue
+            if int(fields[2]) == leader and fields[0] != "Z":
+                members.append(int(entry.name))
+    return members
+
+
+def kill(run: subprocess.Popen, whom: str, chance: random.Random) -> None:
+    """SIGKILL to one kind of victim; all that is left of the run is waited for, or killed, before this returns."""
+    members = group(run.pid)
+    jobs = [member for member in members if member != run.pid]
+    if whom == "Snakemake" or not jobs:
+        os.kill(run.pid, signal.SIGKILL)
+        # Jobs in hand go on as orphans and may still write; the next run starts among them.
+    elif whom == "a job":
+        os.kill(chance.choice(jobs), signal.SIGKILL)
+    else:
+        os.killpg(run.pid, signal.SIGKILL)
+    run.wait(timeout=300)
+
+
+def fault_run(folder: Path, kills: int, seed: int, say=print) -> Report:
+    """Kill runs until ``kills`` have been killed; compare each time that one gets to its end.
+
+    Raises
+    ------
+    AssertionError
+        When a run fails, or a result differs from that of a quiet run.
+    """
+    chance, report = random.Random(seed), Report()
+    quiet = prepare(folder / "quiet")
+    began = time.monotonic()
+    assert start(quiet).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(encoding="utf-8")
+    duration = time.monotonic() - began
+    expected = digests(quiet)
+    report.files = len(expected)
+    say(f"A quiet run: {duration:.0f} s, {len(expected)} files")
+
+    harmed = prepare(folder / "harmed")
+    while sum(report.kills.values()) < kills:
+        whom = WHOM[sum(report.kills.values()) % len(WHOM)]
+        run = start(harmed)
+        instant = chance.uniform(0.05, 0.7) * duration
+        try:
+            run.wait(timeout=instant)
+        except subprocess.TimeoutExpired:
+            kill(run, whom, chance)
+            report.kills[whom] += 1
+            say(f"killed {whom} after {instant:.1f} s: {len(digests(harmed))} files there")
+            report.unlocked += unlock(harmed)
+            continue
+        report.finished_first += 1
+        _finish(harmed, expected, report)
+        # A third of the files is taken away, so that the next runs have work.
+        for name in sorted(expected)[chance.randrange(3) :: 3]:
+            (harmed / "results" / name).unlink()
+    _finish(harmed, expected, report)
+    return report
+
+
+def _finish(folder: Path, expected: dict[str, str], report: Report) -> None:
+    report.unlocked += unlock(folder)
+    assert start(folder).wait(timeout=1200) == 0, (folder / "said.txt").read_text(encoding="utf-8")[-4000:]
+    found = digests(folder)
+    differing = sorted(name for name in {*expected, *found} if expected.get(name) != found.get(name))
+    assert not differing, f"other than in a quiet run: {differing}"
+    report.comparisons += 1
+
+
+def main() -> int:
+    """Run it; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--kills", type=int, default=24)
+    parser.add_argument("--seed", type=int, default=1)
+    chosen = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="faults für ") as folder:
+        report = fault_run(Path(folder), chosen.kills, chosen.seed)
+    survived = ", ".join(f"{count} of {whom}" for whom, count in report.kills.items())
+    print(
+        f"{sum(report.kills.values())} kills survived ({survived}; {report.unlocked} stale locks removed,"
+        f" {report.finished_first} runs finished first); {report.files} files the same, byte by byte,"
+        f" {report.comparisons} times"
+    )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
