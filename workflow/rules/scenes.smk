@@ -16,9 +16,9 @@ use rule simulate as simulate_scene with:
         "results/logs/simulate_scene/{simulation}.log",
     benchmark:
         "results/benchmarks/simulate_scene/{simulation}.tsv"
-    threads: 1
     wildcard_constraints:
         simulation=SCENE_NAMES,
+    threads: 1
     params:
         block=block_of_scene,
     message:
