@@ -202,3 +202,15 @@ def block_of_scene(wildcards, coarser=1.0):
 def coarser_blocks_of_scene(wildcards):
     """The same on the two coarser lattices of the grid study."""
     return {float(factor): block_of_scene(wildcards, float(factor)) for factor in ACCURACY["coarser"]}
+
+
+def builtins_of(value):
+    """Plain dicts and lists, whose changes Snakemake sees."""
+    if isinstance(value, dict):
+        return {key: builtins_of(entry) for key, entry in value.items()}
+    return [builtins_of(entry) for entry in value] if isinstance(value, list) else value
+
+
+def captions_of(names):
+    """Path of each figure's caption."""
+    return {name: str(Path(workflow.basedir) / f"workflow/report/{name}.rst") for name in names}

@@ -20,18 +20,6 @@ RESULTS = sorted(
 )
 
 
-def builtins_of(value):
-    """Plain dicts and lists, whose changes Snakemake sees."""
-    if isinstance(value, dict):
-        return {key: builtins_of(entry) for key, entry in value.items()}
-    return [builtins_of(entry) for entry in value] if isinstance(value, list) else value
-
-
-def captions_of(names):
-    """Path of each figure's caption."""
-    return {name: str(Path(workflow.basedir) / f"workflow/report/{name}.rst") for name in names}
-
-
 rule write_provenance:
     input:
         sources("provenance.py"),
@@ -47,7 +35,7 @@ rule write_provenance:
     benchmark:
         "results/benchmarks/write_provenance.tsv"
     params:
-        root=str(workflow.basedir),
+        root=lambda wildcards: str(workflow.basedir),
         config=builtins_of(config),
         shipped=builtins_of(SHIPPED),
         captions=captions_of(FIGURES | STUDIES),
