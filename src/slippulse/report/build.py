@@ -13,7 +13,9 @@ from .inputs import Inputs
 from .render import render_html, render_pdf
 
 SOURCE = "replication.md"
-HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"
+HEAD = (
+    "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"
+)
 
 
 def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
