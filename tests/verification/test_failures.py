@@ -38,7 +38,7 @@ def at_most(calls: int):
 @pytest.mark.parametrize("release", ["total", "elastic"])
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
-    """The published scene with -beta: modes grow at up to 4 beta/dx^2, 40 per unit of time."""
+    """The published scene with -beta: modes grow at up to 2 beta/dx^2, 20 per unit of time."""
     scene = sp.Scene(**PUBLISHED, scheme=scheme, release=release)
     with pytest.raises(sp.UnstableRun, match=r"t = \d"):
         driver.run_scene(scene, progress=at_most(40), damping_sign=-1)

@@ -73,7 +73,7 @@ def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> Steady
         Outside the domain, naming the value and the range.
 
     Source: beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of roots; the
-    real root is a layer of width ~ beta v/(v^2 - 1) at the front and is dropped. beta = 0 gives appendix C of the
+    real root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. beta = 0 gives appendix C of the
     paper before its last step, with any speed.
     """
     check_number("tau0", tau0, above=0.0, below=1.0)

@@ -37,7 +37,7 @@ def prestress_balance_position(prestress: Prestress) -> float:
     ValueError
         If the levels are otherwise: the integral then has no finite value, or never returns to 0.
 
-    Source: equation (10) of the paper, section III C.
+    Source: equation (11) of the paper, section III C.
     """
     far = _far(prestress)
     right, left = float(prestress.level(np.asarray(far))), float(prestress.level(np.asarray(-far)))
