@@ -247,9 +247,9 @@ def draw_scene(
     from .figures import scene
     from .figures.style import save_figure
     from .measure.beside_theory import scene_numbers
+    from .points import point
     from .scene_page import scene_page
     from .store import load_dataset, load_table, save_table, write_whole
-    from .sweep import point
 
     run = point(load_dataset(data), 0)
     numbers = scene_numbers(run.attrs, load_table(study), share)
@@ -263,8 +263,8 @@ def draw_scene(
 def animate_scene(title: str, data: str, output: str) -> None:
     """Write the animation of one scene."""
     from .figures.scene_animation import animate, save_animation
+    from .points import point
     from .store import load_dataset
-    from .sweep import point
 
     save_animation(animate(point(load_dataset(data), 0), title), output)
 

@@ -10,10 +10,9 @@ import xarray as xr
 
 from .lattice.samples import Samples
 from .model import Scene
+from .points import FIELDS, FRONTS
 from .simulation import VARIABLES, simulate
 
-FRONTS = ("release_time", "stick_time")
-FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 RECORDS = ("fronts", "fields", "samples")
 
 
@@ -106,30 +105,4 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
         units, long_name = VARIABLES[name]
         out[name].attrs = {"units": units, "long_name": long_name}
     out.attrs = {"versions": first.attrs["versions"]}
-    return out
-
-
-def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
-    """One run of a sweep as `simulate` returned it, as far as it was recorded."""
-    out = xr.Dataset()
-    scalars = [
-        name
-        for name, variable in sweep.variables.items()
-        if variable.dims == ("point",) and name != "row_size"
-    ]
-    if "row_size" in sweep:
-        ends = np.cumsum(sweep["row_size"].values)
-        rows = slice(int(ends[index] - sweep["row_size"].values[index]), int(ends[index]))
-        for name in ("x", "prestress", *FRONTS, *FIELDS):
-            if name in sweep:
-                out[name] = ("x", sweep[name].values[rows])
-        out = out.set_coords("x")
-    if "sample_time" in sweep:
-        out = out.assign_coords(
-            sample_time=("sample_time", sweep["sample_time"].values[index]),
-            sample_position=("sample_position", sweep["sample_position"].values[index]),
-        )
-        for name in ("sample_slip", "sample_velocity"):
-            out[name] = (("sample_time", "sample_position"), sweep[name].values[index])
-    out.attrs = {name: sweep[name].values[index].item() for name in scalars} | dict(sweep.attrs)
     return out

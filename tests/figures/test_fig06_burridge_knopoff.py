@@ -7,8 +7,8 @@ import pytest
 
 from slippulse import Prestress, Samples, Scene, run_sweep
 from slippulse.figures import fig06_burridge_knopoff as figure
+from slippulse.points import point
 from slippulse.store import load_table, save_table
-from slippulse.sweep import point
 
 LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 

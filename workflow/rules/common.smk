@@ -38,11 +38,12 @@ SIMULATION_SOURCES = KERNEL_SOURCES + sources(
     "checks.py",
     "simulation.py",
     "sweep.py",
+    "points.py",
     "versions.py",
     "theory/transition.py",
     "roots.py",
 )
-MEASURE_SOURCES = sources("measure/*.py", "theory/*.py", "roots.py")
+MEASURE_SOURCES = sources("points.py", "measure/*.py", "theory/*.py", "roots.py")
 
 CLAIM_SOURCES = sources("claims/*.py", "theory/*.py", "roots.py")
 CLAIM_SIMULATIONS = [

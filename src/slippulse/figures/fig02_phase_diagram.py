@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from ..measure.regime import REGIMES
-from ..sweep import point
+from ..points import point
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 
 # Panel letter, simulation, and the columns of its axes in the measured table.

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..measure.fronts import position_at
-from ..sweep import point
+from ..points import point
 from .shared.space_time import draw_map, draw_profile, edges, prestress_profile, velocity_map
 from .style import BLACK, ORANGE, PAGE, new_figure, panel_letter
 

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
-from ..sweep import point
+from ..points import point
 from .shared.pulses import profile_of
 from .style import BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from ..measure.fronts import arrival, path
-from ..sweep import point
+from ..points import point
 from ..theory.rupture import ArrestingCrack
 from .shared.pulses import profile_of
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter

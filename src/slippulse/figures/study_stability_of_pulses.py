@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..measure.pulses import leading_pulse
-from ..sweep import point
+from ..points import point
 from ..theory.front_speed import front_speed
 from ..theory.pulse import steady_pulse
 from .shared.pulses import profile_of

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..sweep import point
+from ..points import point
 from .fronts import front_speed, position_at
 from .pulses import acceleration_amplitude, leading_pulse, slip_variation
 from .regime import classify

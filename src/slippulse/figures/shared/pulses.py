@@ -10,8 +10,8 @@ import pandas as pd
 import xarray as xr
 
 from ...measure.pulses import comoving, leading_pulse
+from ...points import point
 from ...prestress import Prestress
-from ...sweep import point
 from ...theory.front_speed import front_speed
 from ...theory.pulse import paper_pulse, steady_pulse
 from ...theory.rupture import ArrestingCrack
