@@ -50,6 +50,12 @@ def test_every_preset_is_on_the_curve_and_compared(trade, config):
         )
 
 
+@pytest.mark.parametrize("preset", ["draft", "paper"])
+def test_no_measured_setting_is_cheaper_and_better_than_a_preset(trade, preset):
+    (row,) = trade[trade["preset"] == preset].itertuples()
+    assert not isinstance(row.dominated_by, str), row.dominated_by
+
+
 def test_front_speed_is_set_by_the_order(trade):
     """At one spacing and step, each two orders buy at least a factor of four."""
     rows = trade[(trade["scheme"] == "localised") & (trade["dx"] == 0.01) & (trade["step"] == 0.5)].set_index(
