@@ -87,7 +87,10 @@ def _verdicts(claims: Sequence[Mapping]) -> str:
         rows,
         numeric=(3, 4, 5),
     )
-    return f"<p>{len(claims)} claims: {escape(summary)}.</p>\n{table}"
+    return (
+        f"<p>{len(claims)} claims: {escape(summary)}.</p>\n"
+        f"<details>\n<summary>All claims, one by one</summary>\n{table}\n</details>"
+    )
 
 
 def _number(value: float | None, form: str = ".5g") -> str:

@@ -18,6 +18,7 @@ use rule simulate as simulate_scene with:
         "results/benchmarks/simulate_scene/{simulation}.tsv"
     wildcard_constraints:
         simulation=SCENE_NAMES,
+    threads: 1
     params:
         block=block_of_scene,
     message:
@@ -56,6 +57,7 @@ use rule study_grid as study_grid_of_scene with:
         "results/benchmarks/study_grid_of_scene/{simulation}.tsv"
     wildcard_constraints:
         simulation=SCENE_NAMES,
+    threads: 2
     params:
         blocks=coarser_blocks_of_scene,
         settings=config["measure"],
