@@ -30,6 +30,14 @@ def captions_of(names):
     return {name: str(Path(workflow.basedir) / f"workflow/report/{name}.rst") for name in names}
 
 
+def captions_and_settings(names):
+    """What each figure's caption is made from."""
+    return {
+        name: {"caption": path, "settings": builtins_of(figure_settings(name))}
+        for name, path in captions_of(names).items()
+    }
+
+
 rule write_provenance:
     input:
         sources("provenance.py"),
@@ -70,8 +78,8 @@ rule write_index:
     benchmark:
         "results/benchmarks/write_index.tsv"
     params:
-        figures=captions_of(FIGURES),
-        studies=captions_of(STUDIES),
+        figures=captions_and_settings(FIGURES),
+        studies=captions_and_settings(STUDIES),
         scenes={name: scene["title"] for name, scene in SCENES.items()},
     message:
         "Writing results/index.html, the page to open"
