@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -64,7 +65,7 @@ def prepare(folder: Path) -> Path:
     return folder
 
 
-def start(folder: Path) -> subprocess.Popen:
+def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
     """A run in a process group of its own."""
     command = [
         sys.executable,
@@ -149,9 +150,11 @@ def fault_run(folder: Path, kills: int, seed: int, say=print) -> Report:
     say(f"A quiet run: {duration:.0f} s, {len(expected)} files")
 
     harmed = prepare(folder / "harmed")
+    # Every file by name, so that each that is taken away is missed.
+    targets = [f"results/{name}" for name in expected]
     while sum(report.kills.values()) < kills:
         whom = WHOM[sum(report.kills.values()) % len(WHOM)]
-        run = start(harmed)
+        run = start(harmed, targets)
         instant = chance.uniform(0.05, 0.7) * duration
         try:
             run.wait(timeout=instant)
@@ -171,8 +174,11 @@ def fault_run(folder: Path, kills: int, seed: int, say=print) -> Report:
 
 
 def _finish(folder: Path, expected: dict[str, str], report: Report) -> None:
+    targets = [f"results/{name}" for name in expected]
     report.unlocked += unlock(folder)
-    assert start(folder).wait(timeout=1200) == 0, (folder / "said.txt").read_text(encoding="utf-8")[-4000:]
+    assert start(folder, targets).wait(timeout=1200) == 0, (folder / "said.txt").read_text(encoding="utf-8")[
+        -4000:
+    ]
     found = digests(folder)
     differing = sorted(name for name in {*expected, *found} if expected.get(name) != found.get(name))
     assert not differing, f"other than in a quiet run: {differing}"

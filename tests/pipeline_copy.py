@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-PARTS = ("Snakefile", "workflow", "config", "src", "manuscript", "requirements.lock")
+PARTS = ("Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock")
 
 
 def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -87,7 +87,10 @@ def _verdicts(claims: Sequence[Mapping]) -> str:
         rows,
         numeric=(3, 4, 5),
     )
-    return f"<p>{len(claims)} claims: {escape(summary)}.</p>\n{table}"
+    return (
+        f"<p>{len(claims)} claims: {escape(summary)}.</p>\n"
+        f"<details>\n<summary>All claims, one by one</summary>\n{table}\n</details>"
+    )
 
 
 def _number(value: float | None, form: str = ".5g") -> str:
@@ -175,12 +178,35 @@ def _short(value: object) -> str:
     return text if len(text) <= 160 else text[:157] + "..."
 
 
-def captions_from(paths: Mapping[str, str | os.PathLike]) -> dict[str, str]:
-    """Captions as plain text: one line each, without the mark-up of reStructuredText."""
+def captions_from(figures: Mapping[str, Mapping]) -> dict[str, str]:
+    """Captions as plain text: one line each, without mark-up, with the settings that they quote.
+
+    Parameters
+    ----------
+    figures : per figure its caption (a file of reStructuredText) and its settings
+
+    Raises
+    ------
+    ValueError
+        If a caption quotes something else than a setting of its figure.
+    """
     out = {}
-    for name, path in paths.items():
-        text = " ".join(Path(path).read_text(encoding="utf-8").split())
-        out[name] = text.replace("``", "").replace("**", "").replace("\\ ", "")
+    for name, figure in figures.items():
+        text = " ".join(Path(figure["caption"]).read_text(encoding="utf-8").split())
+
+        def value(match: re.Match, settings: Mapping = figure["settings"]) -> str:
+            found = settings
+            for key in re.findall(r'\["(\w+)"\]', match[1]):
+                found = found[key]
+            return str(found)
+
+        text = re.sub(r'\{\{ *snakemake\.params\.settings((?:\["\w+"\])+) *\}\}', value, text)
+        if "{{" in text or "{%" in text:
+            raise ValueError(
+                f"{figure['caption']}: quotes what is no setting; allowed: snakemake.params.settings"
+            )
+        text = re.sub(r"\*(\w[^*]*)\*", r"\1", text.replace("``", "").replace("**", ""))
+        out[name] = text.replace("\\ ", "")
     return out
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 from .checks import ConfigError, nearest, shown
 from .cost import HOW_TO_GO_ON, LARGEST_RUNS, expected_cost, too_large
@@ -118,6 +120,21 @@ def check_targets(arguments: Sequence[str], made: Callable[[str], bool], known: 
                 f"target: {shown(argument)}{nearest(argument, known)}; allowed: a file that a rule makes"
                 " (snakemake --summary lists them)"
             )
+
+
+def check_folder(path: Path) -> None:
+    """Refuse a place for results in which nothing can be written.
+
+    Raises
+    ------
+    ConfigError
+        Naming the folder.
+    """
+    nearest_there = path if path.exists() else path.absolute().parent
+    if path.exists() and not path.is_dir():
+        raise ConfigError(f"{path}: a file; allowed: a folder that can be written, or nothing of that name")
+    if not os.access(nearest_there, os.W_OK | os.X_OK):
+        raise ConfigError(f"{path}: may not be written by this user; allowed: a folder that can be written")
 
 
 def runs(block: Mapping) -> int:

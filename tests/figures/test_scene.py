@@ -18,10 +18,11 @@ from slippulse.figures.style import save_figure
 from slippulse.measure.beside_theory import scene_numbers
 from slippulse.measure.table import PARAMETERS, measure
 from slippulse.measure.uncertainty import grid_tables
+from slippulse.points import point
 from slippulse.scene_page import scene_page
 from slippulse.scenes import check_scene, scene_block
 from slippulse.store import load_table, save_table
-from slippulse.sweep import point, run_sweep
+from slippulse.sweep import run_sweep
 
 TITLE = "A <scene> & its $title"
 SCENES = {

@@ -131,9 +131,24 @@ def test_the_list_of_scenes_is_a_page_too(tmp_path):
     assert [image["alt"] for image in outline.all("img")] == ["A <scene>", "Another"]
 
 
-def test_captions_are_plain_text(project):
-    paths = {path.stem: path for path in (project / "workflow/report").glob("*.rst")}
-    for name, caption in captions_from(paths).items():
-        assert len(caption) > 40 and "\n" not in caption, name
+def test_captions_are_plain_text_with_their_settings(project, config):
+    settings = {"measure": config["measure"], "paper_damping_ratio": 0.1} | {
+        key: value for figure in config["figures"].values() for key, value in figure.items()
+    }
+    paths = [
+        *(project / "workflow/report").glob("fig*.rst"),
+        *(project / "workflow/report").glob("study_*.rst"),
+    ]
+    captions = captions_from({path.stem: {"caption": path, "settings": settings} for path in paths})
+    assert len(captions) >= 17
+    for name, caption in captions.items():
+        assert len(caption) > 40 and "\n" not in caption and "{" not in caption, name
         # An alternative text is a sentence, not a page.
         assert len(caption.split(". ")[0]) < 400, name
+    assert f"covered {config['measure']['share']} of" in captions["fig05_scaling"]
+
+
+def test_a_caption_that_quotes_anything_else_is_refused(tmp_path):
+    (tmp_path / "a.rst").write_text("It is {{ snakemake.config }}.")
+    with pytest.raises(ValueError, match="quotes what is no setting"):
+        captions_from({"a": {"caption": tmp_path / "a.rst", "settings": {}}})

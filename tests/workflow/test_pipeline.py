@@ -14,7 +14,7 @@ import yaml
 
 pytestmark = pytest.mark.workflow
 
-PARTS = ["Snakefile", "workflow", "config", "manuscript", "src", "requirements.lock"]
+PARTS = ["Snakefile", "workflow", "profiles", "config", "manuscript", "src", "requirements.lock"]
 TARGETS = ["results/figures/fig07_damage_zone.png", "results/figures/fig08_steady_state_displacement.png"]
 # Small enough to run in a second, large enough to have a pulse.
 TINY = {

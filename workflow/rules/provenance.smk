@@ -60,8 +60,8 @@ rule write_index:
     benchmark:
         "results/benchmarks/write_index.tsv"
     params:
-        figures=captions_of(FIGURES),
-        studies=captions_of(STUDIES),
+        figures=captions_and_settings(FIGURES),
+        studies=captions_and_settings(STUDIES),
         scenes={name: scene["title"] for name, scene in SCENES.items()},
     message:
         "Writing results/index.html, the page to open"

@@ -57,6 +57,7 @@ use rule study_grid as study_grid_of_scene with:
         "results/benchmarks/study_grid_of_scene/{simulation}.tsv"
     wildcard_constraints:
         simulation=SCENE_NAMES,
+    threads: 2
     params:
         blocks=coarser_blocks_of_scene,
         settings=config["measure"],

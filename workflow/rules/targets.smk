@@ -2,7 +2,7 @@
 
 import sys
 
-from slippulse.refusals import check_targets
+from slippulse.refusals import check_folder, check_targets
 
 
 def refuse_unknown_targets():
@@ -10,6 +10,7 @@ def refuse_unknown_targets():
     known = [str(file) for rule in workflow.rules for file in rule.output if not file.contains_wildcard()]
     known += [f"results/scenes/{name}.{ending}" for name in SCENES for ending in ("png", "html", "gif")]
     try:
+        check_folder(Path("results"))
         check_targets(
             sys.argv[1:], lambda file: any(rule.is_producer(file) for rule in workflow.rules), known
         )

@@ -1,0 +1,186 @@
+"""What goes wrong on other people's machines: each works, or fails in one clear line and leaves what was there."""
+
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import pytest
+from faults import digests, fault_run, prepare
+from pipeline_copy import copy_project, snakemake
+
+pytestmark = pytest.mark.workflow
+
+SCENE = "results/scenes/data/one.csv"
+FIGURE = "results/figures/fig07_damage_zone.png"
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory) -> Path:
+    """A folder with a space and an umlaut in its path, and a few results."""
+    folder = prepare(tmp_path_factory.mktemp("with spaces") / "und Umläuten")
+    result = snakemake(folder, "--", SCENE, FIGURE, overlay="overlay.yaml", cores=2)
+    assert result.returncode == 0, result.stderr
+    return folder
+
+
+def test_a_few_kills_are_survived(tmp_path):
+    report = fault_run(tmp_path, kills=3, seed=3, say=lambda text: None)
+    assert list(report.kills.values()) == [1, 1, 1]
+    assert report.comparisons >= 1 and report.files >= 15
+
+
+def test_surroundings_do_not_change_a_byte(finished, tmp_path):
+    elsewhere = prepare(tmp_path / "elsewhere")
+    strange = {
+        "TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "PYTHONHASHSEED": "1", "DISPLAY": "",
+        "MPLBACKEND": "TkAgg", "FONTCONFIG_FILE": str(tmp_path / "no fonts"), "OMP_NUM_THREADS": "3",
+    }  # fmt: skip
+    result = snakemake(elsewhere, "--", SCENE, FIGURE, overlay="overlay.yaml", cores=1, environment=strange)
+    assert result.returncode == 0, result.stderr
+    assert digests(elsewhere) == digests(finished)
+
+
+def test_it_can_be_started_from_anywhere(finished, tmp_path):
+    command = [sys.executable, "-m", "snakemake", "--cores", "1", "--dry-run", "--directory", str(finished)]
+    command += ["--snakefile", str(finished / "Snakefile"), "--configfile", str(finished / "overlay.yaml")]
+    result = subprocess.run(
+        [*command, "--", SCENE], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+    assert "Nothing to be done" in result.stdout + result.stderr
+
+
+@pytest.mark.parametrize("harm", ["truncated", "corrupted", "empty"])
+def test_a_harmed_data_file_is_named_with_the_remedy(finished, harm):
+    data, table = finished / "results/scenes/data/one.nc", finished / SCENE
+    whole, before = data.read_bytes(), table.read_bytes()
+    harmed = {"truncated": whole[: len(whole) // 2], "corrupted": b"\0" * 600 + whole[600:], "empty": b""}[
+        harm
+    ]
+    try:
+        data.write_bytes(harmed)
+        result = snakemake(finished, "--rerun-triggers", "mtime", "--", SCENE, overlay="overlay.yaml")
+        said = result.stdout + result.stderr
+        assert result.returncode != 0
+        assert "one.nc: cannot be read" in said and "delete it and run again" in said
+        assert "Traceback" not in said
+        data.unlink()
+        assert snakemake(finished, "--", SCENE, overlay="overlay.yaml").returncode == 0
+        assert data.read_bytes() == whole and table.read_bytes() == before
+    finally:
+        if not data.exists() or data.read_bytes() != whole:
+            data.write_bytes(whole)
+
+
+def test_an_unreadable_table_is_named(finished):
+    from slippulse.store import UnreadableFile, load_table
+
+    path = finished / "edited.csv"
+    path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
+    with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run again"):
+        load_table(path)
+
+
+def test_results_that_are_no_folder_fail_in_one_line(tmp_path):
+    folder = copy_project(Path(__file__).resolve().parents[2], tmp_path / "copy", link=True)
+    (folder / "results").write_text("mine")
+    result = snakemake(folder, "--", FIGURE)
+    said = result.stdout + result.stderr
+    assert result.returncode != 0 and "Traceback" not in said
+    assert "results" in said and (folder / "results").read_text() == "mine"
+
+
+def test_a_full_disk_leaves_the_old_file(tmp_path):
+    """A limit on the size of files stands for a disk without room: writing fails in the same place."""
+    path = tmp_path / "table.csv"
+    path.write_text("what was there\n")
+    program = (
+        "import sys, numpy, pandas\n"
+        "from slippulse.jobs import logged\nfrom slippulse.store import save_table\n"
+        "with logged(sys.argv[2]):\n"
+        "    save_table(pandas.DataFrame({'a': numpy.arange(1e5)}), sys.argv[1])\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program, str(path), str(tmp_path / "log")],
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
+    )
+    assert result.returncode == 1
+    assert result.stderr.startswith("OSError: ") and result.stderr.count("\n") == 1
+    assert path.read_text() == "what was there\n"
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["log", "table.csv"]
+
+
+def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
+    (tmp_path / "logs").write_text("a file")
+    program = "import sys\nfrom slippulse.jobs import logged\nwith logged(sys.argv[1]): pass\n"
+    result = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "logs/one.log")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 1
+    assert result.stderr.count("\n") == 1 and "allowed: a results folder that can be written" in result.stderr
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")
+def test_sources_that_cannot_be_written_are_enough():
+    project = Path(__file__).resolve().parents[2]
+    base = Path(tempfile.mkdtemp(prefix="read-only-"))
+    try:
+        folder = copy_project(project, base / "copy")
+        for name in ("results", ".snakemake", "home"):
+            (folder / name).mkdir()
+            os.chown(folder / name, 65534, 65534)
+        base.chmod(0o755)
+        if subprocess.run(["test", "-x", sys.executable], user=65534, check=False).returncode != 0:
+            pytest.skip("the environment cannot be read by others")
+        result = subprocess.run(
+            [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
+            cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False,
+            env=os.environ | {"HOME": str(folder / "home"), "PYTHONPATH": str(folder / "src"), "XDG_CACHE_HOME": ""},
+        )  # fmt: skip
+        assert result.returncode == 0, result.stderr
+        assert (folder / FIGURE).stat().st_size > 0
+        (folder / FIGURE).unlink()
+        os.chown(folder / "results", 0, 0)
+        shutil.rmtree(folder / "results/figures")
+        result = subprocess.run(
+            [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
+            cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False,
+            env=os.environ | {"HOME": str(folder / "home"), "PYTHONPATH": str(folder / "src"), "XDG_CACHE_HOME": ""},
+        )  # fmt: skip
+        assert result.returncode != 0 and "Permission denied" in result.stdout + result.stderr
+    finally:
+        shutil.rmtree(base)
+
+
+def test_a_stale_lock_is_removed_and_a_live_one_is_not(tmp_path):
+    unlock = [sys.executable, str(Path(__file__).resolve().parents[2] / "workflow/unlock.py"), "."]
+    lock = tmp_path / ".snakemake/locks/0.input.lock"
+    lock.parent.mkdir(parents=True)
+    assert subprocess.run(unlock, cwd=tmp_path, check=True, capture_output=True).stderr == b""
+    lock.touch()
+    # Any program of that name, at work in that folder.
+    alive = subprocess.Popen(
+        ["snakemake", "-c", "import time; time.sleep(60)"], executable=sys.executable, cwd=tmp_path
+    )
+    try:
+        time.sleep(0.2)
+        refused = subprocess.run(unlock, cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert refused.returncode == 1 and f"process {alive.pid}" in refused.stderr and lock.exists()
+    finally:
+        alive.kill()
+        alive.wait()
+    done = subprocess.run(unlock, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "its lock is removed" in done.stderr and not lock.exists()
