@@ -95,12 +95,14 @@ def unlock(folder: Path) -> bool:
 
 
 def digests(folder: Path) -> dict[str, str]:
-    """Every result but logs and times."""
+    """Every result but logs and times; a hidden name is a file that its writer was killed over."""
     results = folder / "results"
     return {
         str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(results.rglob("*"))
-        if path.is_file() and path.relative_to(results).parts[0] not in ("logs", "benchmarks")
+        if path.is_file()
+        and not path.name.startswith(".")
+        and path.relative_to(results).parts[0] not in ("logs", "benchmarks")
     }
 
 
@@ -180,7 +182,11 @@ def _finish(folder: Path, expected: dict[str, str], report: Report) -> None:
         -4000:
     ]
     found = digests(folder)
-    differing = sorted(name for name in {*expected, *found} if expected.get(name) != found.get(name))
+    differing = [
+        f"{name}: {'missing' if name not in found else 'other' if name in expected else 'not expected'}"
+        for name in sorted({*expected, *found})
+        if expected.get(name) != found.get(name)
+    ]
     assert not differing, f"other than in a quiet run: {differing}"
     report.comparisons += 1
 

@@ -53,6 +53,9 @@ def main(folder: str) -> int:
         return 1
     for lock in locks:
         lock.unlink(missing_ok=True)
+    # Files that a killed job was writing have a hidden name of their own until they are whole.
+    for part in (path / "results").rglob(".*-????????.*"):
+        part.unlink(missing_ok=True)
     print(
         "The last run was killed: its lock is removed, what it left unfinished is made anew.", file=sys.stderr
     )

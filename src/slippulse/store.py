@@ -15,9 +15,6 @@ def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
     """Let ``write`` fill a file beside ``path`` and move it there when it is complete."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # What a killed writer of the same file left behind.
-    for left_over in path.parent.glob(f".{path.stem}-????????{path.suffix}"):
-        left_over.unlink(missing_ok=True)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
     os.close(handle)
     part = Path(name)

@@ -101,10 +101,3 @@ def test_a_file_is_as_readable_as_any_other(tmp_path):
     plain.write_text("x")
     write_whole(tmp_path / "whole.txt", lambda part: part.write_text("x"))
     assert stat.S_IMODE((tmp_path / "whole.txt").stat().st_mode) == stat.S_IMODE(plain.stat().st_mode)
-
-
-def test_what_a_killed_writer_left_is_cleared(tmp_path):
-    (tmp_path / ".data-abcd1234.nc").write_bytes(b"half of the n")
-    (tmp_path / ".other-abcd1234.nc").write_bytes(b"somebody else's")
-    write_whole(tmp_path / "data.nc", lambda part: part.write_bytes(b"whole"))
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == [".other-abcd1234.nc", "data.nc"]
