@@ -82,6 +82,18 @@ def test_everything_is_eleven_figures_in_three_files(copy_of_project):
     assert len(files) == 33
 
 
+def test_a_draft_is_the_figures_unless_everything_is_asked_for(copy_of_project):
+    draft = jobs(snakemake(copy_of_project, "--dry-run", "--config", "preset=draft", config=""))
+    whole = jobs(
+        snakemake(copy_of_project, "--dry-run", "--config", "preset=draft", "--", "everything", config="")
+    )
+    assert (
+        sum(name.startswith("fig") for name in draft) == sum(name.startswith("fig") for name in whole) == 11
+    )
+    assert "write_report" in whole and "study_grid" in whole
+    assert "write_report" not in draft and "study_grid" not in draft
+
+
 def test_one_figure_needs_only_its_own_simulations(copy_of_project):
     planned = jobs(
         snakemake(copy_of_project, "--dry-run", "--", "results/figures/fig04_space_time.png", config="")
