@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib.metadata import version
 
 PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
 
 
+@cache
 def versions() -> str:
     """Names and versions in one line, the same on every machine with the same lock."""
     return ", ".join(f"{package} {version(package)}" for package in PACKAGES)
