@@ -61,8 +61,9 @@ def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     damping = [("beta", value) for value in block.get("beta", [])] or [
         ("damping_ratio", value) for value in block["damping_ratio"]
     ]
-    for profile, gamma, spacing, (kind, value) in itertools.product(
-        _profiles(block), block.get("gamma", [0.0]), block.get("dx", [None]), damping
+    releases = [block["release"]] if isinstance(block["release"], str) else block["release"]
+    for release, profile, gamma, spacing, (kind, value) in itertools.product(
+        releases, _profiles(block), block.get("gamma", [0.0]), block.get("dx", [None]), damping
     ):
         dx = _spacing(block, profile.width, gamma, spacing)
         duration = _duration(block["duration"], profile, gamma)
@@ -75,7 +76,7 @@ def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
             dx=dx,
             gamma=gamma,
             beta=beta,
-            release=block["release"],
+            release=release,
             scheme=block["scheme"],
             max_step=_step(block, gamma * dx**2, ratio),
             order=block["accuracy"]["order"],

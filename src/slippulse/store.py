@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pandas as pd
@@ -27,7 +28,9 @@ def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
         part.unlink(missing_ok=True)
 
 
+@cache
 def _umask() -> int:
+    # It can only be read by setting it, so once: threads would see each other's zero.
     mask = os.umask(0)
     os.umask(mask)
     return mask

@@ -41,9 +41,9 @@ def test_refining_at_fixed_ratio_converges_and_at_fixed_beta_does_not(draw):
         name: np.ptp(rows.sort_values("dx")["value"]) / rows["value"].iloc[0]
         for name, rows in speed.groupby("series")
     }
-    assert spread["continuum_fixed_ratio"] < 0.01
-    assert spread["continuum_fixed_beta_total"] > 0.5
-    fixed = table[(table["series"] == "continuum_fixed_ratio") & (table["quantity"] == "transition_time")]
+    assert spread["fixed ratio, total"] < 0.01
+    assert spread["fixed beta, total"] > 0.5
+    fixed = table[(table["series"] == "fixed ratio, total") & (table["quantity"] == "transition_time")]
     fixed = fixed.sort_values("dx")
     error = np.abs(fixed["value"] / fixed["theory"] - 1.0).to_numpy()
     assert (np.diff(error) > 0.0).all()

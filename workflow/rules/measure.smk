@@ -11,6 +11,7 @@ rule measure:
         "results/logs/measure/{simulation}.log",
     benchmark:
         "results/benchmarks/measure/{simulation}.tsv"
+    priority: 1
     params:
         settings=config["measure"],
     message:
@@ -33,6 +34,7 @@ rule study_grid:
         "results/logs/study_grid/{simulation}.log",
     benchmark:
         "results/benchmarks/study_grid/{simulation}.tsv"
+    priority: 1
     threads: 1
     params:
         blocks=coarser_blocks,

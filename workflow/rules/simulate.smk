@@ -11,6 +11,8 @@ rule compile_kernels:
         "results/logs/compile_kernels.log",
     benchmark:
         "results/benchmarks/compile_kernels.tsv"
+    # Everything waits for it.
+    priority: 2
     message:
         "Compiling the lattice kernels (once)"
     script:
@@ -32,6 +34,8 @@ rule simulate:
         "results/logs/simulate/{simulation}.log",
     benchmark:
         "results/benchmarks/simulate/{simulation}.tsv"
+    # Before what only draws: the claims wait for the last of the measurements.
+    priority: 1
     threads: sweep_threads
     params:
         block=simulation_block,

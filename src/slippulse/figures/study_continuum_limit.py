@@ -16,9 +16,9 @@ from ..theory.rupture import exact_transition_displacement
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 SERIES = {
-    "continuum_fixed_ratio": (BLUE, "o", r"fixed $\bar\beta/\mathrm{d}\bar x = %g$, %s"),
-    "continuum_fixed_beta_total": (ORANGE, "s", r"fixed $\bar\beta = %g$, %s"),
-    "continuum_fixed_beta_elastic": (GREEN, "^", r"fixed $\bar\beta = %g$, %s"),
+    "fixed ratio, total": (BLUE, "o", r"fixed $\bar\beta/\mathrm{d}\bar x = %g$, %s"),
+    "fixed beta, total": (ORANGE, "s", r"fixed $\bar\beta = %g$, %s"),
+    "fixed beta, elastic": (GREEN, "^", r"fixed $\bar\beta = %g$, %s"),
 }
 # Columns of the measured table, as the error panel names them.
 ERRORS = {
@@ -39,7 +39,7 @@ def table(
     Parameters
     ----------
     data : not used
-    measured : the simulations in SERIES
+    measured : continuum_fixed_ratio and continuum_fixed_beta
     settings : not used
 
     Returns
@@ -47,20 +47,19 @@ def table(
     DataFrame of role simulation (quantity, value, theory; ``fixed`` is what is held), and limit
     """
     parts = []
-    for name in SERIES:
-        held = "damping_ratio" if name == "continuum_fixed_ratio" else "beta"
-        for _, run in measured[name].iterrows():
-            theory = _theory(run, continuum=name == "continuum_fixed_ratio")
+    for held, column in (("ratio", "damping_ratio"), ("beta", "beta")):
+        for _, run in measured[f"continuum_fixed_{held}"].iterrows():
+            theory = _theory(run, continuum=held == "ratio")
             for quantity in ERRORS:
                 parts.append(
                     {
                         "role": "simulation",
-                        "series": name,
+                        "series": f"fixed {held}, {run['release']}",
                         "quantity": quantity,
                         "dx": run["dx"],
                         "value": run[quantity],
                         "theory": theory.get(quantity, np.nan),
-                        "fixed": run[held],
+                        "fixed": run[column],
                         "release": run["release"],
                         "flags": run["flags"],
                     }
@@ -111,7 +110,7 @@ def plot(table: pd.DataFrame) -> Figure:
     panel_letter(speed_axes, "a")
     speed_axes.set_title("lines: exact theory")
 
-    fixed = runs[runs["series"] == "continuum_fixed_ratio"]
+    fixed = runs[runs["series"] == "fixed ratio, total"]
     for quantity, (label, marker) in ERRORS.items():
         rows = fixed[fixed["quantity"] == quantity].sort_values("dx")
         error = np.abs(rows["value"] / rows["theory"] - 1.0)

@@ -14,7 +14,7 @@ from ..theory.front_speed import front_speed, front_speed_undamped, prestress_fo
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
 RULES = ("total", "elastic")
-SWEEPS = {rule: (f"front_speed_{rule}", f"front_speed_slow_{rule}") for rule in RULES}
+SWEEPS = ("front_speed", "front_speed_slow")
 # Pre-stress levels drawn against the damping ratio.
 LEVELS = (0.2, 0.5, 0.8)
 SPEED_RANGE = (1.0, 100.0)
@@ -31,7 +31,7 @@ def table(
     Parameters
     ----------
     data : not used
-    measured : front_speed_RULE and front_speed_slow_RULE for both release rules
+    measured : the simulations in SWEEPS, both release rules
     settings : paper_damping_ratio
 
     Returns
@@ -39,8 +39,9 @@ def table(
     DataFrame of role simulation, theory (over tau_0 or over beta/dx), limit and paper
     """
     parts = []
+    sweeps = pd.concat([measured[name] for name in SWEEPS], ignore_index=True)
     for rule in RULES:
-        runs = pd.concat([measured[name] for name in SWEEPS[rule]], ignore_index=True)
+        runs = sweeps[sweeps["release"] == rule]
         parts.append(
             pd.DataFrame(
                 {

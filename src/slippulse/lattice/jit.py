@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 from pathlib import Path
@@ -29,6 +30,28 @@ def cache_folder() -> Path:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
     return Path(base) / f"kernels-{source_digest()}"
 
+
+def load_without_blas() -> None:
+    """Load numba's array functions while they find no BLAS, which stays away from their inner product alone.
+
+    Looking for it loads scipy.linalg, a fifth of what a job needs to start, and no kernel multiplies matrices.
+    """
+    with contextlib.suppress(ImportError, AttributeError):
+        from numba.np import linalg
+
+        look = linalg.ensure_blas
+
+        def none_found() -> None:
+            raise ImportError("not looked for")
+
+        linalg.ensure_blas = none_found
+        try:
+            import numba.np.arraymath  # noqa: F401
+        finally:
+            linalg.ensure_blas = look
+
+
+load_without_blas()
 
 if not os.environ.get("NUMBA_CACHE_DIR"):
     numba.config.CACHE_DIR = str(cache_folder())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import yaml
@@ -32,7 +33,13 @@ def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
         If a cell fails, a text is not whole, or pandoc or Typst refuse it.
     """
     text = execute(Path(inputs.manuscript) / SOURCE, inputs)
-    render_html(text, inputs.manuscript, outputs["html"])
-    render_pdf(text, inputs.manuscript, outputs["pdf"])
+    with ThreadPoolExecutor() as pool:
+        # Nothing else is left to do by now, and each is a process of its own.
+        renderings = [
+            pool.submit(render, text, inputs.manuscript, outputs[kind])
+            for kind, render in (("html", render_html), ("pdf", render_pdf))
+        ]
+    for rendering in renderings:
+        rendering.result()
     verdicts = yaml.safe_dump({claim["id"]: claim["verdict"] for claim in inputs.claims}, sort_keys=False)
     write_whole(outputs["verdicts"], lambda part: part.write_text(HEAD + verdicts, encoding="utf-8"))

@@ -19,7 +19,7 @@ from ..roots import root_between
 RELEASES = ("total", "elastic")
 # Quadrature: Gauss-Legendre nodes on each panel of half a period, and how many periods beyond the last scale.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
-PERIODS = 96
+PERIODS = 48
 # Two quadratures that differ by more than this (relative, in tau) are refused.
 QUADRATURE_TOLERANCE = 1e-11
 
