@@ -61,7 +61,7 @@ faults: $(READY)
 	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
 
 test: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile --no-loadscope-reorder
 
 benchmark: $(READY)
 	@mkdir -p results/benchmarks

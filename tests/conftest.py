@@ -14,6 +14,15 @@ from slippulse.store import load_table, save_table
 PROJECT = Path(__file__).resolve().parents[1]
 
 
+# The files that take longest, first, so that two workers end together.
+LONGEST = ("test_faults", "test_reruns", "test_examples", "test_every_figure", "test_pipeline", "test_rendering")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long files first; within a file the order stays."""
+    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
+
+
 @pytest.fixture(scope="session")
 def project() -> Path:
     """The folder of the project."""

@@ -7,10 +7,9 @@ import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import jsonschema
 import numpy as np
-import yaml
 
 from .checks import ConfigError, nearest, shown
 from .lattice.samples import Samples
@@ -29,6 +28,9 @@ from .refusals import (
 )
 from .scenes import check_scene, scene_block
 from .theory.transition import prestress_balance_position
+
+if TYPE_CHECKING:
+    import jsonschema
 
 
 def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping, coarser: float = 1.0) -> dict:
@@ -160,6 +162,10 @@ def validate(config: Mapping, schema_path: str | Path, shipped: Mapping | None =
     ConfigError
         One line a problem: the key, the value, what is allowed.
     """
+    # Simulations expand blocks too, and need neither.
+    import jsonschema
+    import yaml
+
     schema = yaml.safe_load(Path(schema_path).read_text(encoding="utf-8"))
     validator = jsonschema.Draft202012Validator(schema)
     config = _builtins(config)

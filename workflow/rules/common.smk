@@ -22,7 +22,7 @@ ACCURACY = config["presets"][config["preset"]]
 SOURCES = Path(workflow.basedir) / "src/slippulse"
 LOCK = "requirements.lock"
 # Expected seconds on one core.
-LONG_SWEEP = 6.0
+LONG_SWEEP = 120.0
 
 
 def sources(*patterns):

@@ -52,7 +52,7 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float) -> float:
         return float(steps[-1])
     first = int(unstable[0])
     lower, upper = float(steps[first - 1]) if first else 0.0, float(steps[first])
-    for _ in range(40):
+    for _ in range(20):
         middle = 0.5 * (lower + upper)
         lower, upper = (middle, upper) if stable(np.array([middle]))[0] else (lower, middle)
     return float(lower)
