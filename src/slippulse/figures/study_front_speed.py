@@ -135,14 +135,15 @@ def plot(table: pd.DataFrame) -> Figure:
             )  # fmt: skip
     axes.axvline(paper, color=GREY, linewidth=0.8, linestyle="-.")
     axes.text(
-        paper, 0.55, "the paper's figures", transform=axes.get_xaxis_transform(), fontsize=6.0, rotation=90,
+        paper, 0.35, "the paper's figures", transform=axes.get_xaxis_transform(), fontsize=6.0, rotation=90,
         va="center", ha="right", color=GREY,
     )  # fmt: skip
     axes.set_xscale("log")
     axes.set_title("against damping")
     axes.legend(
-        title=r"$\bar\tau_0$, release", loc="upper left", handlelength=1.2, ncols=2, columnspacing=0.6
-    )
+        title=r"$\bar\tau_0$, release", loc="upper left", handlelength=1.2,
+        frameon=True, framealpha=1.0, edgecolor="none",
+    )  # fmt: skip
     rest.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
     for axes, letter in zip(grid[0], "abc", strict=True):
         axes.set_yscale("log")
