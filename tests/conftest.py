@@ -15,7 +15,14 @@ PROJECT = Path(__file__).resolve().parents[1]
 
 
 # The files that take longest, first, so that two workers end together.
-LONGEST = ("test_faults", "test_reruns", "test_examples", "test_every_figure", "test_pipeline", "test_rendering")
+LONGEST = (
+    "test_faults",
+    "test_reruns",
+    "test_examples",
+    "test_every_figure",
+    "test_pipeline",
+    "test_rendering",
+)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -16,6 +16,7 @@ SIGNS = dict(zip(VERDICTS, "\N{CHECK MARK}~\N{MULTIPLICATION SIGN}?", strict=Tru
 REPORTS = {
     "manuscript/replication.html": "Replication report (HTML)",
     "manuscript/replication.pdf": "Replication report (PDF)",
+    "claims.html": "Ledger of claims (a table)",
     "claims.json": "Ledger of claims (JSON)",
     "provenance.json": "Provenance (JSON)",
     "codecheck.yml": "Manifest of every output (CODECHECK)",
@@ -67,9 +68,20 @@ def index_page(
 
 
 def _verdicts(claims: Sequence[Mapping]) -> str:
+    return (
+        f"{_summary(claims)}\n"
+        f"<details>\n<summary>All claims, one by one</summary>\n{_claims_table(claims)}\n</details>"
+    )
+
+
+def _summary(claims: Sequence[Mapping]) -> str:
     counts = Counter(claim["verdict"] for claim in claims)
     summary = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS if counts[verdict])
-    ordered = sorted(claims, key=lambda claim: VERDICTS.index(claim["verdict"]), reverse=False)
+    return f"<p>{len(claims)} claims: {escape(summary)}.</p>"
+
+
+def _claims_table(claims: Sequence[Mapping]) -> str:
+    ordered = sorted(claims, key=lambda claim: VERDICTS.index(claim["verdict"]))
     rows = [
         (
             f"{SIGNS[claim['verdict']]} {claim['verdict']}",
@@ -81,15 +93,11 @@ def _verdicts(claims: Sequence[Mapping]) -> str:
         )
         for claim in ordered
     ]
-    table = table_html(
+    return table_html(
         "Every claim, with what was predicted and measured",
         ("verdict", "what the paper says", "where", "predicted", "measured", "uncertainty"),
         rows,
         numeric=(3, 4, 5),
-    )
-    return (
-        f"<p>{len(claims)} claims: {escape(summary)}.</p>\n"
-        f"<details>\n<summary>All claims, one by one</summary>\n{table}\n</details>"
     )
 
 
@@ -208,6 +216,12 @@ def captions_from(figures: Mapping[str, Mapping]) -> dict[str, str]:
         text = re.sub(r"\*(\w[^*]*)\*", r"\1", text.replace("``", "").replace("**", ""))
         out[name] = text.replace("\\ ", "")
     return out
+
+
+def claims_page(claims: Sequence[Mapping]) -> str:
+    """The ledger as a table on a page of its own."""
+    body = f"<h1>Claims</h1>\n{_summary(claims)}\n{_claims_table(claims)}"
+    return page("slippulse: claims", f'<main id="content">\n{body}\n</main>')
 
 
 def scenes_page(scenes: Mapping[str, str]) -> str:

@@ -150,12 +150,13 @@ def write_claims(
     tolerances: Mapping,
     share: float,
     readings: Mapping,
-    output: str | Path,
+    outputs: Mapping[str, str],
 ) -> None:
-    """Compute every claim's verdict and write the ledger."""
+    """Compute every claim's verdict and write the ledger, as JSON and as a table to read."""
     import json
 
     from .claims import Evidence, all_claims
+    from .index_page import claims_page
     from .store import load_table, write_whole
 
     tables = {Path(path).stem: load_table(path) for path in measured}
@@ -164,9 +165,16 @@ def write_claims(
         table = load_table(path)
         coarse[Path(path).stem] = [part.reset_index(drop=True) for _, part in table.groupby("factor")]
     studies = {Path(path).stem: load_table(path) for path in uncertainties}
-    claims = all_claims(Evidence(tables, coarse, studies, tolerances), share, readings)
-    text = json.dumps([_finite(claim.as_dict()) for claim in claims], indent=1, ensure_ascii=False) + "\n"
-    write_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+    claims = [
+        _finite(claim.as_dict())
+        for claim in all_claims(Evidence(tables, coarse, studies, tolerances), share, readings)
+    ]
+    texts = {
+        "json": json.dumps(claims, indent=1, ensure_ascii=False) + "\n",
+        "html": claims_page(claims),
+    }
+    for kind, text in texts.items():
+        write_whole(outputs[kind], lambda part, text=text: part.write_text(text, encoding="utf-8"))
 
 
 def _finite(entry: dict) -> dict:

@@ -177,5 +177,6 @@ COMMENTS = {
     "measurements": "measured numbers, one row a run",
     "uncertainties": "grid study of every measured number",
     "manuscript": "the replication report",
+    "claims.html": "the same as a table to read",
     "claims.json": "what the paper says, what was measured, the verdict",
 }

@@ -9,7 +9,7 @@ from itertools import pairwise
 import pytest
 
 from slippulse.figures.style import new_figure, save_figure
-from slippulse.index_page import captions_from, index_page, scenes_page
+from slippulse.index_page import captions_from, claims_page, index_page, scenes_page
 from slippulse.provenance import provenance
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
@@ -124,6 +124,13 @@ def test_it_says_what_was_found_and_from_what(page):
     assert "A scene &lt;that&gt; is there" in page
     assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
     assert "results/scenes/not_made.html" in page
+
+
+def test_the_ledger_is_a_table_on_a_page_of_its_own():
+    text = claims_page([CLAIM, CLAIM | {"statement": "a < b", "uncertainty": None}])
+    assert "<details" not in text
+    assert text.count("<tr") == 3 and "a &lt; b" in text
+    assert f"2 claims: 2 {CLAIM['verdict']}." in text
 
 
 def test_the_list_of_scenes_is_a_page_too(tmp_path):

@@ -106,6 +106,14 @@ def test_a_second_run_does_nothing(finished):
     assert jobs(snakemake(finished, "--dry-run", "--", *TARGETS)) == {}
 
 
+def test_snakemakes_own_report_is_one_file_that_loads_nothing(finished):
+    result = snakemake(finished, "--report", "report.html", "--", *TARGETS)
+    assert result.returncode == 0, result.stderr
+    text = (finished / "report.html").read_text(encoding="utf-8")
+    assert '"Figures of the paper"' in text and "fig07_damage_zone" in text
+    assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=.https?://", text)
+
+
 def test_another_level_runs_only_its_chain(finished):
     changed = {**TINY, "simulations": {**TINY["simulations"]}}
     changed["simulations"]["steady_displacement"] = TINY["simulations"]["steady_displacement"] | {

@@ -8,7 +8,13 @@ rule write_claims:
         coarser=[f"results/uncertainties/coarser/{name}.csv" for name in CLAIM_SIMULATIONS],
         uncertainties=[f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS],
     output:
-        "results/claims.json",
+        json="results/claims.json",
+        html=report(
+            "results/claims.html",
+            caption="../report/claims.rst",
+            category="Claims",
+            labels={"table": "claims"},
+        ),
     log:
         "results/logs/write_claims.log",
     benchmark:

@@ -45,7 +45,7 @@ SIMULATION_SOURCES = KERNEL_SOURCES + sources(
 )
 MEASURE_SOURCES = sources("points.py", "measure/*.py", "theory/*.py", "roots.py")
 
-CLAIM_SOURCES = sources("claims/*.py", "theory/*.py", "roots.py")
+CLAIM_SOURCES = sources("claims/*.py", "theory/*.py", "roots.py", "index_page.py", "pages.py")
 CLAIM_SIMULATIONS = [
     "any_prestress",
     "burridge_knopoff_speed",

@@ -14,6 +14,7 @@ RESULTS = sorted(
         "results/studies/requirements.csv",
         *(f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS),
         "results/claims.json",
+        "results/claims.html",
         "results/manuscript/replication.html",
         "results/manuscript/replication.pdf",
     }

@@ -10,5 +10,5 @@ with logged(snakemake.log[0]):
         snakemake.params.settings["claims"],
         snakemake.params.settings["measure"]["share"],
         snakemake.params.settings["published"],
-        snakemake.output[0],
+        {kind: snakemake.output[kind] for kind in ("json", "html")},
     )
