@@ -17,11 +17,12 @@ READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
 
-.PHONY: help setup lock replicate verify faults test benchmark check clean distclean
+.PHONY: help setup lock replicate rulegraph verify faults test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
+	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
@@ -53,6 +54,10 @@ replicate: $(READY)
 	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
 	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large=true)) \
 	    $(if $(OVERLAY),--configfile "$$OVERLAY") -- $$TARGET
+
+rulegraph: $(READY)
+	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --rulegraph mermaid-js -- \
+	    $${TARGET:-results/figures/fig05_scaling.png results/claims.json} 2>/dev/null
 
 verify: $(READY)
 	@"$(BIN)/python" -m slippulse.verify results $(if $(AGAINST),--against "$$AGAINST")

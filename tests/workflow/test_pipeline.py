@@ -102,6 +102,22 @@ def test_one_figure_needs_only_its_own_simulations(copy_of_project):
     assert not any(name.startswith("fig") and name != "fig04_space_time" for name in planned)
 
 
+def edges(graph: str) -> set[tuple[str, str]]:
+    """Which rule feeds which, by name, in a mermaid graph."""
+    names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
+    return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}
+
+
+def test_the_graph_in_the_readme_is_the_pipelines(copy_of_project, project):
+    drawn = snakemake(
+        copy_of_project, "--rulegraph", "mermaid-js", "--", "results/figures/fig05_scaling.png",
+        "results/claims.json", config="",
+    )  # fmt: skip
+    assert drawn.returncode == 0, drawn.stderr
+    shown = (project / "README.md").read_text(encoding="utf-8").split("```mermaid\n")[1].split("```")[0]
+    assert edges(shown) == edges(drawn.stdout) and ("simulate", "measure") in edges(shown)
+
+
 def test_a_second_run_does_nothing(finished):
     assert jobs(snakemake(finished, "--dry-run", "--", *TARGETS)) == {}
 
