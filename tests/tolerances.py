@@ -9,7 +9,7 @@ STENCIL = 1e-13
 # Compiled code contracts a*b + c to one rounding, the interpreter does not; the steps multiply it.
 JIT = 1e-11
 # Tables are written with nine significant digits.
-TABLE_DIGITS = 1e-8
+CSV_DIGITS = 1e-8
 # Profiles and integrals in closed form against adaptive quadrature asked for 1e-12.
 QUADRATURE = 1e-10
 # A root of a polynomial with coefficients near 1: rounding over the slope at the root.
