@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import errno
+import os
 import sys
 import time
 import traceback
@@ -28,12 +30,19 @@ def logged(path: str | Path) -> Iterator[None]:
         # A disk that is full has no room for the log either.
         with contextlib.suppress(OSError):
             log.write(traceback.format_exc())
-        terminal.write(f"{type(error).__name__}: {error} (details: {path})\n")
+        terminal.write(f"{_reason(error)} (details: {path})\n")
         raise SystemExit(1) from None
     finally:
         sys.stderr = terminal
         with contextlib.suppress(OSError):
             log.close()
+
+
+def _reason(error: Exception) -> str:
+    """One line: HDF5 says in several, with addresses, that a disk is full."""
+    if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
+        return f"{os.strerror(error.errno)}: what was being written is removed; make room and run again"
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
 
 
 class _Both:

@@ -37,8 +37,12 @@ def _umask() -> int:
 
 
 def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a Dataset as netCDF-4; equal data give equal bytes."""
-    write_whole(path, lambda part: dataset.to_netcdf(part, engine="h5netcdf", format="NETCDF4"))
+    """Write a Dataset as netCDF-4; equal data give equal bytes.
+
+    Through memory: HDF5 that meets a full disk half way does not always leave the interpreter standing.
+    """
+    content = dataset.to_netcdf(engine="h5netcdf", format="NETCDF4")
+    write_whole(path, lambda part: part.write_bytes(content))
 
 
 class UnreadableFile(ValueError):
