@@ -1,5 +1,6 @@
 # What the rules share: the checked configuration, the sources that results depend on, and who draws from what.
 
+import math
 from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
@@ -23,6 +24,8 @@ SOURCES = Path(workflow.basedir) / "src/slippulse"
 LOCK = "requirements.lock"
 # Expected seconds on one core.
 LONG_SWEEP = 120.0
+# The factor to which the estimate is right.
+ESTIMATE_WITHIN = 3.0
 
 
 def sources(*patterns):
@@ -147,6 +150,26 @@ def sweep_threads(wildcards):
     return 2 if cost.hours * 3600 > LONG_SWEEP else 1
 
 
+def job_minutes(cost, threads, attempt):
+    """Time limit of a job on a cluster: the start, and the estimate with the factor to which it is right."""
+    return attempt * (10 + math.ceil(ESTIMATE_WITHIN * cost.hours * 60.0 / threads))
+
+
+def job_megabytes(cost, attempt):
+    """Memory limit of a job on a cluster: interpreter and libraries, and what is recorded with a copy of it."""
+    return attempt * (1000 + math.ceil(2.0 * cost.bytes / 1e6))
+
+
+def sweep_minutes(wildcards, threads, attempt):
+    """Time limit of a sweep, and of its grid study, which is coarser."""
+    return job_minutes(expected_cost(*expand_block(simulation_block(wildcards))), threads, attempt)
+
+
+def sweep_megabytes(wildcards, attempt):
+    """Memory limit of a sweep."""
+    return job_megabytes(expected_cost(*expand_block(simulation_block(wildcards))), attempt)
+
+
 def coarser_blocks(wildcards):
     """The same on the coarser lattices of the preset, by factor of the spacing."""
     block = config["simulations"][wildcards.simulation]
@@ -185,6 +208,16 @@ def block_of_scene(wildcards, coarser=1.0):
     """Everything that the data of a scene depend on, in one dict of builtins."""
     scene = scene_block(SCENES[wildcards.simulation], config["model"])
     return resolve(scene, config["model"], ACCURACY, coarser)
+
+
+def scene_minutes(wildcards, threads, attempt):
+    """Time limit of a single scene."""
+    return job_minutes(expected_cost(*expand_block(block_of_scene(wildcards))), threads, attempt)
+
+
+def scene_megabytes(wildcards, attempt):
+    """Memory limit of a single scene."""
+    return job_megabytes(expected_cost(*expand_block(block_of_scene(wildcards))), attempt)
 
 
 def coarser_blocks_of_scene(wildcards):

@@ -36,6 +36,9 @@ rule study_grid:
         "results/benchmarks/study_grid/{simulation}.tsv"
     priority: 1
     threads: 1
+    resources:
+        runtime=sweep_minutes,
+        mem_mb=sweep_megabytes,
     params:
         blocks=coarser_blocks,
         settings=config["measure"],

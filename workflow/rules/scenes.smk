@@ -19,6 +19,9 @@ use rule simulate as simulate_scene with:
     wildcard_constraints:
         simulation=SCENE_NAMES,
     threads: 1
+    resources:
+        runtime=scene_minutes,
+        mem_mb=scene_megabytes,
     params:
         block=block_of_scene,
     message:
@@ -58,6 +61,9 @@ use rule study_grid as study_grid_of_scene with:
     wildcard_constraints:
         simulation=SCENE_NAMES,
     threads: 2
+    resources:
+        runtime=scene_minutes,
+        mem_mb=scene_megabytes,
     params:
         blocks=coarser_blocks_of_scene,
         settings=config["measure"],

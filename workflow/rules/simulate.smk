@@ -37,6 +37,9 @@ rule simulate:
     # Before what only draws: the claims wait for the last of the measurements.
     priority: 1
     threads: sweep_threads
+    resources:
+        runtime=sweep_minutes,
+        mem_mb=sweep_megabytes,
     params:
         block=simulation_block,
     message:

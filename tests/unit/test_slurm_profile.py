@@ -1,0 +1,79 @@
+"""The profile for a cluster: it parses, names rules that exist, and every job asks for time and memory."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+import pytest
+import yaml
+
+RULE = re.compile(r"^(?:use rule \w+ as (\w+) with|rule (\w+)):$(.*?)(?=^\S|\Z)", re.M | re.S)
+
+
+@pytest.fixture(scope="module")
+def rules(project) -> dict[str, str]:
+    """The text of every rule that is written out, by its name."""
+    found = {}
+    for path in [project / "Snakefile", *sorted((project / "workflow/rules").glob("*.smk"))]:
+        for derived, plain, text in RULE.findall(path.read_text(encoding="utf-8")):
+            found[derived or plain] = text
+    return found
+
+
+@pytest.fixture(scope="module")
+def drawn(project) -> set[str]:
+    """Figures: one rule each, made in a loop over two tables."""
+    text = (project / "workflow/rules/common.smk").read_text(encoding="utf-8")
+    tables = re.search(r"^FIGURES = \{(.*?)^STUDIES = \{(.*?)^\}", text, re.M | re.S)
+    return set(re.findall(r'^    "(\w+)":', "".join(tables.groups()), re.M))
+
+
+@pytest.fixture(scope="module")
+def profile(project) -> dict:
+    """The profile, parsed."""
+    text = (project / "workflow/profiles/slurm/config.yaml").read_text(encoding="utf-8")
+    return yaml.safe_load(text)
+
+
+def test_the_rules_are_found(rules, drawn):
+    assert {"all", "compile_kernels", "simulate", "simulate_scene", "study_grid", "write_report"} <= set(
+        rules
+    )
+    assert {"fig01_system_sketch", "study_extremes"} <= drawn
+
+
+def test_it_names_only_rules_that_exist(profile, rules, drawn):
+    named = {*profile["set-resources"], *profile["groups"]}
+    assert named <= set(rules) | drawn
+
+
+def test_every_job_asks_for_time_memory_and_cores(profile, rules, drawn):
+    defaults, own = profile["default-resources"], profile["set-resources"]
+    for name in set(rules) | drawn:
+        asked = {**defaults, **own.get(name, {})}
+        assert {"mem_mb", "runtime", "cpus_per_task"} <= set(asked), name
+        assert asked["cpus_per_task"] == "threads", name
+        assert 1 <= asked["runtime"] <= 60, name
+        # The largest job of the paper takes 480 MB; Snakemake, twice, is beside it.
+        assert 700 <= asked["mem_mb"] <= 4000, name
+
+
+def test_what_grows_with_the_configuration_asks_by_its_cost(profile, rules):
+    for name in ("simulate", "study_grid", "simulate_scene", "study_grid_of_scene"):
+        kind = "scene" if "scene" in name else "sweep"
+        assert f"runtime={kind}_minutes" in rules[name], name
+        assert f"mem_mb={kind}_megabytes" in rules[name], name
+        assert name not in profile["set-resources"], f"{name}: the profile would hide what the rule asks for"
+
+
+def test_the_plugin_is_in_its_own_lock_alone(project):
+    def packages(name: str) -> dict[str, str]:
+        return dict(re.findall(r"^([\w.-]+)==([\w.]+)", (project / name).read_text(encoding="utf-8"), re.M))
+
+    everybody, cluster = packages("requirements.lock"), packages("requirements-slurm.lock")
+    group = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"][
+        "slurm"
+    ]
+    assert set(group) <= set(cluster)
+    assert not set(cluster) & set(everybody)
