@@ -17,7 +17,7 @@ READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
 
-.PHONY: help setup lock replicate rulegraph verify faults test benchmark check clean distclean
+.PHONY: help setup slurm lock replicate rulegraph verify faults test slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
@@ -26,6 +26,8 @@ help:
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
+	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
+	@echo "make slurm-test  the draft through a Slurm of one node, started for it here, against the draft without"
 	@echo "make check       format and lint"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
@@ -42,11 +44,21 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@"$(BIN)/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch "$(READY)"
 
+# Only what a cluster adds: every other package is that of requirements.lock.
+$(VENV)/.slurm: $(READY) requirements-slurm.lock
+	@$(INSTALL) --only-binary :all: -r requirements-slurm.lock
+	@touch "$@"
+
+slurm: $(VENV)/.slurm
+
 lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
 	    --group build --quiet -o requirements-build.lock
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
 	    --group dev --quiet pyproject.toml -o requirements.lock
+	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
+	    --group slurm --quiet --constraints requirements.lock -o requirements-slurm.lock \
+	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
 
 replicate: $(READY)
 	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.overlay "$$OVERLAY"
@@ -67,6 +79,9 @@ faults: $(READY)
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile --no-loadscope-reorder
+
+slurm-test: $(VENV)/.slurm
+	@"$(BIN)/python" tests/slurm_cluster.py
 
 benchmark: $(READY)
 	@mkdir -p results/benchmarks

@@ -1,0 +1,319 @@
+"""The draft through a Slurm cluster, against the draft without; the data must be the same, bit for bit.
+
+    make slurm-test
+
+Starts a cluster of one node on the loopback, with a configuration and a key of its own in a temporary folder, and stops
+it at the end, whatever happened. Packages that are missing are installed with apt-get; for both it must be root.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from pipeline_copy import copy_project
+
+PROJECT = Path(__file__).resolve().parents[1]
+# What is called, and the Debian package that holds it.
+PROGRAMS = {"munged": "munge", "slurmctld": "slurmctld", "slurmd": "slurmd", "sbatch": "slurm-client"}
+COMPARED = (".nc", ".csv")
+
+# proctrack/linuxproc and task/none need no control groups, which containers often lack; select by cores and memory,
+# as clusters do, so that limits which do not fit are seen; finished jobs stay visible to squeue; a log of them.
+SLURM_CONF = """\
+ClusterName=loopback
+SlurmctldHost=localhost
+SlurmctldPort={controller_port}
+SlurmdPort={node_port}
+SlurmUser=root
+SlurmdUser=root
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.sock
+CredType=cred/munge
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU_Memory
+SlurmdParameters=config_overrides
+SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
+AccountingStorageType=accounting_storage/none
+JobAcctGatherType=jobacct_gather/none
+JobCompType=jobcomp/filetxt
+JobCompLoc={folder}/finished.txt
+MinJobAge=600
+ReturnToService=2
+NodeName=localhost NodeAddr=127.0.0.1 CPUs={cores} RealMemory={megabytes} State=UNKNOWN
+PartitionName=loopback Nodes=ALL Default=YES MaxTime=60 State=UP
+"""
+
+
+class Unable(Exception):
+    """The cluster cannot be had here; the message says why, in one line."""
+
+
+def install() -> None:
+    """What is missing of Slurm and munge, from Debian."""
+    missing = sorted({package for program, package in PROGRAMS.items() if not find(program)})
+    if os.geteuid() != 0:
+        raise Unable("make slurm-test starts a Slurm cluster, for which it must be root")
+    if not missing:
+        return
+    if not shutil.which("apt-get"):
+        raise Unable(f"make slurm-test needs {', '.join(missing)}, and there is no apt-get to install them")
+    print(f"Installing {', '.join(missing)}", flush=True)
+    quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
+    for command in (["update", "-qq"], ["install", "-y", "-qq", "--no-install-recommends", *missing]):
+        done = subprocess.run(
+            ["apt-get", *command],
+            env=quiet,
+            capture_output=True,
+            text=True,
+            check=False,
+            stdin=subprocess.DEVNULL,
+        )
+        if done.returncode:
+            raise Unable(
+                f"apt-get {command[0]} failed: {(done.stderr.strip().splitlines() or ['no reason given'])[-1]}"
+            )
+
+
+def find(program: str) -> str | None:
+    """Where a program is; daemons are often not on the path."""
+    return shutil.which(program, path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
+
+
+def free_ports(count: int) -> list[int]:
+    """Ports of the loopback that nobody listens at."""
+    sockets = [socket.socket() for _ in range(count)]
+    try:
+        for each in sockets:
+            each.bind(("127.0.0.1", 0))
+        return [each.getsockname()[1] for each in sockets]
+    finally:
+        for each in sockets:
+            each.close()
+
+
+def processes_of(folder: Path) -> list[int]:
+    """Processes whose arguments or environment name the folder: daemons, and what a job left behind."""
+    name, found = os.fsencode(folder), []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit() and int(entry.name) != os.getpid():
+            with suppress(OSError):
+                if name in (entry / "cmdline").read_bytes() or name in (entry / "environ").read_bytes():
+                    found.append(int(entry.name))
+    return found
+
+
+@contextmanager
+def cluster(folder: Path) -> Iterator[dict[str, str]]:
+    """A Slurm of one node; gives the environment that leads to it, and ends every process of it."""
+    for name in ("state", "spool", "bin"):
+        (folder / name).mkdir()
+    controller_port, node_port = free_ports(2)
+    cores = len(os.sched_getaffinity(0))
+    megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10
+    conf = folder / "slurm.conf"
+    conf.write_text(
+        SLURM_CONF.format(
+            folder=folder,
+            controller_port=controller_port,
+            node_port=node_port,
+            cores=cores,
+            megabytes=megabytes,
+        ),
+        encoding="ascii",
+    )
+    key = folder / "munge.key"
+    key.write_bytes(os.urandom(1024))
+    key.chmod(0o400)
+    # Within a job the plugin clears the variable that names the configuration, which on a real cluster lies where
+    # srun looks by itself.
+    srun = folder / "bin/srun"
+    srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {find("srun")} "$@"\n', encoding="ascii")
+    srun.chmod(0o755)
+    bin_folder = Path(sys.executable).parent
+    environment = os.environ | {
+        "SLURM_CONF": str(conf),
+        "PATH": f"{folder}/bin:{bin_folder}:{os.environ.get('PATH', '')}",
+    }
+    daemons = []
+
+    def daemon(name: str, *arguments: str) -> None:
+        with open(folder / f"{name}.out", "wb") as said:
+            daemons.append(
+                subprocess.Popen(
+                    [find(name), *arguments],
+                    env=environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=said,
+                    stderr=said,
+                    start_new_session=True,
+                )
+            )
+
+    try:
+        munge = [f"--{option}={folder}/munge.{ending}" for option, ending in (
+            ("key-file", "key"), ("socket", "sock"), ("pid-file", "pid"), ("log-file", "log"), ("seed-file", "seed"),
+        )]  # fmt: skip
+        daemon("munged", "--foreground", *munge)
+        wait_for(lambda: (folder / "munge.sock").exists(), "munged", folder)
+        daemon("slurmctld", "-D")
+        daemon("slurmd", "-D", "-N", "localhost")
+        wait_for(lambda: asked(environment, "sinfo", "--noheader", "--format=%T") == "idle", "slurmd", folder)
+        yield environment
+    finally:
+        asked(environment, "scancel", "--user=root")
+        for process in reversed(daemons):
+            process.terminate()
+        for process in daemons:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(timeout=10)
+        for sign in (signal.SIGTERM, signal.SIGKILL):
+            for pid in processes_of(folder):
+                with suppress(ProcessLookupError):
+                    os.kill(pid, sign)
+            until = time.monotonic() + 5
+            while processes_of(folder) and time.monotonic() < until:
+                time.sleep(0.1)
+        for process in daemons:
+            process.wait()
+
+
+def asked(environment: dict[str, str], *command: str) -> str:
+    """What a command of Slurm answers; nothing while there is no answer."""
+    try:
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, timeout=10, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return done.stdout.strip()
+
+
+def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
+    """Until a daemon is ready; otherwise its last words."""
+    until = time.monotonic() + seconds
+    while not ready():
+        if time.monotonic() > until:
+            words = [
+                line
+                for path in (folder / f"{name}.out", folder / f"{name}.log")
+                if path.exists()
+                for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
+            ]
+            raise Unable(f"{name} did not start within {seconds:g} s: {(words or ['it said nothing'])[-1]}")
+        time.sleep(0.1)
+
+
+def draft(folder: Path, environment: dict[str, str], *arguments: str) -> float:
+    """The draft replication in a folder; returns seconds."""
+    began = time.monotonic()
+    with open(folder / "said.txt", "wb") as said:
+        done = subprocess.run(
+            [sys.executable, "-m", "snakemake", *arguments, "--config", "preset=draft", "--", "all"],
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=said,
+            stderr=said,
+            check=False,
+        )
+    assert done.returncode == 0, (folder / "said.txt").read_text(encoding="utf-8")[-6000:]
+    return time.monotonic() - began
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Checksums of the data in a folder's results."""
+    results = folder / "results"
+    return {
+        str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(results.rglob("*"))
+        if path.suffix in COMPARED
+    }
+
+
+def finished(folder: Path) -> list[str]:
+    """State in which each job of the cluster ended."""
+    lines = (folder / "finished.txt").read_text(encoding="utf-8").splitlines()
+    return [
+        field.partition("=")[2] for line in lines for field in line.split() if field.startswith("JobState=")
+    ]
+
+
+def compare(folder: Path) -> str:
+    """Run both ways and compare; returns the closing line.
+
+    Raises
+    ------
+    AssertionError
+        When a run fails, a job did not complete, or a file differs.
+    """
+    local = copy_project(PROJECT, folder / "local", link=True)
+    remote = copy_project(PROJECT, folder / "remote", link=True)
+    daemons = folder / "cluster"
+    daemons.mkdir()
+    # munge wants its socket to be within everybody's reach; the key is not.
+    folder.chmod(0o711)
+    daemons.chmod(0o755)
+    cores = len(os.sched_getaffinity(0))
+    with cluster(daemons) as environment:
+        seconds = draft(local, dict(os.environ), "--cores", str(cores))
+        expected = digests(local)
+        print(f"Without Slurm: {len(expected)} data files in {seconds:.0f} s", flush=True)
+        # There is no accounting here, and nobody else in the queue.
+        seconds = draft(
+            remote,
+            environment,
+            "--profile=workflow/profiles/slurm",
+            "--slurm-status-command=squeue",
+            "--slurm-init-seconds-before-status-checks=1",
+        )
+    states, found = finished(daemons), digests(remote)
+    print(f"Through Slurm: {len(states)} jobs, {len(found)} data files in {seconds:.0f} s", flush=True)
+    left = processes_of(daemons)
+    assert not left, f"still running: {left}"
+    assert states and set(states) == {"COMPLETED"}, f"jobs ended as {sorted(set(states))}"
+    assert expected and sorted(expected) == sorted(found), sorted({*expected} ^ {*found})
+    differing = [name for name in expected if expected[name] != found[name]]
+    assert not differing, f"other than without Slurm: {differing}"
+    kinds = ", ".join(f"{sum(name.endswith(kind) for name in found)} {kind[1:]}" for kind in COMPARED)
+    return (
+        f"slurm-test: {len(states)} jobs through Slurm, all completed; {len(found)} files compared ({kinds}),"
+        f" {len(found) - len(differing)} identical; nothing left running"
+    )
+
+
+def main() -> int:
+    """Run it; returns the exit code."""
+    # So that a run that is told to stop stops its cluster too.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    try:
+        install()
+        with tempfile.TemporaryDirectory(prefix="slurm-") as folder:
+            print(compare(Path(folder)))
+    except Unable as reason:
+        print(reason, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
