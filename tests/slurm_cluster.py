@@ -186,15 +186,20 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
         for process in daemons:
             with suppress(subprocess.TimeoutExpired):
                 process.wait(timeout=10)
-        for sign in (signal.SIGTERM, signal.SIGKILL):
-            for pid in processes_of(folder):
-                with suppress(ProcessLookupError):
-                    os.kill(pid, sign)
-            until = time.monotonic() + 5
-            while processes_of(folder) and time.monotonic() < until:
-                time.sleep(0.1)
+        end_all(folder)
         for process in daemons:
             process.wait()
+
+
+def end_all(folder: Path) -> None:
+    """End every process that names the folder, gently at first."""
+    for sign in (signal.SIGTERM, signal.SIGKILL):
+        for pid in processes_of(folder):
+            with suppress(ProcessLookupError):
+                os.kill(pid, sign)
+        until = time.monotonic() + 5
+        while processes_of(folder) and time.monotonic() < until:
+            time.sleep(0.1)
 
 
 def asked(environment: dict[str, str], *command: str) -> str:
@@ -308,7 +313,11 @@ def main() -> int:
     try:
         install()
         with tempfile.TemporaryDirectory(prefix="slurm-") as folder:
-            print(compare(Path(folder)))
+            try:
+                print(compare(Path(folder)))
+            finally:
+                # A run that was interrupted leaves jobs without Slurm, too.
+                end_all(Path(folder))
     except Unable as reason:
         print(reason, file=sys.stderr)
         return 1

@@ -144,10 +144,20 @@ def simulation_block(wildcards):
     return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
 
 
+SWEEP_COSTS = {}
+
+
+def sweep_cost(wildcards):
+    """What a sweep is expected to cost; expanded once, since several things of each job follow from it."""
+    name = wildcards.simulation
+    if name not in SWEEP_COSTS:
+        SWEEP_COSTS[name] = expected_cost(*expand_block(simulation_block(wildcards)))
+    return SWEEP_COSTS[name]
+
+
 def sweep_threads(wildcards):
     """Both cores for a sweep of more than some seconds; two short ones side by side waste less on starting up."""
-    cost = expected_cost(*expand_block(simulation_block(wildcards)))
-    return 2 if cost.hours * 3600 > LONG_SWEEP else 1
+    return 2 if sweep_cost(wildcards).hours * 3600 > LONG_SWEEP else 1
 
 
 def job_minutes(cost, threads, attempt):
@@ -162,12 +172,12 @@ def job_megabytes(cost, attempt):
 
 def sweep_minutes(wildcards, threads, attempt):
     """Time limit of a sweep, and of its grid study, which is coarser."""
-    return job_minutes(expected_cost(*expand_block(simulation_block(wildcards))), threads, attempt)
+    return job_minutes(sweep_cost(wildcards), threads, attempt)
 
 
 def sweep_megabytes(wildcards, attempt):
     """Memory limit of a sweep."""
-    return job_megabytes(expected_cost(*expand_block(simulation_block(wildcards))), attempt)
+    return job_megabytes(sweep_cost(wildcards), attempt)
 
 
 def coarser_blocks(wildcards):
