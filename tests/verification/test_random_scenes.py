@@ -56,9 +56,11 @@ def check_invariants(scene):
 
     if localised:
         assert largest_stress_of_stuck_blocks(scene, run) <= 1.0 + tol.STRESS_AT_END
-        allowed = tol.RANDOM_ENERGY if run.attrs["steps"] >= 20 else tol.RANDOM_ENERGY_FEW_STEPS
-        assert run.attrs["energy_residual"] < allowed or scene.damping_ratio > 1.0
-        assert ("energy" in run.attrs["flags"]) == (run.attrs["energy_residual"] > 1e-2)
+        # Bounded, or flagged; and flagged only where the run is coarse or strongly damped.
+        flagged = "energy" in run.attrs["flags"]
+        assert flagged == (run.attrs["energy_residual"] > tol.RANDOM_ENERGY)
+        assert not flagged or run.attrs["steps"] < 20 or scene.order == 3 or scene.damping_ratio >= 1.0
+        seen["flagged for energy"] += flagged
 
     other = sp.simulate(mirrored(scene))
     assert other.sizes == {"x": run.sizes["x"]}
@@ -83,6 +85,7 @@ def test_invariants_hold_over_varied_scenes():
     check_invariants()
     assert seen["scenes"] >= 500
     assert seen["in which blocks slip"] > 0.5 * seen["scenes"]
+    assert seen["flagged for energy"] < tol.RANDOM_ENERGY_FLAGGED * seen["scenes"]
     for kind in (
         "in which blocks stick",
         "asymmetric",
