@@ -132,6 +132,8 @@ NARROW_GAUSSIAN = 1e-3
 # takes 2 % of the amplitude of the shortest waves in each step of half the spacing, by its own amplification factor:
 # such runs may be flagged, of all scenes no more than a tenth.
 RANDOM_ENERGY, RANDOM_ENERGY_FLAGGED = 1e-2, 0.1
+# The least share of each kind of scene: which scenes are drawn changes with the constants of the code under test.
+RANDOM_SHARE = 0.05
 
 # --- Scenes -----------------------------------------------------------------------------------------------------
 

@@ -14,7 +14,9 @@ from slippulse.model import ORDERS, RELEASES, SCHEMES
 LEVELS = st.one_of(
     st.sampled_from([-3.0, -1.0, -1e-9, 0.0, 1e-9, 0.5, 0.95]), st.floats(-3.0, 0.95, allow_subnormal=False)
 )
-RATIOS = st.one_of(st.sampled_from([0.0, 1e-6, 0.1, 1.0, 3.0]), st.floats(0.0, 1.0, allow_subnormal=False))
+RATIOS = st.one_of(
+    st.sampled_from([0.0, 1e-6, 0.1, 1.0, 1.5, 2.0, 3.0]), st.floats(0.0, 1.0, allow_subnormal=False)
+)
 STEP = st.tuples(
     st.one_of(st.floats(-15.0, -0.5), st.floats(0.5, 15.0)), st.floats(-3.0, 0.95, allow_subnormal=False)
 )
