@@ -41,7 +41,7 @@ FIRST_ORDER = (0.85, 1.25)
 FIRST_ORDER_SMOOTH = 0.05
 # The viscous loss is integrated to third order whatever the order of the step; without damping the balance has the
 # order of the step.
-ENERGY_ORDER_BELOW, ENERGY_ORDER_ABOVE = 0.5, 0.5
+ENERGY_ORDER = 0.5
 # Energy balance at the paper preset's step, relative to its largest part (measured: below 1e-4 in every scene).
 ENERGY = 1e-4
 # And at a tenth of the largest step, order 8.

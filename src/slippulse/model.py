@@ -44,7 +44,7 @@ class Scene:
     release : "total" or "elastic"
         Whether the released stress includes the damping force.
     scheme : "localised" or "fixed_step"
-        Taylor steps that end at each release and stick, or symplectic Euler with events checked once a step.
+        Taylor steps with each release and stick at its instant, or symplectic Euler with events checked once a step.
     max_step : float
         Largest time step in units of dx; the step itself under "fixed_step".
     order : int

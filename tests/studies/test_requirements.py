@@ -19,6 +19,14 @@ def test_only_sliding_blocks_are_updated(rows):
         assert work["value"][scene] == pytest.approx(expected, rel=tol.WORK)
 
 
+def test_events_expand_few_blocks_beside_those_that_slide(rows):
+    """15 blocks a release and a stick, against all sliding blocks twice in the time of one."""
+    events = rows("events")["value"]
+    assert (events > 0.0).all()
+    assert events["crack, whole lattice"] < 0.05
+    assert events["two pulses, by symmetry"] < 0.3
+
+
 def test_the_whole_lattice_is_many_times_a_pulse(rows):
     assert rows("work")["blocks"]["two pulses, by symmetry"] > 15.0
 

@@ -20,7 +20,7 @@ def main(config_path: str, folder: str) -> None:
     accuracy, window = config["presets"]["paper"], config["measure"]["front_window"]
     parts = {
         "machine": measure.machine,
-        "kernel": lambda: measure.kernel(accuracy),
+        "kernel": measure.kernel,
         "whole_scene": lambda: measure.whole_scene(accuracy, window),
         "exponents": lambda: measure.exponents(accuracy),
         "settings": lambda: measure.settings_compared(config["presets"], window),

@@ -56,7 +56,7 @@ class Lattice:
         self.strain = np.zeros(size)
         self.release_time = np.full(size, np.nan)
         self.stick_time = np.full(size, np.nan)
-        self.counts = np.zeros(8, dtype=np.int64)
+        self.counts = np.zeros(9, dtype=np.int64)
         self.totals = np.zeros(7)
         self.totals[localised.FIRST_STICK] = np.nan
         self.samples = samples
@@ -66,7 +66,7 @@ class Lattice:
         self.sample_velocity = np.zeros((n_times, n_positions))
         self._fit()
         # Blocks outside the first lattice are looked at too, for a second nucleation point far away.
-        while np.any(self._reach_of_release() > size - 8):
+        while np.any(self._reach_of_release() > size - localised.ROOM):
             self._grow()
             size = self.w.shape[1]
         self._release_at_start()
@@ -75,7 +75,7 @@ class Lattice:
         """Array positions that the bumps need, so that all that is released at t = 0 lies on the lattice."""
         reach = [abs(c) + 4.0 * w for c, _, w in self.scene.prestress.bumps] or [0.0]
         blocks = np.ceil(np.array(reach) / self.scene.dx).astype(np.int64)
-        return blocks + 8 if self.mirror else 2 * blocks + 16
+        return blocks + localised.ROOM if self.mirror else 2 * (blocks + localised.ROOM)
 
     def _fit(self) -> None:
         """Scratch arrays and the pre-stress for the present size."""
@@ -84,8 +84,10 @@ class Lattice:
         if self.mirror:
             self.tau[0] = self.tau[2]
         self.velocity = np.zeros(size)
-        self.edge_block = np.zeros(size + 2, dtype=np.int64)
-        self.edge_time = np.zeros(size + 2)
+        self.offset = np.zeros(size)
+        self.moved_starts = np.zeros(size, dtype=np.int64)
+        self.moved_ends = np.zeros(size, dtype=np.int64)
+        self.release_at = np.full(size, np.inf)
         self.stopping_block = np.zeros(size, dtype=np.int64)
         self.stopping_time = np.zeros(size)
         self.largest_force = float(np.max(np.abs(self.tau)))
@@ -140,8 +142,8 @@ class Lattice:
         step = scene.max_step * scene.dx
         if self.localised:
             return localised.advance(
-                self.w, self.strain, self.velocity, self.tau, self.starts, self.ends, self.edge_block,
-                self.edge_time, self.stopping_block, self.stopping_time, *shared, *recorded, *rules,
+                self.w, self.offset, self.strain, self.velocity, self.tau, self.starts, self.ends, self.moved_starts,
+                self.moved_ends, self.release_at, self.stopping_block, self.stopping_time, *shared, *recorded, *rules,
                 scene.order, step, scene.duration, self.largest_force, CALL_STEPS,
             )  # fmt: skip
         return fixed_step.advance_fixed(
@@ -245,6 +247,7 @@ class Lattice:
             "stopped_because": "everything is stuck" if status == localised.ALL_STUCK else "duration reached",
             "steps": int(self.counts[localised.STEPS]),
             "block_updates": int(self.counts[localised.BLOCK_UPDATES]),
+            "event_updates": int(self.counts[localised.EVENT_UPDATES]),
             "releases": int(self.counts[localised.RELEASES]),
             "sticks": int(self.counts[localised.STICKS]),
             "re_releases": int(self.counts[localised.RE_RELEASES]),

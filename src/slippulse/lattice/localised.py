@@ -1,9 +1,14 @@
-"""The localised scheme: Taylor steps of any order that end at each release and at each stick.
+"""The localised scheme: Taylor steps of any order over all that slides, with releases and sticks inside them.
 
 Between events the sliding lattice is linear with constant coefficients, so its Taylor polynomial is cheap, and it
 is its own dense output: the stress of a stuck neighbour and the velocity of a sliding block are polynomials in the
-step, and the step ends at the first root of either. Only the runs of sliding blocks and their neighbours are
-touched; everything else is at rest and its derivatives are zero.
+step, and the next event is the first root of either. An event expands its neighbourhood anew and leaves the rest of
+the step as it is (`events`). Only the runs of sliding blocks and their neighbours are touched; everything else is at
+rest and its derivatives are zero.
+
+What paid: events inside the step, 1.1 to 1.5 times faster than ending the step at each and more accurate; passes over
+whole rows, since slices cost 70 ns each. What did not: a pass written by hand for order 4 against pairs of levels, an
+even number of columns for the neighbourhood of an event.
 """
 
 from __future__ import annotations
@@ -12,16 +17,24 @@ import math
 
 import numpy as np
 
+from .events import (
+    COLUMNS,
+    REACH,
+    crowded,
+    due_releases,
+    expand_anew,
+    find_sticks,
+    foresee_releases,
+    next_event,
+)
 from .jit import compiled
-from .runs import release_block, stick_block
+from .runs import holds, release_block, stick_block
 from .stencils import (
     advance_slip,
     advance_strain,
     count_stopping,
-    crossing,
     first_acceleration,
     next_derivative,
-    polynomial,
     stretching,
     velocity_after,
 )
@@ -29,16 +42,16 @@ from .stencils import (
 # Why `advance` came back.
 DONE, CONTINUE, GROW, UNSTABLE, ALL_STUCK = 0, 1, 2, 3, 4
 # Places in `counts`.
-RUNS, STEPS, BLOCK_UPDATES, RELEASES, STICKS, RE_RELEASES, NEXT_SAMPLE, FIRST_STUCK = range(8)
+RUNS, STEPS, BLOCK_UPDATES, EVENT_UPDATES, RELEASES, STICKS, RE_RELEASES, NEXT_SAMPLE, FIRST_STUCK = range(9)
 # Places in `totals`.
 TIME, VISCOUS_LOSS, PENDING_STEP, MIN_VELOCITY, MIN_STUCK_STRESS, FIRST_STICK, STICK_LOSS = range(7)
 
-# Events closer than this share of the largest step are one event: the two fronts of a mirror-symmetric scene.
+# A step ends early at the next event after this many.
+MOST_EVENTS = 64
+# Room for the events of one step beyond the outermost block that slides.
+ROOM = COLUMNS + MOST_EVENTS
+# Events closer than this share of the largest step are one: fronts of a symmetric scene that meet.
 SIMULTANEOUS = 1e-11
-# How many times within a step a stress, or a velocity that may dip below 0, is looked at.
-LOOKS = 4
-# A velocity this little below zero at the instant of a stick is the rounding of the root, not another stick.
-ROUNDING = 1e-12
 # Velocities beyond this many times the largest that any pre-stress could have driven by now mean a blow-up.
 BLOW_UP = 100.0
 
@@ -51,67 +64,46 @@ def derivatives(w, strain, tau, starts, ends, n_runs, mirror, top, dx, leaf, bet
         a, b = starts[r], ends[r]
         if mirror and a == 1:
             w[1, 0] = w[1, 2]
-        first_acceleration(
-            w[2, a:b],
-            strain[a - 1 : b],
-            w[1, a - 1 : b + 1],
-            w[0, a - 1 : b + 1],
-            tau[a - 1 : b + 1],
-            per_dx,
-            leaf,
-            damping,
-        )
+        first_acceleration(w, strain, tau, a, b, per_dx, leaf, damping)
         for k in range(3, top + 1):
             if mirror and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
-            next_derivative(
-                w[k, a:b], w[k - 2, a - 1 : b + 1], w[k - 1, a - 1 : b + 1], per_dx2, leaf, damping
-            )
+            next_derivative(w, k, a, b, per_dx2, leaf, damping)
     if mirror:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
 
 
 @compiled()
-def add_viscous_loss(w, starts, ends, n_runs, mirror, dx, beta, step, totals):
-    """Close the last step's viscous loss with the dissipation now, and open this step's.
-
-    Third order in the step from the rate D and its derivative at the start and D at the end, which is the next
-    start since velocities are continuous: h (2 D_0 + D_1)/3 + h^2 D_0'/6.
-    """
+def viscous_rate(w, starts, ends, n_runs, mirror, dx, beta):
+    """Viscous dissipation of all runs, and its rate of change."""
     square, product = 0.0, 0.0
     for r in range(n_runs):
         a, b = starts[r], ends[r]
         left = 1 if mirror and a == 1 else a - 1
-        s, p = stretching(w[1, left : b + 1], w[2, left : b + 1])
+        s, p = stretching(w, left, b)
         square += s
         product += p
     scale = (2.0 if mirror else 1.0) * beta / dx
-    rate, change = scale * square, 2.0 * scale * product
-    totals[VISCOUS_LOSS] += totals[PENDING_STEP] * rate / 3.0
-    totals[VISCOUS_LOSS] += step * (2.0 * rate / 3.0) + step * step * change / 6.0
-    totals[PENDING_STEP] = step
+    return scale * square, 2.0 * scale * product
 
 
 @compiled()
-def stress_polynomial(out, w, strain, tau, block, dx, leaf, beta, total, top):
-    """Coefficients of the stress of a stuck block minus 1, in powers of the step. Returns the degree."""
-    per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
-    out[0] = (strain[block] - strain[block - 1]) / dx - leaf * w[0, block] + tau[block] - 1.0
-    factorial = 1.0
-    for k in range(1, top + 1):
-        factorial *= k
-        out[k] = per_dx2 * (w[k, block - 1] + w[k, block + 1]) / factorial
-    if total and beta > 0.0:
-        factorial = 1.0
-        for k in range(top):
-            factorial *= max(k, 1)
-            out[k] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1]) / factorial
-    return top
+def viscous_loss(step, rate, change, kinks):
+    """Viscous loss of a step, but for the third of ``step`` times the dissipation at its end, which comes later.
+
+    Third order in the step from the rate D and its derivative at the start and D at the end, which is the next
+    start since velocities are continuous: h (2 D_0 + D_1)/3 + h^2 D_0'/6. An event at s that changes D' by k adds
+    k (h - s)^2/2 and takes h k (h - s)/3 out of what D_1 stands for; ``kinks`` are the sums of k, k s and k s^2.
+    """
+    smooth = step * 2.0 * rate / 3.0 + step * step * change / 6.0
+    first = kinks[0] * step - kinks[1]
+    second = kinks[0] * step * step - 2.0 * kinks[1] * step + kinks[2]
+    return smooth + second / 2.0 - step * first / 3.0
 
 
 @compiled()
-def sample(w, blocks, step, order, slip, velocity):
+def sample(w, offset, blocks, step, order, slip, velocity):
     """Slip and slip velocity at the requested blocks (-1: outside the lattice, at rest) ``step`` into this step."""
     for p in range(blocks.shape[0]):
         i = blocks[p]
@@ -122,92 +114,111 @@ def sample(w, blocks, step, order, slip, velocity):
             u = step / k * (w[k, i] + u)
         for k in range(order, 0, -1):
             v = step / k * (w[k + 1, i] + v)
-        slip[p] = w[0, i] + u
+        slip[p] = w[0, i] + offset[i] + u
         velocity[p] = w[1, i] + v
 
 
 @compiled()
-def find_releases(
-    w, strain, tau, starts, ends, n, edge_block, edge_time, totals, mirror, dx, leaf, beta, total, top, h, same
+def take_samples(
+    w, offset, start, end, order, counts, sample_times, sample_blocks, sample_slip, sample_velocity
 ):  # fmt: skip
-    """When each stuck neighbour of a run reaches stress 1 within h. Returns how many there are and the first."""
-    coefficients = np.empty(top + 1)
-    n_edges = 0
-    for r in range(n):
-        if not (mirror and starts[r] == 1) and (r == 0 or ends[r - 1] < starts[r] - 1):
-            edge_block[n_edges] = starts[r] - 1
-            n_edges += 1
-        edge_block[n_edges] = ends[r]
-        n_edges += 1
-    for q in range(n_edges):
-        degree = stress_polynomial(coefficients, w, strain, tau, edge_block[q], dx, leaf, beta, total, top)
-        totals[MIN_STUCK_STRESS] = min(totals[MIN_STUCK_STRESS], coefficients[0] + 1.0)
-        edge_time[q] = math.inf
-        if coefficients[0] >= 0.0:
-            edge_time[q] = 0.0
-        else:
-            # A stress can pass the threshold and fall back within a step, between blocks that slow down.
-            for k in range(1, LOOKS + 1):
-                part = (h + same) * k / LOOKS
-                if polynomial(coefficients, degree, part) >= 0.0:
-                    edge_time[q] = crossing(coefficients, degree, part)
-                    break
-        h = min(h, edge_time[q])
-    return n_edges, h
+    """Take the samples that are due by ``end``, from polynomials about ``start``."""
+    while counts[NEXT_SAMPLE] < sample_times.shape[0] and sample_times[counts[NEXT_SAMPLE]] <= end:
+        s = counts[NEXT_SAMPLE]
+        into = min(max(sample_times[s], start), end) - start
+        sample(w, offset, sample_blocks, into, order, sample_slip[s], sample_velocity[s])
+        counts[NEXT_SAMPLE] += 1
 
 
 @compiled()
-def find_sticks(w, velocity, starts, ends, n, stopping_block, stopping_time, top, h):
-    """When each block whose velocity passes below 0 within h does so.
+def near_the_end(starts, ends, n, size, mirror):
+    """Whether a front is so near the end of the lattice that the events of a step may reach beyond it."""
+    return ends[n - 1] >= size - ROOM or (starts[0] <= ROOM and not mirror)
 
-    Returns how many there are and the first time, or -1 for the number where a velocity is not finite.
+
+@compiled()
+def note_stick(block, instant, stick_time, counts, totals):
+    """Keep the time of a stick, and of the first one its place too."""
+    stick_time[block] = instant
+    if counts[STICKS] == 0:
+        totals[FIRST_STICK] = instant
+        counts[FIRST_STUCK] = block
+    counts[STICKS] += 1
+
+
+@compiled()
+def note_release(block, instant, release_time, stick_time, counts):
+    """Keep the time of a first release; a later one takes back the stick."""
+    if math.isnan(release_time[block]):
+        release_time[block] = instant
+    else:
+        counts[RE_RELEASES] += 1
+        stick_time[block] = math.nan
+    counts[RELEASES] += 1
+
+
+@compiled()
+def foresee_sticks(
+    w, velocity, starts, ends, n, stopping_block, stopping_time, coefficients, slopes, order, h
+):
+    """Velocity of all runs after h, and when each block that passes 0 until then does so.
+
+    Returns how many there are, or -1 where a velocity is not finite.
     """
-    coefficients = np.empty(top)
-    n_stopping = 0
-    earliest = h
+    stopping = 0
     for r in range(n):
-        for i in range(starts[r], ends[r]):
-            if velocity[i] >= 0.0 and w[1, i] + h * w[2, i] >= 0.0:
-                continue
-            if not math.isfinite(velocity[i]):
-                return -1, h
-            factorial = 1.0
-            for k in range(top):
-                factorial *= max(k, 1)
-                coefficients[k] = w[k + 1, i] / factorial
-            below = h
-            if velocity[i] > ROUNDING:
-                below = math.inf
-                for k in range(1, LOOKS):
-                    if polynomial(coefficients, top - 1, h * k / LOOKS) < 0.0:
-                        below = h * k / LOOKS
-                        break
-                if below == math.inf:
-                    continue
-            root = 0.0
-            if coefficients[0] > 0.0:
-                root = crossing(coefficients, top - 1, below)
-            elif coefficients[0] == 0.0 and coefficients[1] > 0.0:
-                # Released at this very instant: the zero at the start is not the one that is sought.
-                root = crossing(coefficients[1:], top - 2, below)
-            stopping_block[n_stopping] = i
-            stopping_time[n_stopping] = root
-            n_stopping += 1
-            earliest = min(earliest, root)
-    return n_stopping, earliest
+        velocity_after(velocity, w, starts[r], ends[r], h, order)
+        stopping += count_stopping(velocity, w, starts[r], ends[r], h)
+    n_stopping = 0
+    if stopping > 0:
+        for r in range(n):
+            n_stopping = find_sticks(
+                w, velocity, starts[r], ends[r], stopping_block, stopping_time, n_stopping, coefficients, slopes,
+                0, 0.0, order + 1, h,
+            )  # fmt: skip
+            if n_stopping < 0:
+                break
+    return n_stopping
+
+
+@compiled()
+def take_over(w, offset, strain, velocity, starts, ends, n, changed, stopped, n_events, order, h, mirror, dx):
+    """Advance slip, velocity and strain of all that moved by h. Returns the largest velocity among a few."""
+    fastest = 0.0
+    for r in range(n):
+        a, b = starts[r], ends[r]
+        advance_slip(w, velocity, a, b, h, order)
+        fastest = max(fastest, w[1, a], w[1, (a + b) // 2], w[1, b - 1])
+    for q in range(n_events):
+        for i in range(changed[q], changed[q] + COLUMNS):
+            w[0, i] += offset[i]
+            w[2, i] += offset[i]
+            offset[i] = 0.0
+    for r in range(n):
+        a, b = starts[r], ends[r]
+        advance_strain(strain, w, 1 if mirror and a == 1 else a - 1, b, 1.0 / dx)
+    if mirror:
+        strain[0] = -strain[1]
+    for q in range(n_events):
+        if stopped[q] >= 0:
+            w[2, stopped[q]] = 0.0
+    return fastest
 
 
 @compiled()
 def advance(
-    w, strain, velocity, tau, starts, ends, edge_block, edge_time, stopping_block, stopping_time,
-    release_time, stick_time, counts, totals,
+    w, offset, strain, velocity, tau, starts, ends, moved_starts, moved_ends, release_at, stopping_block,
+    stopping_time, release_time, stick_time, counts, totals,
     sample_times, sample_blocks, sample_slip, sample_velocity,
     mirror, total, dx, leaf, beta, order, largest_step, end_time, largest_force, call_steps,
 ):  # fmt: skip
     """Advance the lattice by at most ``call_steps`` steps, to ``end_time`` at most. Returns why it stopped."""
     top = order + 1
     size = tau.shape[0]
+    patch, rows = np.empty((top + 1, COLUMNS)), np.empty((8, COLUMNS))
+    coefficients, slopes = np.empty(top + 1), np.empty(top + 1)
     same = SIMULTANEOUS * largest_step
+    changed, stopped, kinks = np.empty(MOST_EVENTS, np.int64), np.empty(MOST_EVENTS, np.int64), np.empty(3)
     for _ in range(call_steps):
         n = counts[RUNS]
         t = totals[TIME]
@@ -215,86 +226,142 @@ def advance(
             return ALL_STUCK
         if t >= end_time:
             return DONE
-        if ends[n - 1] >= size - 2 or (starts[0] <= 1 and not mirror):
+        if near_the_end(starts, ends, n, size, mirror):
             return GROW
         derivatives(w, strain, tau, starts, ends, n, mirror, top, dx, leaf, beta)
+        rate, slope = 0.0, 0.0
+        kinks[:] = 0.0
+        if beta > 0.0:
+            rate, slope = viscous_rate(w, starts, ends, n, mirror, dx, beta)
+            totals[VISCOUS_LOSS] += totals[PENDING_STEP] * rate / 3.0
 
-        whole = min(largest_step, end_time - t)
-        n_edges, h = find_releases(
-            w, strain, tau, starts, ends, n, edge_block, edge_time, totals, mirror, dx, leaf, beta, total, top,
-            whole, same,
-        )  # fmt: skip
-        n_stopping = 0
-        floor = 0.0
+        h = min(largest_step, end_time - t)
+        end = end_time if h == end_time - t else t + h
+        n_stopping = foresee_sticks(
+            w, velocity, starts, ends, n, stopping_block, stopping_time, coefficients, slopes, order, h
+        )
+        if n_stopping < 0:
+            return UNSTABLE
+        lowest = foresee_releases(
+            release_at,
+            coefficients,
+            slopes,
+            w,
+            strain,
+            tau,
+            starts,
+            ends,
+            n,
+            h,
+            mirror,
+            dx,
+            leaf,
+            beta,
+            total,
+            top,
+        )
+        totals[MIN_STUCK_STRESS] = min(totals[MIN_STUCK_STRESS], lowest)
+        n_moved = n
+        for r in range(n):
+            moved_starts[r], moved_ends[r] = starts[r], ends[r]
+
+        n_events, early = 0, False
         while True:
-            stopping = 0
-            for r in range(n):
-                velocity_after(velocity, w, starts[r], ends[r], h, order)
-                a, b = starts[r], ends[r]
-                stopping += count_stopping(velocity[a:b], w[1, a:b], w[2, a:b], h, floor)
-            if stopping == 0:
-                break
-            n_stopping, earliest = find_sticks(
-                w, velocity, starts, ends, n, stopping_block, stopping_time, top, h
+            block, now, stuck = next_event(
+                release_at, starts, ends, n, mirror, stopping_block, stopping_time, n_stopping
             )
+            if now == math.inf:
+                break
+            early = n_events == MOST_EVENTS or crowded(
+                release_at,
+                starts,
+                ends,
+                n,
+                mirror,
+                stopping_block,
+                stopping_time,
+                n_stopping,
+                block,
+                now + same,
+            )
+            if early:
+                h = now
+                end = min(t + now, end)
+                for r in range(n_moved):
+                    velocity_after(velocity, w, moved_starts[r], moved_ends[r], h, order)
+                for q in range(n_events):
+                    # Released a moment ago: nothing but rounding is below 0.
+                    for i in range(changed[q], changed[q] + COLUMNS):
+                        velocity[i] = max(velocity[i], 0.0)
+                break
+            instant = min(t + now, end)
+            take_samples(
+                w,
+                offset,
+                t,
+                instant,
+                order,
+                counts,
+                sample_times,
+                sample_blocks,
+                sample_slip,
+                sample_velocity,
+            )
+            if stuck:
+                n = stick_block(starts, ends, n, block)
+                note_stick(block, instant, stick_time, counts, totals)
+            else:
+                n = release_block(starts, ends, n, block)
+                if not holds(moved_starts, moved_ends, n_moved, block):
+                    n_moved = release_block(moved_starts, moved_ends, n_moved, block)
+                note_release(block, instant, release_time, stick_time, counts)
+            n_stopping, shift, speed, lowest, kink = expand_anew(
+                w, offset, strain, tau, velocity, starts, ends, n, block, stuck, now, h, release_at, stopping_block,
+                stopping_time, n_stopping, patch, rows, coefficients, slopes, mirror, total, dx, leaf, beta, top,
+            )  # fmt: skip
             if n_stopping < 0:
                 return UNSTABLE
-            if not earliest < h - same:
-                break
-            # The shorter step may end inside a dip that the longer one stepped over, so look again.
-            h = earliest
-            floor = -ROUNDING
-
-        end = end_time if h == end_time - t else t + h
-        while counts[NEXT_SAMPLE] < sample_times.shape[0] and sample_times[counts[NEXT_SAMPLE]] <= end:
-            s = counts[NEXT_SAMPLE]
-            into = min(max(sample_times[s] - t, 0.0), h)
-            sample(w, sample_blocks, into, order, sample_slip[s], sample_velocity[s])
-            counts[NEXT_SAMPLE] += 1
+            totals[MIN_STUCK_STRESS] = min(totals[MIN_STUCK_STRESS], lowest)
+            if stuck:
+                totals[MIN_VELOCITY] = min(totals[MIN_VELOCITY], speed)
+            kink *= (2.0 if mirror else 1.0) * 2.0 * beta / dx
+            kinks[0] += kink
+            kinks[1] += kink * now
+            kinks[2] += kink * now * now
+            changed[n_events], stopped[n_events] = shift, block if stuck else -1
+            n_events += 1
+        take_samples(
+            w, offset, t, end, order, counts, sample_times, sample_blocks, sample_slip, sample_velocity
+        )
 
         if beta > 0.0:
-            add_viscous_loss(w, starts, ends, n, mirror, dx, beta, h, totals)
-        fastest = 0.0
-        for r in range(n):
-            a, b = starts[r], ends[r]
-            advance_slip(w, velocity, a, b, h, order)
-            counts[BLOCK_UPDATES] += b - a
-            fastest = max(fastest, w[1, a], w[1, (a + b) // 2], w[1, b - 1])
-        for r in range(n):
-            a, b = starts[r], ends[r]
-            first = 1 if mirror and a == 1 else a - 1
-            advance_strain(strain[first:b], w[2, first : b + 1], 1.0 / dx)
-        if mirror:
-            strain[0] = -strain[1]
+            totals[VISCOUS_LOSS] += viscous_loss(h, rate, slope, kinks)
+            totals[PENDING_STEP] = h
+        for r in range(n_moved):
+            counts[BLOCK_UPDATES] += moved_ends[r] - moved_starts[r]
+        counts[EVENT_UPDATES] += n_events * (2 * REACH + 1)
+        fastest = take_over(
+            w, offset, strain, velocity, moved_starts, moved_ends, n_moved, changed, stopped, n_events, order, h,
+            mirror, dx,
+        )  # fmt: skip
+        if early:
+            n_due = due_releases(release_at, starts, ends, n, mirror, h + same, changed)
+            for q in range(n_stopping):
+                if stopping_time[q] <= h + same:
+                    block = stopping_block[q]
+                    totals[MIN_VELOCITY] = min(totals[MIN_VELOCITY], w[1, block])
+                    for k in range(1, top + 1):
+                        w[k, block] = 0.0
+                    n = stick_block(starts, ends, n, block)
+                    note_stick(block, end, stick_time, counts, totals)
+            for q in range(n_due):
+                n = release_block(starts, ends, n, changed[q])
+                note_release(changed[q], end, release_time, stick_time, counts)
+        counts[RUNS] = n
         counts[STEPS] += 1
         totals[TIME] = end
         if not fastest <= BLOW_UP * (1.0 + largest_force * end):
             return UNSTABLE
-
-        for q in range(n_stopping):
-            if stopping_time[q] > h + same:
-                continue
-            i = stopping_block[q]
-            totals[MIN_VELOCITY] = min(totals[MIN_VELOCITY], w[1, i])
-            for k in range(1, top + 1):
-                w[k, i] = 0.0
-            stick_time[i] = end
-            if counts[STICKS] == 0:
-                totals[FIRST_STICK] = end
-                counts[FIRST_STUCK] = i
-            counts[STICKS] += 1
-            counts[RUNS] = stick_block(starts, ends, counts[RUNS], i)
-        for q in range(n_edges):
-            if edge_time[q] > h + same:
-                continue
-            i = edge_block[q]
-            if math.isnan(release_time[i]):
-                release_time[i] = end
-            else:
-                counts[RE_RELEASES] += 1
-                stick_time[i] = math.nan
-            counts[RELEASES] += 1
-            counts[RUNS] = release_block(starts, ends, counts[RUNS], i)
     return CONTINUE
 
 
@@ -304,4 +371,6 @@ def finish(w, strain, tau, starts, ends, counts, totals, mirror, dx, leaf, beta)
     n = counts[RUNS]
     derivatives(w, strain, tau, starts, ends, n, mirror, 2, dx, leaf, beta)
     if beta > 0.0:
-        add_viscous_loss(w, starts, ends, n, mirror, dx, beta, 0.0, totals)
+        rate, _ = viscous_rate(w, starts, ends, n, mirror, dx, beta)
+        totals[VISCOUS_LOSS] += totals[PENDING_STEP] * rate / 3.0
+        totals[PENDING_STEP] = 0.0

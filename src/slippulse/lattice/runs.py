@@ -58,3 +58,12 @@ def stick_block(starts, ends, n, block):
     ends[r + 1] = ends[r]
     ends[r] = block
     return n + 1
+
+
+@compiled()
+def holds(starts, ends, n, block):
+    """Whether a block is in one of the runs."""
+    r = 0
+    while r < n and ends[r] <= block:
+        r += 1
+    return r < n and starts[r] <= block

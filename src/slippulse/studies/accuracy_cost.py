@@ -173,10 +173,12 @@ def crack_errors(settings: Mapping, values: Mapping, of: Scene) -> dict:
 
 
 def work(run) -> float:
-    """Stencil passes over one block: each order is one; the textbook scheme passes once over the whole lattice."""
+    """Stencil passes over one block, those of events included: each order is one; the textbook scheme passes once over
+    the whole lattice.
+    """
     if run.attrs["scheme"] == "fixed_step":
         return float(run.attrs["steps"] * run.sizes["x"])
-    return float(run.attrs["block_updates"] * run.attrs["order"])
+    return float((run.attrs["block_updates"] + run.attrs["event_updates"]) * run.attrs["order"])
 
 
 def dominating(trade: pd.DataFrame, index: int) -> str:

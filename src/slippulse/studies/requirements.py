@@ -22,10 +22,11 @@ def table(settings: Mapping) -> pd.DataFrame:
     Returns
     -------
     rows of part "work": scene, value = block updates over sliding blocks and steps (1: nothing else is touched, 1/2:
-    half of a symmetric scene), blocks = the lattice of the textbook scheme over the sliding blocks; "memory": bytes a
-    block of the lattice for each order; "duration" and "spacing": x, value = block updates; "exponent": their slopes
+    half of a symmetric scene), blocks = the lattice of the textbook scheme over the sliding blocks; "events": value =
+    blocks that events expanded anew over the block updates; "memory": bytes a block of the lattice for each order;
+    "duration" and "spacing": x, value = block updates; "exponent": their slopes
     """
-    rows = [work(name, scene) for name, scene in scenes(settings).items()]
+    rows = [row for name, scene in scenes(settings).items() for row in work(name, scene)]
     rows += [
         {"part": "memory", "scene": f"order {order}", "x": order, "value": bytes_a_block(settings, order)}
         for order in settings["orders"]
@@ -66,19 +67,26 @@ def scenes(settings: Mapping) -> dict[str, Scene]:
     }
 
 
-def work(name: str, scene: Scene) -> dict:
-    """Block updates a step over the mean number of sliding blocks, from the release and stick times of the run."""
+def work(name: str, scene: Scene) -> list[dict]:
+    """Block updates a step over the mean number of sliding blocks, from the release and stick times of the run.
+
+    And what events expand anew, over the block updates.
+    """
     run = run_scene(scene)
     released = np.isfinite(run.release_time)
     end = run.numbers["end_time"]
     stopped = np.where(np.isfinite(run.stick_time), run.stick_time, end)
     sliding = float(np.sum(stopped[released] - run.release_time[released])) / end
-    return {
-        "part": "work",
-        "scene": name,
-        "value": run.numbers["block_updates"] / run.numbers["steps"] / sliding,
-        "blocks": float(released.sum()) / sliding,
-    }
+    updates = run.numbers["block_updates"]
+    return [
+        {
+            "part": "work",
+            "scene": name,
+            "value": updates / run.numbers["steps"] / sliding,
+            "blocks": float(released.sum()) / sliding,
+        },
+        {"part": "events", "scene": name, "value": run.numbers["event_updates"] / updates},
+    ]
 
 
 def bytes_a_block(settings: Mapping, order: int) -> float:
