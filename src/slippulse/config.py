@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .checks import ConfigError, nearest, shown
+from .chunks import runs_of
 from .lattice.samples import Samples
 from .model import Scene
 from .prestress import Prestress
 from .refusals import (
+    check_chunks,
     check_cost,
     check_resolved,
     corners,
@@ -37,8 +39,9 @@ def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping, coarser: flo
     """One simulation block with everything that its data depend on, as builtins: what a rule passes as params.
 
     ``coarser`` multiplies the spacing, at fixed beta/dx and step/dx; a fixed spacing stays, and its step is multiplied.
+    Into how many chunks a sweep is dealt is not in it: the runs are the same.
     """
-    block = {key: value for key, value in simulation.items()}
+    block = {key: value for key, value in simulation.items() if key != "chunks"}
     for key, value in model.items():
         block.setdefault(key, [value] if key == "damping_ratio" else value)
     return block | {
@@ -52,7 +55,7 @@ def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
 
     Parameters
     ----------
-    block : as `resolve` returns it
+    block : as `resolve` returns it; with ``chunk``, its number and how many there are, only the runs of that chunk
 
     Raises
     ------
@@ -64,9 +67,12 @@ def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
         ("damping_ratio", value) for value in block["damping_ratio"]
     ]
     releases = [block["release"]] if isinstance(block["release"], str) else block["release"]
-    for release, profile, gamma, spacing, (kind, value) in itertools.product(
-        releases, _profiles(block), block.get("gamma", [0.0]), block.get("dx", [None]), damping
-    ):
+    axes = [releases, *_shapes(block), block.get("gamma", [0.0]), block.get("dx", [None]), damping]
+    runs = math.prod(len(axis) for axis in axes)
+    profile_of = cache(partial(_profile, block))
+    for run in runs_of(*block["chunk"], runs) if "chunk" in block else range(runs):
+        release, *shape, gamma, spacing, (kind, value) = _entries(axes, run)
+        profile = profile_of(*shape)
         dx = _spacing(block, profile.width, gamma, spacing)
         duration = _duration(block["duration"], profile, gamma)
         beta = value if kind == "beta" else value * dx
@@ -90,17 +96,28 @@ def expand(block: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     return scenes, samples
 
 
-def _profiles(block: Mapping) -> list[Prestress]:
+def _entries(axes: Sequence[Sequence], run: int) -> list:
+    """One entry of each list: those of a run of their product, without the runs before it."""
+    entries = []
+    for axis in reversed(axes):
+        run, place = divmod(run, len(axis))
+        entries.append(axis[place])
+    return entries[::-1]
+
+
+def _shapes(block: Mapping) -> list[Sequence]:
+    """The lists whose product the profiles of a block are."""
     if "profiles" in block:
-        return [Prestress(**{"width": 1.0, **profile}) for profile in block["profiles"]]
-    profiles = []
-    rights = block["right"]
-    for left in block["left"]:
-        for right in [left] if rights == "same" else rights:
-            for width in block.get("width", [1.0]):
-                for steps in _steps_beyond(block.get("beyond")):
-                    profiles.append(Prestress(left=left, right=right, width=width, steps=steps))
-    return profiles
+        return [range(len(block["profiles"]))]
+    rights = [None] if block["right"] == "same" else block["right"]
+    return [block["left"], rights, block.get("width", [1.0]), _steps_beyond(block.get("beyond"))]
+
+
+def _profile(block: Mapping, *shape) -> Prestress:
+    if "profiles" in block:
+        return Prestress(**{"width": 1.0, **block["profiles"][shape[0]]})
+    left, right, width, steps = shape
+    return Prestress(left=left, right=left if right is None else right, width=width, steps=steps)
 
 
 def _steps_beyond(rule: Mapping | None) -> list[tuple]:
@@ -148,7 +165,9 @@ def _samples(rule: Mapping | None, scene: Scene) -> Samples | None:
     return Samples(times=np.linspace(0.0, scene.duration, rule["times"]), positions=positions)
 
 
-def validate(config: Mapping, schema_path: str | Path, shipped: Mapping | None = None) -> None:
+def validate(
+    config: Mapping, schema_path: str | Path, shipped: Mapping | None = None, every_run: bool = True
+) -> None:
     """Refuse a configuration that the schema does not allow, or whose scenes are refused or cost too much.
 
     Parameters
@@ -156,6 +175,7 @@ def validate(config: Mapping, schema_path: str | Path, shipped: Mapping | None =
     config : the configuration, overlays included
     schema_path : its JSON Schema
     shipped : the configuration without overlays; names of claims that it does not know are then refused
+    every_run : whether the scenes of all blocks are checked too, which takes time where they are many
 
     Raises
     ------
@@ -174,6 +194,8 @@ def validate(config: Mapping, schema_path: str | Path, shipped: Mapping | None =
     problems = problems or unknown_names(config, shipped)
     if problems:
         raise ConfigError(some(sorted(set(problems))))
+    if not every_run:
+        return
     accuracy = config["presets"][config["preset"]]
     for name, simulation in config["simulations"].items():
         problems += _check_block(f"simulations.{name}", simulation, config, accuracy)
@@ -192,15 +214,17 @@ def _check_block(key: str, simulation: Mapping, config: Mapping, accuracy: Mappi
     try:
         _check_simulation(simulation)
         large = config.get("allow_large", False)
+        chunks = simulation.get("chunks", 1)
         for coarser in (1.0, *accuracy["coarser"]):
             block = resolve(simulation, config["model"], accuracy, coarser)
             if coarser > 1.0:
                 companion = f" (on the lattice {coarser:g} times coarser of the grid study, presets.{config['preset']})"
-            scenes, samples = expand(corners(block) if large else counted(block))
+            check_chunks(chunks, block)
+            scenes, samples = expand(corners(block) if large else counted(block, chunks))
             if coarser == 1.0:
                 check_resolved(scenes)
                 if not large:
-                    check_cost(scenes, samples)
+                    check_cost(scenes, samples, chunks)
     except ArithmeticError:
         return [f"{key}: a number too large or too small to compute with; allowed: numbers near 1"]
     except ValueError as error:

@@ -15,6 +15,8 @@ RATE = 1.5e8
 LARGEST_HOURS = 12.0
 LARGEST_BYTES = 4e9
 LARGEST_RUNS = 20_000
+# How many times as much a sweep in chunks may be altogether: a million runs, a day on 25 cores.
+LARGEST_WHOLE = 50
 HOW_TO_GO_ON = "--config allow_large=true to go on"
 
 
@@ -70,12 +72,12 @@ def _sliding_length(scene: Scene) -> float:
     return scene.duration
 
 
-def too_large(cost: Cost) -> str:
-    """What a cost exceeds, in words; empty when it is within bounds."""
-    if cost.runs > LARGEST_RUNS:
-        return f"up to {LARGEST_RUNS} runs"
-    if not cost.hours <= LARGEST_HOURS:
-        return f"up to {LARGEST_HOURS:g} hours on one core"
-    if not cost.bytes <= LARGEST_BYTES:
-        return f"up to {LARGEST_BYTES / 1e9:g} GB"
+def too_large(cost: Cost, times: int = 1) -> str:
+    """What a cost exceeds, in words, where ``times`` that of one job is allowed; empty when it is within bounds."""
+    if cost.runs > times * LARGEST_RUNS:
+        return f"up to {times * LARGEST_RUNS} runs"
+    if not cost.hours <= times * LARGEST_HOURS:
+        return f"up to {times * LARGEST_HOURS:g} hours on one core"
+    if not cost.bytes <= times * LARGEST_BYTES:
+        return f"up to {times * LARGEST_BYTES / 1e9:g} GB"
     return ""

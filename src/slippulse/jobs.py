@@ -128,7 +128,7 @@ def study_grid(
     """Run and measure one simulation block on coarser lattices, and write the grid study of every number.
 
     ``blocks`` holds the resolved block by factor of the spacing. The coarser data are not kept, their measured tables
-    are, one below the other with their factor.
+    are, one below the other with their factor. The study of a chunk has every number that the sweep's may have.
     """
     import pandas as pd
 
@@ -138,18 +138,52 @@ def study_grid(
     from .store import load_table, save_table
     from .sweep import run_sweep
 
+    part = any("chunk" in block for block in blocks.values())
     coarser = {}
     for factor in sorted(blocks):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
         scenes, samples = expand(blocks[factor])
         coarser[factor] = measure(run_sweep(scenes, samples, blocks[factor]["record"], threads), settings)
-    save_table(
-        grid_tables((load_table(finest), *coarser.values()), tuple(coarser), PARAMETERS), uncertainties
-    )
+    # A column of fractions may happen to have none in a chunk.
+    measured = load_table(finest, whole=PARAMETERS if part else None)
+    save_table(grid_tables((measured, *coarser.values()), tuple(coarser), PARAMETERS), uncertainties)
     save_table(
         pd.concat([table.assign(factor=factor) for factor, table in coarser.items()], ignore_index=True),
         tables,
     )
+
+
+def join_data(data: Sequence[str], record: Sequence[str], output: str | Path) -> None:
+    """Put the data of a sweep's chunks into one file."""
+    from .join import join_datasets
+    from .store import save_dataset
+
+    save_dataset(join_datasets(data, record), output)
+
+
+def join_measurements(measured: Sequence[str], output: str | Path) -> None:
+    """Put the measured tables of a sweep's chunks into one."""
+    from .join import count_rows, joined_table, save_rows
+
+    save_rows(joined_table(measured, count_rows(measured)), output)
+
+
+def join_uncertainties(
+    finest: str | Path,
+    uncertainties: Sequence[str],
+    coarser: Sequence[str],
+    outputs: Mapping[str, str],
+) -> None:
+    """Put the grid studies of a sweep's chunks into one, and their tables on the coarser lattices."""
+    from .join import joined_grid_study, joined_table, save_rows
+    from .measure.table import PARAMETERS
+    from .measure.uncertainty import quantities
+    from .store import load_table
+
+    measured = load_table(finest)
+    studied = quantities(measured, PARAMETERS)
+    save_rows(joined_grid_study(uncertainties, measured, PARAMETERS, studied), outputs["uncertainties"])
+    save_rows(joined_table(coarser, len(measured), last=("factor",)), outputs["tables"])
 
 
 def write_claims(

@@ -9,14 +9,15 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from .checks import ConfigError, nearest, shown
-from .cost import HOW_TO_GO_ON, LARGEST_RUNS, expected_cost, too_large
+from .chunks import runs_of
+from .cost import HOW_TO_GO_ON, LARGEST_RUNS, LARGEST_WHOLE, expected_cost, too_large
 from .lattice.samples import Samples
 from .model import Scene
 from .theory.front_speed import front_speed
 from .theory.pulse import steady_pulse
 
 # Lists of a simulation block whose product its runs are.
-AXES = ("left", "right", "width", "profiles", "gamma", "damping_ratio", "beta", "dx")
+AXES = ("left", "right", "width", "profiles", "gamma", "damping_ratio", "beta", "dx", "release")
 # Below this share of resolved_blocks in every run a block of scenes says nothing about the continuum.
 HARDLY_RESOLVED = 0.5
 # Beyond it the front-speed quadrature takes long, and the pulse is as wide as the damped layer.
@@ -143,17 +144,21 @@ def runs(block: Mapping) -> int:
     return math.prod(lengths) * len(block.get("beyond", {"levels": [0]})["levels"])
 
 
-def counted(block: Mapping) -> Mapping:
-    """The block itself, refused before its scenes are built where it has too many.
+def counted(block: Mapping, chunks: int = 1) -> Mapping:
+    """The block itself, refused before its scenes are built where it has too many for so many chunks.
 
     Raises
     ------
     ValueError
         Naming the number of runs.
     """
-    if runs(block) > LARGEST_RUNS:
+    allowed = min(chunks, LARGEST_WHOLE) * LARGEST_RUNS
+    if runs(block) > allowed:
         axes = ", ".join(f"{axis} {len(block[axis])}" for axis in AXES if isinstance(block.get(axis), list))
-        raise ValueError(f"runs: {runs(block)} ({axes}); allowed: up to {LARGEST_RUNS} runs ({HOW_TO_GO_ON})")
+        dealt = "" if chunks == 1 else f" in {chunks} chunks"
+        raise ValueError(
+            f"runs: {runs(block)} ({axes}); allowed: up to {allowed} runs{dealt} ({HOW_TO_GO_ON})"
+        )
     return block
 
 
@@ -167,8 +172,20 @@ def corners(block: Mapping) -> dict:
     }
 
 
-def check_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) -> None:
-    """Refuse scenes that together cost more than a night or a small machine's memory.
+def check_chunks(chunks: int, block: Mapping) -> None:
+    """Refuse more chunks than runs.
+
+    Raises
+    ------
+    ValueError
+        Naming both numbers.
+    """
+    if chunks > runs(block):
+        raise ValueError(f"chunks: {chunks}; allowed: up to the number of runs, {runs(block)}")
+
+
+def check_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None], chunks: int = 1) -> None:
+    """Refuse scenes that cost more than a night or a small machine's memory, in one of their chunks or altogether.
 
     Raises
     ------
@@ -176,8 +193,18 @@ def check_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) -> No
         With the estimate, what is allowed and how to go on.
     """
     cost = expected_cost(scenes, samples)
-    if limit := too_large(cost):
+    if limit := too_large(cost, LARGEST_WHOLE if chunks > 1 else 1):
         raise ValueError(f"cost: {cost}; allowed: {limit} ({HOW_TO_GO_ON})")
+    if chunks == 1 or not too_large(cost):
+        return
+    for number in range(1, chunks + 1):
+        dealt = list(runs_of(number, chunks, len(scenes)))
+        cost = expected_cost([scenes[run] for run in dealt], [samples[run] for run in dealt])
+        if limit := too_large(cost):
+            raise ValueError(
+                f"chunks: {chunks}, and chunk {number} costs {cost}; allowed: {limit} a chunk: more chunks"
+                f" ({HOW_TO_GO_ON})"
+            )
 
 
 def check_resolved(scenes: Sequence[Scene]) -> None:

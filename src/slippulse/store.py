@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 from pathlib import Path
 
@@ -74,8 +74,8 @@ def save_table(table: pd.DataFrame, path: str | Path) -> None:
     write_whole(path, lambda part: table.to_csv(part, index=False, float_format="%.9g", lineterminator="\n"))
 
 
-def load_table(path: str | Path) -> pd.DataFrame:
-    """Read a table; empty text stays text.
+def load_table(path: str | Path, whole: Collection[str] | None = None) -> pd.DataFrame:
+    """Read a table; empty text stays text. With ``whole``, only these columns may hold whole numbers, others fractions.
 
     Raises
     ------
@@ -83,6 +83,11 @@ def load_table(path: str | Path) -> pd.DataFrame:
         Naming the file and the remedy.
     """
     try:
-        return pd.read_csv(path, keep_default_na=True, na_filter=True)
+        table = pd.read_csv(path, keep_default_na=True, na_filter=True)
+        if whole is None:
+            return table
+        # Read again, since -0 as a whole number has lost its sign.
+        fractions = [name for name in table if table[name].dtype.kind == "i" and name not in whole]
+        return pd.read_csv(path, keep_default_na=True, na_filter=True, dtype=dict.fromkeys(fractions, float))
     except ValueError as error:
         raise UnreadableFile(path, error) from error

@@ -59,6 +59,14 @@ def test_every_job_asks_for_time_memory_and_cores(profile, rules, drawn):
         assert 700 <= asked["mem_mb"] <= 4000, name
 
 
+def test_a_sweep_or_chunk_is_one_job_and_the_joining_another(profile, rules):
+    groups = profile["groups"]
+    assert groups["simulate"] == groups["measure"] == groups["study_grid"]
+    # In a group with them, the rule that joins the chunks would make one job of all.
+    joining = {name for name in rules if name.startswith("join_")}
+    assert len(joining) == 3 and not joining & set(groups)
+
+
 def test_what_grows_with_the_configuration_asks_by_its_cost(profile, rules):
     for name in ("simulate", "study_grid", "simulate_scene", "study_grid_of_scene"):
         kind = "scene" if "scene" in name else "sweep"

@@ -14,7 +14,13 @@ from slippulse.overlay import read_overlay
 try:
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     SHIPPED = read_overlay(Path(workflow.basedir) / "config/config.yaml")
-    validate(config, Path(workflow.basedir) / "workflow/schemas/config.schema.yaml", SHIPPED)
+    validate(
+        config,
+        Path(workflow.basedir) / "workflow/schemas/config.schema.yaml",
+        SHIPPED,
+        # A job on another node starts Snakemake anew, with what was checked here.
+        every_run=workflow.is_main_process,
+    )
 except ConfigError as error:
     raise WorkflowError(f"The configuration is refused:\n{error}") from None
 
@@ -41,6 +47,7 @@ SIMULATION_SOURCES = KERNEL_SOURCES + sources(
     "checks.py",
     "simulation.py",
     "sweep.py",
+    "chunks.py",
     "points.py",
     "versions.py",
     "theory/transition.py",
@@ -135,13 +142,33 @@ def figure_files(names):
     return [f"results/figures/{name}.{ending}" for name in names for ending in ("pdf", "png", "csv")]
 
 
-def simulation_block(wildcards):
-    """Everything that the data of a simulation depend on, in one dict of builtins."""
-    if wildcards.simulation not in config["simulations"]:
-        raise WorkflowError(
-            f"simulation: {wildcards.simulation!r}; allowed: {', '.join(config['simulations'])}"
-        )
-    return resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+# Sweeps that several jobs share, and how many.
+CHUNKS = {
+    name: sweep["chunks"] for name, sweep in config["simulations"].items() if sweep.get("chunks", 1) > 1
+}
+CHUNKED = "|".join(CHUNKS) or "(?!)"
+# How many there are is in the name of each chunk: files left by another number are never taken.
+CHUNK_NAMES = {
+    name: [f"{name}/{place}-of-{count}" for place in range(1, count + 1)] for name, count in CHUNKS.items()
+}
+# What one job works at: a sweep without chunks, or one chunk of another, as NAME/3-of-8.
+ONE_JOB = "|".join(
+    [rf"(?!(?:{CHUNKED})\b)[a-z][a-z0-9_]*", *(chunk for names in CHUNK_NAMES.values() for chunk in names)]
+)
+
+
+def chunks_of(pattern):
+    """A function for the files of all chunks of a sweep."""
+    return lambda wildcards: [pattern.format(chunk) for chunk in CHUNK_NAMES[wildcards.simulation]]
+
+
+def simulation_block(wildcards, coarser=1.0):
+    """Everything that the data of a simulation, or of a chunk of it, depend on, in one dict of builtins."""
+    name, _, chunk = wildcards.simulation.partition("/")
+    if name not in config["simulations"]:
+        raise WorkflowError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
+    block = resolve(config["simulations"][name], config["model"], ACCURACY, coarser)
+    return block | {"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else block
 
 
 SWEEP_COSTS = {}
@@ -180,13 +207,15 @@ def sweep_megabytes(wildcards, attempt):
     return job_megabytes(sweep_cost(wildcards), attempt)
 
 
+def join_data_megabytes(wildcards, attempt):
+    """Memory limit for the data of all chunks in one file."""
+    whole = resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+    return job_megabytes(expected_cost(*expand_block(whole)), attempt)
+
+
 def coarser_blocks(wildcards):
     """The same on the coarser lattices of the preset, by factor of the spacing."""
-    block = config["simulations"][wildcards.simulation]
-    return {
-        float(factor): resolve(block, config["model"], ACCURACY, float(factor))
-        for factor in ACCURACY["coarser"]
-    }
+    return {float(factor): simulation_block(wildcards, float(factor)) for factor in ACCURACY["coarser"]}
 
 
 def study_settings(wildcards):

@@ -20,7 +20,7 @@ rule compile_kernels:
 
 
 wildcard_constraints:
-    simulation="[a-z][a-z0-9_]*",
+    simulation=ONE_JOB,
 
 
 rule simulate:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,6 +64,21 @@ def grid_study(values: tuple[float, float, float], factors: tuple[float, float])
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
 
 
+def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
+    """Columns of a measured table of which a grid study is made.
+
+    Parameters
+    ----------
+    table : measured numbers of a sweep, as read from its file
+    keys : columns that name a point rather than measure it
+    """
+    return [
+        name
+        for name in table.columns
+        if name not in keys and table[name].dtype.kind == "f" and not name.startswith("paper_")
+    ]
+
+
 def grid_tables(
     tables: tuple[pd.DataFrame, ...], factors: tuple[float, float], keys: tuple[str, ...]
 ) -> pd.DataFrame:
@@ -80,14 +96,10 @@ def grid_tables(
     """
     finest = tables[0]
     rows = []
-    quantities = [
-        name
-        for name in finest.columns
-        if name not in keys and finest[name].dtype.kind == "f" and not name.startswith("paper_")
-    ]
+    studied = quantities(finest, keys)
     for index in range(len(finest)):
         point = {"point": index} | {key: finest[key].iloc[index] for key in keys}
-        for name in quantities:
+        for name in studied:
             study = grid_study(tuple(table[name].iloc[index] for table in tables), factors)
             rows.append(
                 point

@@ -1,0 +1,45 @@
+"""Which runs of a sweep are in which of its chunks: a rule that needs the number of chunks and nothing else.
+
+Each round of as many runs as there are chunks goes to as many different chunks, as cards are dealt: neighbours, which
+cost about the same, are spread. Who is first changes from round to round at random, always in the same way; were it
+always the same, a list of as many values as there are chunks would give each chunk a single value of it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Iterator
+
+
+def dealing(chunks: int) -> Iterator[int]:
+    """Number of the chunk, from 1, of each run of a sweep in turn, without end.
+
+    Parameters
+    ----------
+    chunks : how many there are, >= 1
+    """
+    for turn in itertools.count():
+        first = _first(turn, chunks)
+        for place in range(chunks):
+            yield (first + place) % chunks + 1
+
+
+def runs_of(number: int, chunks: int, runs: int) -> Iterator[int]:
+    """The runs of one chunk, from 0 and in the order of the sweep.
+
+    Parameters
+    ----------
+    number : of the chunk, from 1
+    chunks : how many there are
+    runs : how many runs the sweep has
+    """
+    for turn, start in enumerate(range(0, runs, chunks)):
+        run = start + (number - 1 - _first(turn, chunks)) % chunks
+        if run < runs:
+            yield run
+
+
+def _first(turn: int, chunks: int) -> int:
+    # Of its draws Python promises this one to be the same in every version.
+    return int(chunks * random.Random(turn).random())

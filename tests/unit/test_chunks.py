@@ -1,0 +1,133 @@
+"""Chunks of a sweep: every run in one of them, about equal costs, and the bytes of the sweep when put together."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from slippulse.chunks import dealing, runs_of
+from slippulse.config import expand, resolve
+from slippulse.cost import expected_cost
+from slippulse.jobs import (
+    join_data,
+    join_measurements,
+    join_uncertainties,
+    measure_block,
+    simulate_block,
+    study_grid,
+)
+from slippulse.join import ChunksDiffer
+
+COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
+# Levels of both signs, so that some runs have a transition and others none, in chunks of either kind alone too; a
+# level of 0, so that columns of whole numbers in one chunk hold fractions in the next; a symmetric and an oblique one.
+SWEEPS = {
+    "displacement": {
+        "boundary": "displacement", "left": [-0.2, 0.0, 0.5], "right": [0.0, 0.5], "gamma": [0.65, 1.0],
+        "duration": {"time": 5.0}, "record": ["fronts", "fields", "samples"],
+        "samples": {"times": 3, "positions": 11, "extent": 5.0}, "resolved_blocks": 1,
+    },
+    "stress": {
+        "boundary": "stress", "left": [-0.5, 0.0, 0.3], "right": [0.0, -0.4], "width": [0.5, 1.0],
+        "duration": {"time": 5.0}, "release": ["total", "elastic"], "record": ["fronts"],
+    },
+    "profiles": {
+        "boundary": "displacement", "gamma": [0.65], "duration": {"time": 4.0}, "record": ["fronts", "samples"],
+        "profiles": [{"left": 0.3, "right": 0.3}, {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]}],
+        "samples": {"times": 4, "positions": 1, "extent": 0.0}, "resolved_blocks": 1,
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("chunks", "runs"), [(1, 5), (2, 2), (2, 7), (7, 7), (8, 81), (100, 1234)])
+def test_each_run_is_in_one_chunk(chunks, runs):
+    dealt = list(islice(dealing(chunks), runs))
+    members = [list(runs_of(number, chunks, runs)) for number in range(1, chunks + 1)]
+    assert sorted(run for chunk in members for run in chunk) == list(range(runs))
+    for number, chunk in enumerate(members, start=1):
+        assert chunk == [run for run, to in enumerate(dealt) if to == number]
+        assert len(chunk) in (runs // chunks, -(-runs // chunks))
+
+
+@pytest.mark.parametrize("inner", [8, 10, 20, 99, 100, 101])
+def test_costs_that_repeat_are_spread_whatever_their_period(inner):
+    cost = np.tile(np.r_[np.ones(inner - 1), inner], 100_000 // inner)
+    sums = np.bincount(list(islice(dealing(10), cost.size)), cost)[1:]
+    # With a fixed first chunk one of ten would have half of all costs at 10, 20 and 100.
+    assert sums.max() < 1.2 * sums.mean()
+
+
+def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
+    block = resolve(
+        config["simulations"]["transition_convergence"] | {"chunks": 5},
+        config["model"],
+        paper_accuracy | {"dx": 0.01},
+    )
+    assert "chunks" not in block
+    scenes, samples = expand(block)
+    chunks = [expand(block | {"chunk": [number, 5]}) for number in range(1, 6)]
+    for number, chunk in enumerate(chunks, start=1):
+        assert chunk[0] == [scenes[run] for run in runs_of(number, 5, len(scenes))]
+    total = sum(expected_cost(*chunk).block_updates for chunk in chunks)
+    assert total == pytest.approx(expected_cost(scenes, samples).block_updates)
+
+
+@pytest.fixture(scope="module")
+def made(project, tmp_path_factory):
+    """A function that makes all files of a sweep, or of one chunk of it, and returns their paths."""
+    import yaml
+
+    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
+    folder = tmp_path_factory.mktemp("chunks")
+
+    def make(name: str, chunk: list[int] | None = None) -> list:
+        part = {"chunk": chunk} if chunk else {}
+        blocks = {
+            factor: resolve(SWEEPS[name], config["model"], COARSE, factor) | part
+            for factor in (1.0, 1.5, 2.0)
+        }
+        files = [
+            folder / f"{name}{chunk or ''}{ending}"
+            for ending in (".nc", ".csv", "_study.csv", "_coarser.csv")
+        ]
+        if not files[0].exists():
+            simulate_block(name, blocks.pop(1.0), 1, files[0])
+            measure_block(files[0], config["measure"], files[1])
+            study_grid(name, files[1], blocks, config["measure"], 1, *files[2:])
+        return files
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("name", "chunks"),
+    [("displacement", 2), ("displacement", 5), ("displacement", 12), ("stress", 5), ("profiles", 2)],
+)
+def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks):
+    whole = made(name)
+    data, measured, studies, coarser = zip(
+        *(made(name, [number, chunks]) for number in range(1, chunks + 1)), strict=True
+    )
+    joined = [tmp_path / file.name for file in whole]
+    join_data(data, SWEEPS[name]["record"], joined[0])
+    join_measurements(measured, joined[1])
+    join_uncertainties(joined[1], studies, coarser, {"uncertainties": joined[2], "tables": joined[3]})
+    for one, other in zip(whole, joined, strict=True):
+        assert one.read_bytes() == other.read_bytes(), one.name
+
+
+def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
+    whole = made("displacement")
+    short, long = made("displacement", [1, 5]), made("displacement", [2, 2])
+    with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
+        join_measurements([short[1], long[1]], tmp_path / "measured.csv")
+    with pytest.raises(ChunksDiffer):
+        join_data([short[0], long[0]], SWEEPS["displacement"]["record"], tmp_path / "data.nc")
+    with pytest.raises(ChunksDiffer):
+        join_uncertainties(
+            whole[1], [short[2], long[2]], [short[3], long[3]],
+            {"uncertainties": tmp_path / "study.csv", "tables": tmp_path / "coarser.csv"},
+        )  # fmt: skip
+    assert not any(tmp_path.iterdir())

@@ -1,0 +1,11 @@
+"""Put the grid studies of a sweep's chunks into one."""
+
+from slippulse.jobs import join_uncertainties, logged
+
+with logged(snakemake.log[0]):
+    join_uncertainties(
+        snakemake.input.finest,
+        snakemake.input.uncertainties,
+        snakemake.input.tables,
+        {key: snakemake.output[key] for key in ("uncertainties", "tables")},
+    )
