@@ -83,11 +83,17 @@ def load_table(path: str | Path, whole: Collection[str] | None = None) -> pd.Dat
         Naming the file and the remedy.
     """
     try:
-        table = pd.read_csv(path, keep_default_na=True, na_filter=True)
+        table = pd.read_csv(path, keep_default_na=True, na_filter=True, low_memory=False)
         if whole is None:
             return table
         # Read again, since -0 as a whole number has lost its sign.
         fractions = [name for name in table if table[name].dtype.kind == "i" and name not in whole]
-        return pd.read_csv(path, keep_default_na=True, na_filter=True, dtype=dict.fromkeys(fractions, float))
+        return pd.read_csv(
+            path,
+            keep_default_na=True,
+            na_filter=True,
+            low_memory=False,
+            dtype=dict.fromkeys(fractions, float),
+        )
     except ValueError as error:
         raise UnreadableFile(path, error) from error

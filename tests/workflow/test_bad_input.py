@@ -23,6 +23,11 @@ KEPT = ("steady_displacement", "space_time_displacement", "space_time_stress", "
 STEADY, STRESS = "simulations: {steady_displacement: ", "simulations: {space_time_stress: "
 OWN = "simulations: {mine: {boundary: displacement, duration: {time: 10.0}, record: [fronts], "
 OWN_STRESS = "simulations: {mine: {boundary: stress, left: [-1.0], record: [fronts], "
+# Four runs, each of 11 hours at 2.0e+4.
+LONG = (
+    "simulations: {{mine: {{boundary: stress, left: [-1.0, -0.8, -0.6, -0.5], right: [0.0], dx: [0.02],"
+    " record: [fronts], chunks: {chunks}, duration: {{time: {time}}}}}}}"
+)
 MANY = "[" + ", ".join(f"{0.001 * i:.3f}" for i in range(1, 801)) + "]"
 
 # Overlay, and what the refusal must name: the key, the value, what is allowed or the remedy.
@@ -153,6 +158,33 @@ CASES = {
         "simulations: {space_time_stress: {samples: {times: 100000, positions: 100000}}}",
         ["GB", "allow_large=true"],
     ),
+    "no chunks": (STEADY + "{chunks: 0}}", ["steady_displacement.chunks: 0", "a whole number from 1 to 1000"]),
+    "a fraction of a chunk": (STEADY + "{chunks: 2.5}}", ["chunks: 2.5", "a whole number from 1 to 1000"]),
+    "chunks as text": (STEADY + "{chunks: '2'}}", ["chunks: '2'", "without quotes"]),
+    "more chunks than a system opens files": (STEADY + "{chunks: 1001}}", ["chunks: 1001", "from 1 to 1000"]),
+    "more chunks than runs": (STEADY + "{chunks: 13}}", ["displacement.chunks: 13", "the number of runs, 12"]),
+    "misspelt chunks": (STEADY + "{chunk: 2}}", ["steady_displacement.chunk", "did you mean 'chunks'"]),
+    "chunks of a scene": ("scenes: {barrier: {chunks: 2}}", ["scenes.barrier.chunks: unknown key"]),
+    "too many runs for so many chunks": (
+        STEADY + f"{{chunks: 3, left: {MANY}, gamma: {MANY}}}}}",
+        ["runs: 1920000", "up to 60000 runs in 3 chunks", "allow_large=true"],
+    ),
+    "too many runs in chunks": (
+        STEADY + f"{{chunks: 1000, left: {MANY}, gamma: {MANY}}}}}",
+        ["runs: 1920000", "up to 1000000 runs in 1000 chunks", "allow_large=true"],
+    ),
+    "too many hours in a chunk": (
+        LONG.format(chunks=2, time="2.0e+4"),
+        ["chunks: 2, and chunk", "up to 12 hours on one core a chunk: more chunks", "allow_large=true"],
+    ),
+    "too many hours in chunks": (
+        LONG.format(chunks=4, time="1.0e+5"),
+        ["cost: 4 runs", "up to 600 hours on one core", "allow_large=true"],
+    ),
+    "too much memory in a chunk": (
+        STEADY + "{chunks: 12, record: [samples], samples: {times: 100000, positions: 3000, extent: 1.0}}}",
+        ["chunks: 12, and chunk 1 costs", "up to 4 GB a chunk", "allow_large=true"],
+    ),
     "a number that overflows": (STEADY + "{gamma: [1.0e+300]}}", ["steady_displacement"]),
     # hostile
     "path as a name": ("simulations: {../../etc/passwd: {}}", ["'../../etc/passwd'", "lower-case letters"]),
@@ -257,6 +289,16 @@ def test_asking_twice_lets_a_large_sweep_pass(shipped, project):
         "allow_large": True,
     }
     validate(merged(copy.deepcopy(shipped), overlay), project / SCHEMA, shipped)
+
+
+@pytest.mark.parametrize(("chunks", "refused"), [(1, True), (2, True), (3, True), (4, False)])
+def test_more_chunks_let_a_long_sweep_pass(shipped, project, chunks, refused):
+    config = merged(copy.deepcopy(shipped), yaml.safe_load(LONG.format(chunks=chunks, time="2.0e+4")))
+    if not refused:
+        validate(config, project / SCHEMA, shipped)
+        return
+    with pytest.raises(ConfigError, match="up to 12 hours on one core"):
+        validate(config, project / SCHEMA, shipped)
 
 
 @pytest.mark.parametrize(

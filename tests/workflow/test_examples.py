@@ -24,6 +24,7 @@ TARGETS = {
     "elastic_release": "results/measurements/space_time_displacement.csv",
     "halved_spacing": "results/measurements/space_time_displacement.csv",
     "own_sweep": "results/measurements/own_sweep.csv",
+    "chunked_sweep": "results/measurements/chunked_sweep.csv",
 }
 
 
@@ -106,3 +107,13 @@ def test_a_sweep_of_ones_own_is_the_product_of_its_lists(run):
     table, _ = run("own_sweep")
     assert len(table) == 12
     assert np.isfinite(table["pulse_slip"]).all()
+
+
+def test_a_sweep_in_chunks_is_in_the_order_of_its_lists(run):
+    table, path = run("chunked_sweep")
+    levels, widths = table["left"].unique(), table["width"].unique()
+    assert list(zip(table["left"], table["width"], strict=True)) == [(a, b) for a in levels for b in widths]
+    assert levels.tolist() == [-0.3, -0.6, -1.0, -2.0] and widths.tolist() == [1.0, 2.0, 4.0]
+    chunks = sorted(chunk.name for chunk in (path.parent / "chunked_sweep").glob("*.csv"))
+    assert chunks == [f"{number}-of-4.csv" for number in (1, 2, 3, 4)]
+    assert np.isfinite(table["transition_time"]).all()
