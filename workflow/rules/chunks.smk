@@ -60,6 +60,9 @@ rule join_uncertainties:
     wildcard_constraints:
         simulation=CHUNKED,
     priority: 1
+    resources:
+        runtime=join_uncertainties_minutes,
+        mem_mb=join_uncertainties_megabytes,
     message:
         "Putting the grid studies of {wildcards.simulation} together"
     script:

@@ -8,6 +8,7 @@ from snakemake.exceptions import WorkflowError
 from slippulse.config import ConfigError, resolve, validate
 from slippulse.config import expand as expand_block
 from slippulse.cost import expected_cost
+from slippulse.refusals import runs
 from slippulse.scenes import scene_block
 from slippulse.overlay import read_overlay
 
@@ -30,6 +31,9 @@ SOURCES = Path(workflow.basedir) / "src/slippulse"
 LOCK = "requirements.lock"
 # Expected seconds on one core.
 LONG_SWEEP = 120.0
+# What joining the grid studies of a sweep takes a run, measured over a million: 1.2 kB and 0.12 s a thousand, and as
+# much again for other sweeps.
+BYTES_OF_A_RUN, SECONDS_OF_A_RUN = 2.4e3, 2.4e-4
 # The factor to which the estimate is right.
 ESTIMATE_WITHIN = 3.0
 
@@ -211,6 +215,18 @@ def join_data_megabytes(wildcards, attempt):
     """Memory limit for the data of all chunks in one file."""
     whole = resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
     return job_megabytes(expected_cost(*expand_block(whole)), attempt)
+
+
+def join_uncertainties_megabytes(wildcards, attempt):
+    """Memory limit for the grid studies of all chunks in one table: of these it holds what names each run."""
+    whole = resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+    return attempt * (1000 + math.ceil(BYTES_OF_A_RUN * runs(whole) / 1e6))
+
+
+def join_uncertainties_minutes(wildcards, attempt):
+    """Time limit for the same."""
+    whole = resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
+    return attempt * (10 + math.ceil(ESTIMATE_WITHIN * SECONDS_OF_A_RUN * runs(whole) / 60.0))
 
 
 def coarser_blocks(wildcards):
