@@ -146,3 +146,8 @@ DRAFT_SPEED, DRAFT_SLIP = 2e-3, 6e-3
 STRONG_DAMPING_ORDER, STRONG_DAMPING_LIMIT = 0.03, 3e-3
 # The exact slip velocity over space and time at dx = 0.01: first order in dx over the Gaussian's width.
 VELOCITY_MAP = 1e-2
+# A promised accuracy is its own tolerance; this much of it at least is used by the worst number of all scenes, or the
+# lattice is paid for in vain. The spacing may take 0.7 of it.
+PROMISE_USED = 0.5
+# Spacings chosen for an accuracy are rounded to three digits.
+SHOWN_DIGITS = 0.02

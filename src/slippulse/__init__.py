@@ -22,9 +22,12 @@ _LAZY = {
     "UnstableRun": "simulation",
     "UnresolvedRun": "simulation",
     "run_sweep": "sweep",
+    "settings_for": "accuracy",
 }
 
-__all__ = ["Prestress", "Samples", "Scene", "UnresolvedRun", "UnstableRun", "run_sweep", "simulate", "theory"]
+__all__ = [
+    "Prestress", "Samples", "Scene", "UnresolvedRun", "UnstableRun", "run_sweep", "settings_for", "simulate", "theory",
+]  # fmt: skip
 
 
 def __getattr__(name: str):

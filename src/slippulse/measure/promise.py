@@ -1,0 +1,119 @@
+"""What a promised accuracy covers, and whether a grid study finds it kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+# Numbers that `accuracy` promises, where `covers` has nothing against the run.
+COVERED = {
+    "displacement": (
+        "front_speed_left", "front_speed_right", "transition_time", "transition_length", "first_stick_time",
+        "pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop",
+    ),
+    "stress": (
+        "front_speed_left", "front_speed_right", "transition_time", "transition_length", "largest_velocity",
+    ),
+}  # fmt: skip
+# Those that it does not, by the beginning of their name, and why.
+NOT_COVERED = {
+    "front_intercept": "a small difference of large numbers",
+    "front_speed_error": "an error itself",
+    "late_front_speed": "two samples of a front, a spacing of samples apart",
+    "pulse": "under a stress boundary no pulse has a width of its own; its peak is largest_velocity",
+    "pulse_front": "a place at the end, with the lag of the whole path",
+    "pulse_acceleration": "the undamped lattice rings behind the front",
+    "trailing_edge": "a place at a stated time",
+    "slip_time": "its slope vanishes where slip hardly reaches the stated value",
+    "slip_length": "its slope vanishes where slip hardly reaches the stated value",
+    "slip_variation": "near 0",
+    "largest_velocity": "under a displacement boundary a pulse may still be forming; of a steady one it is the peak",
+    "largest_velocity_change": "near 0",
+    "centre_velocity_share": "near 0",
+    "first_stick": "under a stress boundary blocks that stick first may be anywhere",
+    "last_release": "the arrest never comes in the continuum",
+    "transition_longest_wait": "a wait between two blocks, which shrinks with the spacing",
+    "balance_distance": "computed from the pre-stress, no simulation",
+    "beyond": "a parameter",
+}
+# Below this pre-stress ahead a front hardly outruns the waves and lags by an order of 2/3 to 1 in the spacing.
+LOWEST_LEVEL = 0.05
+# With less damping the ringing of the lattice decides how long the left front stands still.
+LEAST_DAMPING = 0.05
+# The left front slows for ever: the time to cover more of its path takes a finer lattice than the one chosen.
+LARGEST_SHARE = 0.95
+
+
+def covers(run: Mapping, quantity: str, share: float) -> bool:
+    """Whether a promise covers one number of one run.
+
+    Parameters
+    ----------
+    run : a row of the measured table
+    quantity : its column
+    share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+    """
+    if quantity not in COVERED[run["boundary"]] or run["flags"] or not math.isfinite(run[quantity]):
+        return False
+    if quantity.startswith("front_speed"):
+        ahead = [run[quantity.removeprefix("front_speed_")]]
+        # A step on either side.
+        ahead += [run["beyond"]] if run["beyond"] != run["right"] else []
+        return min(ahead) >= LOWEST_LEVEL
+    if quantity.startswith("pulse"):
+        return run["pulse_state"] == "steady"
+    if run["boundary"] == "displacement":
+        return min(run["left"], run["right"]) >= LOWEST_LEVEL
+    if quantity == "largest_velocity":
+        # The far-field pulse, which theory has; between two fronts that run on, velocity grows.
+        return run["left"] < 0.0 == run["right"] == run["beyond"]
+    return (
+        run["transition_state"] == "resolved"
+        and run["damping_ratio"] >= LEAST_DAMPING
+        and share <= LARGEST_SHARE
+    )
+
+
+def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, share: float) -> pd.DataFrame:
+    """A grid study with two more columns: `promised` (NaN where nothing is) and `kept` ("true", "false" or "").
+
+    Parameters
+    ----------
+    study : of a sweep, one row a number (`slippulse.measure.uncertainty.grid_tables`)
+    measured : the table at the finest spacing
+    promise : largest relative uncertainty; NaN for a spacing of its own, which promises nothing
+    share : see `covers`
+
+    A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept its promise.
+    """
+    runs = measured.assign(flags=measured["flags"].astype(object).where(measured["flags"].notna(), ""))
+    rows = runs.to_dict("records")
+    covered = [
+        math.isfinite(promise) and covers(rows[row.point], row.quantity, share) for row in study.itertuples()
+    ]
+    within = study["uncertainty"] <= promise * study["value"].abs()
+    return study.assign(
+        promised=np.where(covered, promise, np.nan),
+        kept=np.where(covered, np.where(within, "true", "false"), ""),
+    )
+
+
+def summary(study: pd.DataFrame, promise: float) -> str:
+    """One line: how many runs of a judged grid study kept their promise, and the worst number of each that did not."""
+    if not math.isfinite(promise):
+        return "its spacing is its own and promises nothing"
+    covered = study[study["kept"] != ""]
+    missed = covered[covered["kept"] == "false"]
+    runs, broken = covered["point"].nunique(), missed["point"].nunique()
+    text = f"accuracy {promise:g} kept by {runs - broken} of {runs} runs"
+    relative = (missed["uncertainty"] / missed["value"].abs()).fillna(np.inf)
+    worst = [
+        f"{point} ({missed.loc[of.idxmax(), 'quantity']} {of.max():.1e})"
+        for point, of in relative.groupby(missed["point"])
+    ]
+    text += f"; missed by {', '.join(worst[:5])}" + (" ..." if len(worst) > 5 else "") if worst else ""
+    rest = study["point"].nunique() - runs
+    return text + (f"; {rest} have no number that it covers" if rest else "")
