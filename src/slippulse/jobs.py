@@ -127,12 +127,14 @@ def study_grid(
 ) -> None:
     """Run and measure one simulation block on coarser lattices, and write the grid study of every number.
 
-    ``blocks`` holds the resolved block by factor of the spacing. The coarser data are not kept, their measured tables
-    are, one below the other with their factor. The study of a chunk has every number that the sweep's may have.
+    ``blocks`` holds the resolved block by factor of the spacing; where it promises an accuracy, the study says of each
+    number whether it is kept. The coarser data are not kept, their measured tables are, one below the other with their
+    factor. The study of a chunk has every number that the sweep's may have.
     """
     import pandas as pd
 
-    from .config import expand
+    from .config import expand, promise_of
+    from .measure.promise import judged, summary
     from .measure.table import PARAMETERS, measure
     from .measure.uncertainty import grid_tables
     from .store import load_table, save_table
@@ -146,7 +148,12 @@ def study_grid(
         coarser[factor] = measure(run_sweep(scenes, samples, blocks[factor]["record"], threads), settings)
     # A column of fractions may happen to have none in a chunk.
     measured = load_table(finest, whole=PARAMETERS if part else None)
-    save_table(grid_tables((measured, *coarser.values()), tuple(coarser), PARAMETERS), uncertainties)
+    study = grid_tables((measured, *coarser.values()), tuple(coarser), PARAMETERS)
+    promise = promise_of(next(iter(blocks.values())))
+    if promise is not None:
+        study = judged(study, measured, promise, settings["share"])
+        sys.stderr.write(f"  {name}: {summary(study, promise)}\n")
+    save_table(study, uncertainties)
     save_table(
         pd.concat([table.assign(factor=factor) for factor, table in coarser.items()], ignore_index=True),
         tables,

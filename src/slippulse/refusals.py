@@ -207,6 +207,24 @@ def check_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None], chunk
             )
 
 
+def check_affordable(blocks: Mapping[str, tuple[Sequence[Scene], Sequence[Samples | None]]]) -> None:
+    """Refuse blocks of scenes, by key, each of which `check_cost` refuses.
+
+    Raises
+    ------
+    ConfigError
+        One line a block.
+    """
+    problems = []
+    for key, (scenes, samples) in blocks.items():
+        try:
+            check_cost(scenes, samples)
+        except ValueError as error:
+            problems.append(f"{key}.{error}")
+    if problems:
+        raise ConfigError(some(problems))
+
+
 def check_resolved(scenes: Sequence[Scene]) -> None:
     """Refuse a block in which no run comes near resolving its pulse.
 

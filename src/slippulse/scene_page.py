@@ -25,7 +25,8 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
     ----------
     name, title : of the scene
     png : its figure
-    numbers : measured, with uncertainty and theory (`slippulse.measure.beside_theory.scene_numbers`)
+    numbers : measured, with uncertainty and theory (`slippulse.measure.beside_theory.scene_numbers`); a promised
+        accuracy, where there is one, is stated with whether it is kept
     attributes : of the run's data
     """
     alt = (
@@ -33,9 +34,17 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
         " and slip at the end."
     )
     rows = [
-        (row.label, f"{row.value:.6g}", _shown(row.uncertainty, ".1g"), _shown(row.theory, ".6g"), _miss(row))
+        (
+            row.label,
+            f"{row.value:.6g}",
+            _shown(row.uncertainty, ".1g"),
+            _shown(row.theory, ".6g"),
+            _miss(row),
+            *_promise(row),
+        )
         for row in numbers.itertuples()
     ]
+    promise = ("promised accuracy",) if "promised" in numbers else ()
     parameters = [(key.replace("_", " "), _value(attributes[key])) for key in SHOWN if key in attributes]
     body = "\n".join(
         [
@@ -47,7 +56,7 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
             "<h2>Numbers</h2>",
             table_html(
                 "Measured, with the uncertainty of a study on two coarser lattices, beside exact theory",
-                ("quantity", "measured", "uncertainty", "theory", "difference"),
+                ("quantity", "measured", "uncertainty", "theory", "difference", *promise),
                 rows,
                 numeric=(1, 2, 3, 4),
             ),
@@ -69,6 +78,15 @@ def _miss(row) -> str:
     if not math.isfinite(row.theory) or row.theory == 0.0:
         return "\N{EN DASH}"
     return f"{100.0 * (row.value / row.theory - 1.0):+.2g} %"
+
+
+def _promise(row) -> tuple[str, ...]:
+    """Relative, with what the grid study says of it; nothing where none was asked for."""
+    if not hasattr(row, "promised"):
+        return ()
+    if not math.isfinite(row.promised):
+        return ("not covered",)
+    return (f"{row.promised:g}, {'kept' if str(row.kept).lower() == 'true' else 'missed'}",)
 
 
 def _value(value: object) -> str:

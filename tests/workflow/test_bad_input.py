@@ -91,7 +91,22 @@ CASES = {
         "figures: {fig07_damage_zone: {stiffness_ratios: {from: 2.0}}}",
         ["stiffness_ratios.to: 1.0", "> from = 2"],
     ),
+    "accuracy above a tenth": ("accuracy: 0.5", ["accuracy: 0.5", "from 1.0e-4 to 0.1"]),
+    "accuracy too small to reach": ("accuracy: 1.0e-7", ["accuracy: 1e-07", "from 1.0e-4 to 0.1"]),
+    "accuracy as text": ("accuracy: 1e-3", ["accuracy: '1e-3'", "write 1.0e-3"]),
     # what belongs together
+    "accuracy of the textbook scheme": (
+        "{accuracy: 1.0e-2, model: {scheme: fixed_step}}",
+        ["model.scheme: 'fixed_step'", "'localised' where accuracy is given"],
+    ),
+    "accuracy of one scene in the textbook scheme": (
+        "{accuracy: 1.0e-2, scenes: {barrier: {scheme: fixed_step}}}",
+        ["scenes.barrier.scheme: 'fixed_step'", "'localised' where accuracy is given"],
+    ),
+    "accuracy at strong damping": (
+        "{accuracy: 1.0e-2, simulations: {steady_displacement: {damping_ratio: [3.0]}}}",
+        ["steady_displacement.damping_ratio: 3.0", "up to 1"],
+    ),
     "gamma under stress": (STRESS + "{gamma: [0.5]}}", ["space_time_stress.gamma: [0.5]", "left out under"]),
     "no gamma under displacement": (OWN + "left: [0.5], right: same}}", ["mine.gamma: missing"]),
     "no levels": (OWN + "gamma: [0.5]}}", ["mine.left, right: missing"]),
@@ -339,6 +354,11 @@ COMMANDS = {
     "python tag": ("preset: !!python/name:os.system\n", [], ["no tags"]),
     "list": ("[1, 2]\n", [], ["with keys at top level"]),
     "preset on the command line": ("preset: draft\n", ["--config", "preset=$(touch written)"], ["'$(touch written)'"]),
+    "accuracy that costs too much": (
+        "accuracy: 1.0e-4\n",
+        ["results/figures/fig05_scaling.png"],
+        ["simulations.scaling_stress.cost", "hours on one core", "allow_large=true"],
+    ),
     "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
     "unknown scene": ("preset: draft\n", ["results/scenes/bariere.html"], ["did you mean 'results/scenes/barrier"]),
 }  # fmt: skip

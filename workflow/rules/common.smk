@@ -5,7 +5,7 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from slippulse.config import ConfigError, resolve, validate
+from slippulse.config import ConfigError, accuracy_of, resolve, validate
 from slippulse.config import expand as expand_block
 from slippulse.cost import expected_cost
 from slippulse.refusals import runs
@@ -25,7 +25,7 @@ try:
 except ConfigError as error:
     raise WorkflowError(f"The configuration is refused:\n{error}") from None
 
-ACCURACY = config["presets"][config["preset"]]
+ACCURACY = accuracy_of(config)
 
 SOURCES = Path(workflow.basedir) / "src/slippulse"
 LOCK = "requirements.lock"
@@ -57,6 +57,9 @@ SIMULATION_SOURCES = KERNEL_SOURCES + sources(
     "theory/transition.py",
     "roots.py",
 )
+# A promise chooses the lattice by theory.
+if "promise" in ACCURACY:
+    SIMULATION_SOURCES += sources("accuracy.py", "theory/front_speed.py", "theory/pulse.py")
 MEASURE_SOURCES = sources("points.py", "measure/*.py", "theory/*.py", "roots.py")
 
 CLAIM_SOURCES = sources("claims/*.py", "theory/*.py", "roots.py", "index_page.py", "pages.py")
@@ -278,6 +281,38 @@ def scene_megabytes(wildcards, attempt):
 def coarser_blocks_of_scene(wildcards):
     """The same on the two coarser lattices of the grid study."""
     return {float(factor): block_of_scene(wildcards, float(factor)) for factor in ACCURACY["coarser"]}
+
+
+def simulations_behind(file):
+    """Simulations that a file under results/ is made from; all of them where it may be any."""
+    name = Path(file).stem
+    if file.startswith("results/studies/"):
+        return set()
+    if name in FIGURES | STUDIES:
+        needs = (FIGURES | STUDIES)[name]
+        return {*needs.get("data", []), *needs.get("measured", [])}
+    return {name} if name in config["simulations"] else set(config["simulations"])
+
+
+def scenes_behind(file):
+    """Scenes that a file under results/scenes is made from."""
+    name = Path(file).stem
+    return {scene for scene in SCENES if name == scene or name.startswith(f"{scene}_")} or set(SCENES)
+
+
+def blocks_behind(arguments):
+    """Blocks that the command line asks for, resolved, by key."""
+    files = [argument for argument in arguments if argument.startswith("results/")]
+    if not files and "scenes" in arguments:
+        files = ["results/scenes/index.html"]
+    elif not files and not ACCURACY.get("whole", True) and "everything" not in arguments:
+        files = figure_files(FIGURES)
+    scenes = [file for file in files if file.startswith("results/scenes/")]
+    names = {name for file in files or [""] if file not in scenes for name in simulations_behind(file)}
+    blocks = {f"simulations.{name}": config["simulations"][name] for name in sorted(names)}
+    for name in sorted({name for file in scenes for name in scenes_behind(file)}):
+        blocks[f"scenes.{name}"] = scene_block(SCENES[name], config["model"])
+    return {key: resolve(block, config["model"], ACCURACY) for key, block in blocks.items()}
 
 
 def builtins_of(value):

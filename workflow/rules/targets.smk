@@ -2,7 +2,7 @@
 
 import sys
 
-from slippulse.refusals import check_folder, check_targets
+from slippulse.refusals import check_affordable, check_folder, check_targets
 
 
 def refuse_unknown_targets():
@@ -18,4 +18,15 @@ def refuse_unknown_targets():
         raise WorkflowError(str(error)) from None
 
 
+def refuse_dear_targets():
+    """With `accuracy` the cost of what is asked for is checked, and not that of the whole paper."""
+    if "promise" not in ACCURACY or config.get("allow_large", False) or not workflow.is_main_process:
+        return
+    try:
+        check_affordable({key: expand_block(block) for key, block in blocks_behind(sys.argv[1:]).items()})
+    except ConfigError as error:
+        raise WorkflowError(f"The configuration is refused:\n{error}") from None
+
+
 refuse_unknown_targets()
+refuse_dear_targets()

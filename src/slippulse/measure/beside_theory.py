@@ -46,7 +46,8 @@ def scene_numbers(attributes: Mapping, study: pd.DataFrame, share: float) -> pd.
 
     Returns
     -------
-    one row a number: quantity, label, value, uncertainty, theory (NaN where there is none)
+    one row a number: quantity, label, value, uncertainty, theory (NaN where there is none), and where an accuracy is
+    promised: promised and kept, as in the study
     """
     study = study.set_index("quantity")
     theory = {name: _or_nan(find) for name, find in _theories(attributes, share).items()}
@@ -67,12 +68,16 @@ def scene_numbers(attributes: Mapping, study: pd.DataFrame, share: float) -> pd.
                 "uncertainty": number["uncertainty"],
                 "theory": theory.get(quantity, math.nan),
             }
+            | {name: number[name] for name in PROMISE if name in study}
         )
     if any(row["quantity"] == "transition_time" for row in rows):
         rows = [row for row in rows if row["quantity"] != "first_stick_time"]
-    return pd.DataFrame(rows, columns=["quantity", "label", "value", "uncertainty", "theory"])
+    columns = ["quantity", "label", "value", "uncertainty", "theory"]
+    return pd.DataFrame(rows, columns=columns + [name for name in PROMISE if name in study])
 
 
+# Columns of a grid study that judges a promise.
+PROMISE = ("promised", "kept")
 LABELS = {
     "displacement": {
         "front_speed_left": "front speed, left",

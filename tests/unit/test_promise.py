@@ -1,0 +1,145 @@
+"""What a promised accuracy covers, and the verdict of a grid study on it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import slippulse as sp
+from slippulse.measure.beside_theory import scene_numbers
+from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
+from slippulse.measure.table import PARAMETERS, measure
+from slippulse.measure.uncertainty import grid_tables
+from slippulse.scene_page import scene_page
+from slippulse.sweep import run_sweep
+
+SHARE = 0.95
+PULSE = {
+    "boundary": "displacement", "flags": "", "left": 0.5, "right": 0.5, "beyond": 0.5, "damping_ratio": 0.1,
+    "pulse_state": "steady", "front_speed_left": 1.2, "front_speed_right": 1.2, "pulse_width": 2.0,
+    "transition_time": 3.0, "pulse_acceleration": 1.0,
+}  # fmt: skip
+CRACK = {
+    "boundary": "stress", "flags": "", "left": -1.0, "right": 0.0, "beyond": 0.0, "damping_ratio": 0.1,
+    "transition_state": "resolved", "front_speed_right": 1.0, "transition_time": 5.0, "largest_velocity": 1.0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("run", "quantity", "covered"),
+    [
+        (PULSE, "front_speed_right", True),
+        (PULSE, "pulse_width", True),
+        (PULSE, "transition_time", True),
+        (PULSE, "pulse_acceleration", False),
+        (PULSE | {"flags": "unresolved_pulse"}, "front_speed_right", False),
+        (PULSE | {"pulse_state": "unsteady"}, "pulse_width", False),
+        (PULSE | {"pulse_width": math.nan}, "pulse_width", False),
+        (PULSE | {"left": -0.1}, "front_speed_left", False),
+        (PULSE | {"left": -0.1}, "front_speed_right", True),
+        (PULSE | {"beyond": 0.01}, "front_speed_right", False),
+        (CRACK, "transition_time", True),
+        (CRACK, "largest_velocity", True),
+        (CRACK, "front_speed_right", False),
+        (CRACK | {"transition_state": "stalled"}, "transition_time", False),
+        (CRACK | {"damping_ratio": 0.0}, "transition_time", False),
+        (CRACK | {"damping_ratio": 0.0}, "largest_velocity", True),
+        (CRACK | {"right": 0.3, "beyond": 0.3}, "largest_velocity", False),
+    ],
+)
+def test_what_is_covered(run, quantity, covered):
+    assert covers(run, quantity, SHARE) is covered
+
+
+def test_a_share_nearer_the_end_is_not_covered():
+    assert not covers(CRACK, "transition_time", 0.99)
+
+
+@pytest.fixture(scope="module")
+def tables(project):
+    """Measured tables of one run of each boundary, at a spacing and at twice and four times it."""
+    settings = {
+        "share": SHARE, "front_window": 0.3, "steady_tolerance": 0.02, "still": 0.05, "trailing_times": [5.0],
+    }  # fmt: skip
+    out = []
+    for dx in (0.05, 0.1, 0.2):
+        scenes = [
+            sp.Scene("displacement", sp.Prestress(0.5, 0.5), 30.0, dx, gamma=0.3, beta=0.1 * dx),
+            sp.Scene("stress", sp.Prestress(-1.0, 0.0), 9.0, dx, beta=0.1 * dx),
+        ]
+        samples = [
+            sp.Samples(np.linspace(0.0, scene.duration, 10), np.linspace(-20.0, 20.0, 81)) for scene in scenes
+        ]
+        out.append(measure(run_sweep(scenes, samples, ("fronts", "fields", "samples")), settings))
+    return out
+
+
+def test_every_measured_number_is_covered_or_has_a_reason(tables):
+    reasons = tuple(NOT_COVERED)
+    for boundary, covered in COVERED.items():
+        study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
+        study = study[study["boundary"] == boundary]
+        measured = set(study.loc[study["value"].notna(), "quantity"])
+        assert set(covered) <= measured
+        for name in measured - set(covered):
+            assert name.startswith(reasons), name
+
+
+def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables):
+    study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
+    generous, strict = (judged(study, tables[0], promise, SHARE) for promise in (10.0, 1e-9))
+    assert set(generous["kept"]) == {"true", ""} and set(strict["kept"]) == {"false", ""}
+    pd.testing.assert_series_equal(generous["kept"] == "true", strict["kept"] == "false")
+    assert (generous["promised"].notna() == (generous["kept"] != "")).all()
+    pd.testing.assert_frame_equal(generous[study.columns], study)
+    assert summary(generous, 10.0) == "accuracy 10 kept by 2 of 2 runs"
+    assert summary(strict, 1e-9).startswith("accuracy 1e-09 kept by 0 of 2 runs; missed by 0 (")
+    relative = (study["uncertainty"] / study["value"].abs())[generous["kept"] != ""]
+    middle = float(relative.median())
+    between = judged(study, tables[0], middle, SHARE)["kept"][relative.index]
+    assert list(between == "true") == list(relative <= middle)
+    assert {"true", "false"} == set(between)
+
+
+def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):
+    coarse = tables[2].assign(front_speed_right=math.nan)
+    study = judged(grid_tables((*tables[:2], coarse), (2.0, 4.0), PARAMETERS), tables[0], 10.0, SHARE)
+    row = study[(study["quantity"] == "front_speed_right") & (study["point"] == 0)]
+    assert list(row["kept"]) == ["false"]
+    assert "missed by 0 (front_speed_right inf)" in summary(study, 10.0)
+
+
+def test_a_spacing_of_its_own_promises_nothing(tables):
+    study = judged(grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS), tables[0], math.nan, SHARE)
+    assert set(study["kept"]) == {""} and study["promised"].isna().all()
+    assert summary(study, math.nan) == "its spacing is its own and promises nothing"
+
+
+def test_the_numbers_of_a_scene_carry_the_verdict(tables):
+    study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
+    attributes = sp.simulate(sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.05, gamma=0.3)).attrs
+    plain, with_promise = (
+        scene_numbers(attributes, part[part["point"] == 0], SHARE)
+        for part in (study, judged(study, tables[0], 10.0, SHARE))
+    )
+    assert set(with_promise.columns) - set(plain.columns) == {"promised", "kept"}
+    assert set(with_promise["kept"]) == {"true"} and set(with_promise["promised"]) == {10.0}
+    pd.testing.assert_frame_equal(with_promise[plain.columns], plain)
+
+
+def test_the_page_of_a_scene_says_what_is_kept(tmp_path):
+    picture = tmp_path / "one.png"
+    picture.write_bytes(b"")
+    numbers = pd.DataFrame(
+        {
+            "quantity": ["a", "b", "c"], "label": ["a", "b", "c"], "value": 1.0, "uncertainty": 0.01,
+            "theory": math.nan, "promised": [0.01, 0.001, math.nan], "kept": ["true", "false", ""],
+        }
+    )  # fmt: skip
+    page = scene_page("one", "One", picture, numbers, {})
+    for text in ("promised accuracy", "0.01, kept", "0.001, missed", "not covered"):
+        assert text in page
+    assert "promised" not in scene_page("one", "One", picture, numbers.drop(columns=["promised", "kept"]), {})
