@@ -25,6 +25,7 @@ TARGETS = {
     "halved_spacing": "results/measurements/space_time_displacement.csv",
     "own_sweep": "results/measurements/own_sweep.csv",
     "chunked_sweep": "results/measurements/chunked_sweep.csv",
+    "target_error": "results/uncertainties/target_error.csv",
 }
 
 
@@ -117,3 +118,32 @@ def test_a_sweep_in_chunks_is_in_the_order_of_its_lists(run):
     chunks = sorted(chunk.name for chunk in (path.parent / "chunked_sweep").glob("*.csv"))
     assert chunks == [f"{number}-of-4.csv" for number in (1, 2, 3, 4)]
     assert np.isfinite(table["transition_time"]).all()
+
+
+def test_a_target_error_is_kept_and_said(run):
+    table, path = run("target_error")
+    promised = table[table["promised"].notna()]
+    assert set(promised["promised"]) == {0.01} and set(promised["point"]) == set(range(12))
+    assert {"front_speed_right", "transition_time", "pulse_width", "pulse_slip"} <= set(promised["quantity"])
+    assert (promised["uncertainty"] <= 0.01 * promised["value"].abs()).all()
+    assert set(promised["kept"]) == {True} and table.loc[table["promised"].isna(), "kept"].isna().all()
+    # Narrow pulses and damped ones take a finer lattice.
+    spacing = table.groupby(["left", "gamma", "damping_ratio"])["dx"].first()
+    assert spacing[0.3, 0.65, 0.0] < spacing[0.8, 0.65, 0.0]
+    assert spacing[0.3, 0.65, 0.1] < spacing[0.3, 0.1, 0.1]
+    log = path.parents[1] / "logs/study_grid/target_error.log"
+    assert "target_error: accuracy 0.01 kept by 12 of 12 runs" in log.read_text(encoding="utf-8")
+
+
+def test_without_a_target_error_a_grid_study_says_nothing_of_it(run):
+    _, path = run("own_sweep")
+    folder = path.parents[2]
+    target = "results/uncertainties/own_sweep.csv"
+    result = snakemake(
+        folder, "--config", "preset=draft", "--", target, overlay="config/examples/own_sweep.yaml"
+    )
+    assert result.returncode == 0, result.stderr
+    assert list(pd.read_csv(folder / target).columns[-5:]) == [
+        "quantity", "value", "extrapolated", "order", "uncertainty",
+    ]  # fmt: skip
+    assert "accuracy" not in (folder / "results/logs/study_grid/own_sweep.log").read_text(encoding="utf-8")
