@@ -27,9 +27,9 @@ STRONGEST_DAMPING = 1.0
 SHARE = 0.7
 # Blocks across the narrowest length at the least, so that a lattice four times coarser still has 8.
 BLOCKS = 32
-# Largest step in units of dx and order, for promises from a value up: `studies.accuracy_cost` finds errors of 3e-4 by
-# the first step and 2e-5 by the second at any spacing, in the worst of its numbers.
-STEPS = ((3e-3, 0.5, 4), (SMALLEST, 0.5, 6))
+# Largest step in units of dx, and order: `studies.accuracy_cost` finds errors of 3e-6 by them at any spacing, in the
+# worst of its numbers, and nothing cheaper that errs by less than 2e-5.
+STEP, ORDER = 1.0, 8
 
 # Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its share of the width from slip and peak
 # (steady pulse to first order in beta). The front takes blocks from the width: at most 1/(2 tau_0 v^2).
@@ -90,17 +90,11 @@ def settings_for(
     else:
         spacings = _free(SHARE * accuracy, prestress, damping_ratio, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    max_step, order = step_for(accuracy)
-    bound = MARGIN * largest_step("localised", order, damping_ratio, gamma * dx**2)
-    settings = {"dx": dx, "beta": damping_ratio * dx, "max_step": min(max_step, bound), "order": order}
+    bound = MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2)
+    settings = {"dx": dx, "beta": damping_ratio * dx, "max_step": min(STEP, bound), "order": ORDER}
     # Refuses what is left to refuse.
     Scene(boundary=boundary, prestress=prestress, gamma=gamma, release=release, duration=1.0, **settings)
     return settings
-
-
-def step_for(accuracy: float) -> tuple[float, int]:
-    """Largest step in units of dx, and order, whose own error is about a tenth of the accuracy."""
-    return next((step, order) for least, step, order in STEPS if accuracy >= least)
 
 
 def _over_springs(

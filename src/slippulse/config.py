@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .accuracy import settings_for, step_for
+from .accuracy import ORDER, STEP, settings_for
 from .checks import ConfigError, nearest, shown
 from .chunks import runs_of
 from .lattice.samples import Samples
@@ -42,8 +42,7 @@ def accuracy_of(config: Mapping) -> dict:
     promise = config.get("accuracy")
     if promise is None:
         return preset
-    max_step, order = step_for(promise)
-    return preset | {"max_step": max_step, "order": order, "promise": float(promise)}
+    return preset | {"max_step": STEP, "order": ORDER, "promise": float(promise)}
 
 
 def promise_of(block: Mapping) -> float | None:
