@@ -244,12 +244,14 @@ def expand_anew(
         rows[0], rows[1], rows[2], rows[3], rows[4], rows[5], rows[6], rows[7],
     )  # fmt: skip
     per_dx, per_dx2, damping = 1.0 / dx, 1.0 / (dx * dx), beta / (dx * dx)
+    # Not literals, for which everything that is called would be compiled once more.
+    none, one = np.int64(0), np.int64(1)
     shift = max(block - REACH, 1) - 1
     start = np.uint64(shift)
     middle = mirror and shift == 0
     for j in range(1, top + 1):
         share[j] = now / j
-    translate(patch, 0, w, shift, share, gained, top)
+    translate(patch, none, w, shift, share, gained, top)
     for p in range(np.uint64(COLUMNS)):
         gained[p] += offset[p + start]
         patch[0, p] = w[0, p + start] + gained[p]
@@ -294,14 +296,14 @@ def expand_anew(
             release_at[p + shift] = now + foreseen
             lowest = min(lowest, coefficients[0] + 1.0)
 
-    velocity_after(patch_velocity, patch, 1, COLUMNS - 1, h - now, top - 1)
+    velocity_after(patch_velocity, patch, one, COLUMNS - one, h - now, top - 1)
     for p in range(1, COLUMNS - 1):
         if sliding[p] > 0.0:
             velocity[p + shift] = patch_velocity[p]
     n_stopping = forget_sticks(stopping_block, stopping_time, n_stopping, shift + 1, shift + COLUMNS - 1)
     n_stopping = find_sticks(
-        patch, patch_velocity, 1, COLUMNS - 1, stopping_block, stopping_time, n_stopping, coefficients, slopes, shift,
-        now, top, h - now,
+        patch, patch_velocity, one, COLUMNS - one, stopping_block, stopping_time, n_stopping, coefficients, slopes,
+        shift, now, top, h - now,
     )  # fmt: skip
 
     # Written about the start of the step again, like all other polynomials.
@@ -309,7 +311,7 @@ def expand_anew(
         offset[p + start] = gained[p]
     for j in range(1, top + 1):
         share[j] = -now / j
-    translate(w, shift, patch, 0, share, gained, top)
+    translate(w, shift, patch, none, share, gained, top)
     for p in range(np.uint64(COLUMNS)):
         offset[p + start] += gained[p]
     if mirror and shift == 1:

@@ -169,12 +169,14 @@ def foresee_sticks(
     for r in range(n):
         velocity_after(velocity, w, starts[r], ends[r], h, order)
         stopping += count_stopping(velocity, w, starts[r], ends[r], h)
-    n_stopping = 0
+    # Not a literal, for which everything that is called would be compiled once more.
+    none = np.int64(0)
+    n_stopping = none
     if stopping > 0:
         for r in range(n):
             n_stopping = find_sticks(
                 w, velocity, starts[r], ends[r], stopping_block, stopping_time, n_stopping, coefficients, slopes,
-                0, 0.0, order + 1, h,
+                none, 0.0, order + 1, h,
             )  # fmt: skip
             if n_stopping < 0:
                 break
@@ -265,7 +267,7 @@ def advance(
         for r in range(n):
             moved_starts[r], moved_ends[r] = starts[r], ends[r]
 
-        n_events, early = 0, False
+        n_events, early = np.int64(0), False
         while True:
             block, now, stuck = next_event(
                 release_at, starts, ends, n, mirror, stopping_block, stopping_time, n_stopping
@@ -369,7 +371,7 @@ def advance(
 def finish(w, strain, tau, starts, ends, counts, totals, mirror, dx, leaf, beta):
     """Leave the acceleration of the end in w[2] and close the viscous loss."""
     n = counts[RUNS]
-    derivatives(w, strain, tau, starts, ends, n, mirror, 2, dx, leaf, beta)
+    derivatives(w, strain, tau, starts, ends, n, mirror, np.int64(2), dx, leaf, beta)
     if beta > 0.0:
         rate, _ = viscous_rate(w, starts, ends, n, mirror, dx, beta)
         totals[VISCOUS_LOSS] += totals[PENDING_STEP] * rate / 3.0
