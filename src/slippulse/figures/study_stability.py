@@ -60,7 +60,7 @@ def plot(table: pd.DataFrame) -> Figure:
     right.set_ylabel("largest sound step / derived bound")
     for marker, face, name in (
         ("o", "0.3", "chain between walls"),
-        ("^", "none", "rupture (fronts cut the steps)"),
+        ("^", "none", "rupture (events in the steps)"),
     ):
         right.plot([], [], marker, color="0.3", markerfacecolor=face, linestyle="none", label=name)
     right.legend(loc="center right", bbox_to_anchor=(1.0, 0.72))

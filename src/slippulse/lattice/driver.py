@@ -45,6 +45,7 @@ class Lattice:
 
     def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
         self.scene = scene
+        self.call_steps = CALL_STEPS
         self.beta = beta
         self.leaf = scene.gamma if scene.boundary == "displacement" else 0.0
         self.mirror = scene.symmetric
@@ -144,11 +145,11 @@ class Lattice:
             return localised.advance(
                 self.w, self.offset, self.strain, self.velocity, self.tau, self.starts, self.ends, self.moved_starts,
                 self.moved_ends, self.release_at, self.stopping_block, self.stopping_time, *shared, *recorded, *rules,
-                scene.order, step, scene.duration, self.largest_force, CALL_STEPS,
+                scene.order, step, scene.duration, self.largest_force, self.call_steps,
             )  # fmt: skip
         return fixed_step.advance_fixed(
             self.w[0], self.w[1], self.w[2], self.sliding, self.tau, *shared, *recorded, *rules,
-            step, scene.duration, self.largest_force, CALL_STEPS,
+            step, scene.duration, self.largest_force, self.call_steps,
         )  # fmt: skip
 
     def _settings(self) -> str:
@@ -156,7 +157,7 @@ class Lattice:
 
     def run(self, progress: Callable[[float], None] | None) -> int:
         """Advance to the end of the scene. Returns why the kernel stopped."""
-        least = CALL_STEPS * localised.SIMULTANEOUS * self.scene.max_step * self.scene.dx
+        least = self.call_steps * localised.SIMULTANEOUS * self.scene.max_step * self.scene.dx
         while True:
             before = float(self.totals[localised.TIME])
             status = self._advance()
