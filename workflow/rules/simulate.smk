@@ -13,6 +13,7 @@ rule compile_kernels:
         "results/benchmarks/compile_kernels.tsv"
     # Everything waits for it.
     priority: 2
+    threads: 2
     message:
         "Compiling the lattice kernels (once)"
     script:

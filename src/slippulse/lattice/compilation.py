@@ -1,0 +1,106 @@
+"""Compiles every kernel into the cache, in two processes side by side: what an event does, and all the rest."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+
+from ..model import Scene
+from ..prestress import Prestress
+from . import events, localised, runs
+from .driver import Lattice, run_scene
+
+
+def compile_all() -> None:
+    """Compile the kernels of both schemes.
+
+    What another process has compiled meanwhile is taken from the cache; should it have failed, it is compiled here.
+    """
+    with subprocess.Popen([sys.executable, "-m", __name__]) as other:
+        run_scene(_scene("fixed_step"))
+        _compile_steps()
+        other.wait()
+    run_scene(_scene("localised"))
+
+
+def _scene(scheme: str) -> Scene:
+    return Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme)
+
+
+class _Arguments:
+    """A lattice before its first step, and its arrays as `advance` passes them on."""
+
+    def __init__(self) -> None:
+        self.lattice = lattice = Lattice(_scene("localised"), None, 0.0)
+        self.order = lattice.scene.order
+        self.runs = (lattice.starts, lattice.ends, int(lattice.counts[localised.RUNS]))
+        self.rules = (lattice.scene.dx, lattice.leaf, lattice.beta)
+        self.foreseen = (lattice.stopping_block, lattice.stopping_time)
+        self.scratch = tuple(np.zeros((2, self.order + 2)))
+
+
+def _compile_steps() -> None:
+    """All that a step calls but the expansion of an event."""
+    given = _Arguments()
+    lattice, order, dx = given.lattice, given.order, given.lattice.scene.dx
+    w, strain, tau = lattice.w, lattice.strain, lattice.tau
+    localised.finish(
+        w,
+        strain,
+        tau,
+        lattice.starts,
+        lattice.ends,
+        lattice.counts,
+        lattice.totals,
+        lattice.mirror,
+        *given.rules,
+    )
+    localised.viscous_rate(w, *given.runs, lattice.mirror, dx, lattice.beta)
+    localised.foresee_sticks(w, lattice.velocity, *given.runs, *given.foreseen, *given.scratch, order, 0.1)
+    localised.foresee_releases(
+        lattice.release_at, *given.scratch, w, strain, tau, *given.runs, 0.1, lattice.mirror, *given.rules, True,
+        order + 1,
+    )  # fmt: skip
+    none = np.zeros(0, dtype=np.int64)
+    localised.take_over(
+        w,
+        lattice.offset,
+        strain,
+        lattice.velocity,
+        *given.runs,
+        none,
+        none,
+        0,
+        order,
+        0.1,
+        lattice.mirror,
+        dx,
+    )
+    localised.take_samples(
+        w, lattice.offset, 0.0, 0.1, order, lattice.counts, lattice.sample_times, lattice.sample_blocks,
+        lattice.sample_slip, lattice.sample_velocity,
+    )  # fmt: skip
+
+
+def _compile_events() -> None:
+    """What a release or a stick sets off, and how the next one is found."""
+    given = _Arguments()
+    lattice, top = given.lattice, given.order + 1
+    patch, rows = np.zeros((top + 1, events.COLUMNS)), np.zeros((8, events.COLUMNS))
+    ahead = (lattice.release_at, *given.runs, lattice.mirror)
+    events.next_event(*ahead, *given.foreseen, 0)
+    events.crowded(*ahead, *given.foreseen, 0, 1, 0.1)
+    events.due_releases(*ahead, 0.1, lattice.stopping_block)
+    runs.holds(*given.runs, 1)
+    runs.release_block(*given.runs, int(lattice.ends[0]))
+    runs.stick_block(*given.runs, 1)
+    events.expand_anew(
+        lattice.w, lattice.offset, lattice.strain, lattice.tau, lattice.velocity, *given.runs, 1, True, 0.05, 0.1,
+        lattice.release_at, *given.foreseen, 0, patch, rows, *given.scratch, lattice.mirror, True, *given.rules, top,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    _compile_events()
