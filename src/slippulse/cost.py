@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from .lattice.samples import Samples
 from .model import Scene
 
-# Block updates a second on one core, samples and events included: the slow end of the shipped sweeps.
-RATE = 1.5e8
+# Block updates a second on one core at order 8, and what a release or stick and the start of a scene cost in them.
+RATE, EVENT, START = 2e8, 300.0, 1e6
 # What runs without being asked twice: a night on one core, the memory of a small machine, a large sweep.
 LARGEST_HOURS = 12.0
 LARGEST_BYTES = 4e9
@@ -27,7 +27,7 @@ class Cost:
     Attributes
     ----------
     runs : scenes
-    block_updates : all of them
+    block_updates : all of them, events and the start of each scene included by what they cost
     bytes : recorded data, and the lattice of the largest scene
     """
 
@@ -50,15 +50,17 @@ class Cost:
 def expected_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) -> Cost:
     """Cost of a list of scenes with what each records.
 
-    Fronts run at about the wave speed; between them slides a crack (Gamma = 0) or two pulses of about one half period
-    of the leaf springs; a step is cut by about one release a front and block.
+    Fronts run at about the wave speed; between them slides a crack (Gamma = 0), or two pulses of about one half period
+    of the leaf springs, which stick behind. Each block is released once.
     """
     updates, recorded, lattice = 0.0, 0.0, 0.0
     for scene, recording in zip(scenes, samples, strict=True):
         fold = 0.5 if scene.symmetric else 1.0
         blocks = 2.0 * fold * scene.duration / scene.dx
-        sliding = 2.0 * fold * _sliding_length(scene) / scene.dx
-        updates += scene.duration / scene.dx * (1.0 / scene.max_step + 1.0) * sliding
+        pulses = scene.boundary == "displacement"
+        sliding = 2.0 * fold * _mean_sliding_length(scene) / scene.dx
+        updates += scene.duration / (scene.max_step * scene.dx) * sliding
+        updates += START + EVENT * blocks * (2.0 if pulses else 1.0)
         lattice = max(lattice, 8.0 * (scene.order + 12) * blocks)
         recorded += 8.0 * 7.0 * blocks
         if recording is not None:
@@ -66,10 +68,11 @@ def expected_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) ->
     return Cost(len(scenes), updates, recorded + lattice)
 
 
-def _sliding_length(scene: Scene) -> float:
+def _mean_sliding_length(scene: Scene) -> float:
+    """Over the time of the run, on each side: a crack grows from nothing."""
     if scene.boundary == "displacement":
-        return min(scene.duration, math.pi / math.sqrt(scene.gamma))
-    return scene.duration
+        return min(0.5 * scene.duration, math.pi / math.sqrt(scene.gamma))
+    return 0.5 * scene.duration
 
 
 def too_large(cost: Cost, times: int = 1) -> str:

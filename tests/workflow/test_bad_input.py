@@ -189,11 +189,11 @@ CASES = {
         ["runs: 1920000", "up to 1000000 runs in 1000 chunks", "allow_large=true"],
     ),
     "too many hours in a chunk": (
-        LONG.format(chunks=2, time="2.0e+4"),
+        LONG.format(chunks=2, time="5.0e+4"),
         ["chunks: 2, and chunk", "up to 12 hours on one core a chunk: more chunks", "allow_large=true"],
     ),
     "too many hours in chunks": (
-        LONG.format(chunks=4, time="1.0e+5"),
+        LONG.format(chunks=4, time="2.2e+5"),
         ["cost: 4 runs", "up to 600 hours on one core", "allow_large=true"],
     ),
     "too much memory in a chunk": (
@@ -308,7 +308,7 @@ def test_asking_twice_lets_a_large_sweep_pass(shipped, project):
 
 @pytest.mark.parametrize(("chunks", "refused"), [(1, True), (2, True), (3, True), (4, False)])
 def test_more_chunks_let_a_long_sweep_pass(shipped, project, chunks, refused):
-    config = merged(copy.deepcopy(shipped), yaml.safe_load(LONG.format(chunks=chunks, time="2.0e+4")))
+    config = merged(copy.deepcopy(shipped), yaml.safe_load(LONG.format(chunks=chunks, time="5.0e+4")))
     if not refused:
         validate(config, project / SCHEMA, shipped)
         return
