@@ -245,23 +245,8 @@ def advance(
         if n_stopping < 0:
             return UNSTABLE
         lowest = foresee_releases(
-            release_at,
-            coefficients,
-            slopes,
-            w,
-            strain,
-            tau,
-            starts,
-            ends,
-            n,
-            h,
-            mirror,
-            dx,
-            leaf,
-            beta,
-            total,
-            top,
-        )
+            release_at, coefficients, slopes, w, strain, tau, starts, ends, n, h, mirror, dx, leaf, beta, total, top
+        )  # fmt: skip
         totals[MIN_STUCK_STRESS] = min(totals[MIN_STUCK_STRESS], lowest)
         n_moved = n
         for r in range(n):
@@ -275,17 +260,8 @@ def advance(
             if now == math.inf:
                 break
             early = n_events == MOST_EVENTS or crowded(
-                release_at,
-                starts,
-                ends,
-                n,
-                mirror,
-                stopping_block,
-                stopping_time,
-                n_stopping,
-                block,
-                now + same,
-            )
+                release_at, starts, ends, n, mirror, stopping_block, stopping_time, n_stopping, block, now + same
+            )  # fmt: skip
             if early:
                 h = now
                 end = min(t + now, end)
@@ -298,17 +274,8 @@ def advance(
                 break
             instant = min(t + now, end)
             take_samples(
-                w,
-                offset,
-                t,
-                instant,
-                order,
-                counts,
-                sample_times,
-                sample_blocks,
-                sample_slip,
-                sample_velocity,
-            )
+                w, offset, t, instant, order, counts, sample_times, sample_blocks, sample_slip, sample_velocity
+            )  # fmt: skip
             if stuck:
                 n = stick_block(starts, ends, n, block)
                 note_stick(block, instant, stick_time, counts, totals)
