@@ -135,6 +135,21 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
     assert result.stderr.count("\n") == 1 and "allowed: a results folder that can be written" in result.stderr
 
 
+def test_a_job_leaves_at_once_but_not_before_all_is_said_and_cleared_away(tmp_path):
+    program = (
+        "import atexit, sys\n"
+        "from slippulse.jobs import job\n"
+        "atexit.register(lambda: print('cleared away'))\n"
+        "with job(sys.argv[1]):\n"
+        "    print('said', end='')\n"
+        "print('not reached')\n"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "log")], capture_output=True, text=True, check=False
+    )
+    assert (result.returncode, result.stdout, result.stderr) == (0, "saidcleared away\n", "")
+
+
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")
 def test_sources_that_cannot_be_written_are_enough():
     project = Path(__file__).resolve().parents[2]

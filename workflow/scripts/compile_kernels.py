@@ -1,6 +1,6 @@
 """Compile every kernel into the cache that the simulations share."""
 
-from slippulse.jobs import compile_kernels, logged
+from slippulse.jobs import compile_kernels, job
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     compile_kernels(snakemake.output[0])

@@ -1,8 +1,8 @@
 """Write the table of one figure and draw the figure from it."""
 
-from slippulse.jobs import draw_figure, logged
+from slippulse.jobs import draw_figure, job
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     draw_figure(
         snakemake.params.figure,
         snakemake.params.settings,

@@ -1,8 +1,8 @@
 """Summarise Snakemake's own benchmark files in one figure."""
 
-from slippulse.jobs import draw_pipeline_time, logged
+from slippulse.jobs import draw_pipeline_time, job
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     draw_pipeline_time(
         "results/benchmarks", "results", {key: snakemake.output[key] for key in ("csv", "png", "pdf")}
     )

@@ -1,8 +1,8 @@
 """Draw one scene and write its page."""
 
-from slippulse.jobs import draw_scene, logged
+from slippulse.jobs import draw_scene, job
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     draw_scene(
         snakemake.wildcards.scene,
         snakemake.params.scene["title"],

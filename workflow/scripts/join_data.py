@@ -1,6 +1,6 @@
 """Put the data of a sweep's chunks into one file."""
 
-from slippulse.jobs import join_data, logged
+from slippulse.jobs import job, join_data
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     join_data(snakemake.input.chunks, snakemake.params.record, snakemake.output[0])

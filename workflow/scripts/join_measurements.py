@@ -1,6 +1,6 @@
 """Put the measured tables of a sweep's chunks into one."""
 
-from slippulse.jobs import join_measurements, logged
+from slippulse.jobs import job, join_measurements
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     join_measurements(snakemake.input.chunks, snakemake.output[0])

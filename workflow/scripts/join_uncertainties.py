@@ -1,8 +1,8 @@
 """Put the grid studies of a sweep's chunks into one."""
 
-from slippulse.jobs import join_uncertainties, logged
+from slippulse.jobs import job, join_uncertainties
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     join_uncertainties(
         snakemake.input.finest,
         snakemake.input.uncertainties,

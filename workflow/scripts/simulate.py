@@ -1,8 +1,8 @@
 """Run the scenes of one simulation block."""
 
-from slippulse.jobs import logged, simulate_block
+from slippulse.jobs import job, simulate_block
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     simulate_block(
         snakemake.wildcards.simulation, snakemake.params.block, snakemake.threads, snakemake.output[0]
     )

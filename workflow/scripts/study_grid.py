@@ -1,8 +1,8 @@
 """Numerical uncertainty of every number of one simulation block, from coarser lattices."""
 
-from slippulse.jobs import logged, study_grid
+from slippulse.jobs import job, study_grid
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     study_grid(
         snakemake.wildcards.simulation,
         snakemake.input.finest,

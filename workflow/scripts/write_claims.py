@@ -1,8 +1,8 @@
 """Compute the ledger of claims."""
 
-from slippulse.jobs import logged, write_claims
+from slippulse.jobs import job, write_claims
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     write_claims(
         snakemake.input.measured,
         snakemake.input.coarser,

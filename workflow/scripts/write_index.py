@@ -1,8 +1,8 @@
 """Write the page that leads to all results."""
 
-from slippulse.jobs import logged, write_index
+from slippulse.jobs import job, write_index
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     write_index(
         snakemake.params.figures,
         snakemake.params.studies,

@@ -1,8 +1,8 @@
 """Write provenance, checksums and manifest of the results."""
 
-from slippulse.jobs import logged, write_provenance
+from slippulse.jobs import job, write_provenance
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     write_provenance(
         snakemake.params.root,
         snakemake.params.config,

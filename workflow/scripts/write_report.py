@@ -1,8 +1,8 @@
 """Execute the replication report and render it."""
 
-from slippulse.jobs import logged, write_report
+from slippulse.jobs import job, write_report
 
-with logged(snakemake.log[0]):
+with job(snakemake.log[0]):
     write_report(
         dict(snakemake.input.items()),
         snakemake.params.figures,
