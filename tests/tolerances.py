@@ -57,7 +57,7 @@ AMPLIFICATION = 1e-9
 AMPLIFICATION_WEAK = 1.01e-4
 # How far below and above a bound "just" is.
 BELOW_BOUND, ABOVE_BOUND = 0.98, 1.03
-# Far enough above that the growth shows although events cut most steps of the localised scheme.
+# Where a run of the localised scheme does not outlast its first oscillations.
 WELL_ABOVE_BOUND = 1.25
 # Measured boundary below the derived one: the resolution of the bisection.
 BOUNDARY_BELOW = 0.011

@@ -108,17 +108,19 @@ def test_a_fixed_step_run_blows_up_just_above_the_bound_and_is_sound_just_below(
         run_scene(beyond_the_bound("fixed_step", tol.ABOVE_BOUND, **STRONG, beta=0.1 * ratio))
 
 
-def test_a_localised_run_loses_its_energy_balance_above_the_bound_and_keeps_it_just_below():
-    """It does not blow up: what a growing mode throws below zero sticks. The balance tells, and the run is flagged."""
+def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps_it_just_below():
+    """What a slowly growing mode throws below zero sticks, so that it is the balance that tells; a fast one blows up."""
     sound = beyond_the_bound("localised", tol.BELOW_BOUND, **STRONG, beta=1.0)
     run = run_scene(sound)
     assert run.numbers["energy_residual"] < tol.ENERGY
     assert run.numbers["sticks"] == 0
     assert judge(sound, run)["flags"] == ""
-    broken = beyond_the_bound("localised", tol.WELL_ABOVE_BOUND, **STRONG, beta=1.0)
+    broken = beyond_the_bound("localised", tol.ABOVE_BOUND, **STRONG, beta=1.0)
     run = run_scene(broken)
     assert run.numbers["sticks"] > 0
     assert "energy" in judge(broken, run)["flags"].split(",")
+    with pytest.raises(UnstableRun, match=r"unstable at t = .*max_step"):
+        run_scene(beyond_the_bound("localised", tol.WELL_ABOVE_BOUND, **STRONG, beta=1.0))
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)

@@ -32,10 +32,10 @@ def test_the_longest_wait_on_the_way():
         (-0.25, 0.02, 0.0, "not reached"),
     ],
 )
-def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, state):
+def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, state, paper_accuracy):
     profile = sp.Prestress(level, 0.0)
     exact = ArrestingCrack(profile, ratio).share_time(0.95)
-    run = sp.simulate(sp.Scene("stress", profile, 1.6 * exact, dx, beta=ratio * dx, max_step=0.5))
+    run = sp.simulate(sp.Scene("stress", profile, 1.6 * exact, dx, beta=ratio * dx, **paper_accuracy))
     found = transition_stress(run, 0.95)
     assert found["transition_state"] == state
     if state == "resolved":

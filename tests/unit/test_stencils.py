@@ -112,9 +112,18 @@ def test_polynomial(random):
         assert stencils.polynomial(coefficients, 6, h) == pytest.approx(expected, rel=tol.STENCIL)
 
 
+def test_slope(random):
+    coefficients = random.standard_normal(7)
+    slope = np.polynomial.polynomial.polyder(coefficients)
+    for h in (0.0, 0.3, -1.7):
+        expected = np.polynomial.polynomial.polyval(h, slope)
+        assert stencils.slope(coefficients, 6, h) == pytest.approx(expected, rel=tol.STENCIL)
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.01])
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 @pytest.mark.parametrize("seed", range(10))
-def test_crossing_finds_the_one_root_between_the_ends(seed, sign):
+def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
     """A polynomial with one real root in the interval, and others outside it and in the complex plane."""
     random = np.random.default_rng(seed)
     h = float(random.uniform(0.01, 2.0))
@@ -122,15 +131,15 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign):
     pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
     roots = [inside, -random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0), pair, pair.conjugate()]
     coefficients = sign * np.real(np.polynomial.polynomial.polyfromroots(roots))
-    found = stencils.crossing(coefficients, 5, h)
+    found = stencils.crossing(coefficients, 5, lower * h, h)
     assert found == pytest.approx(inside, abs=tol.ROOT)
 
 
 def test_crossing_finds_a_root_with_zero_slope():
-    assert stencils.crossing(np.array([-0.125, 0.75, -1.5, 1.0]), 3, 1.0) == pytest.approx(
+    assert stencils.crossing(np.array([-0.125, 0.75, -1.5, 1.0]), 3, 0.0, 1.0) == pytest.approx(
         0.5, abs=tol.ROOT ** (1.0 / 3.0)
     )
 
 
 def test_crossing_finds_a_root_at_the_end():
-    assert stencils.crossing(np.array([-1.0, 1.0]), 1, 1.0) == pytest.approx(1.0, abs=tol.ROOT)
+    assert stencils.crossing(np.array([-1.0, 1.0]), 1, 0.0, 1.0) == pytest.approx(1.0, abs=tol.ROOT)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import tolerances as tol
 
 import slippulse as sp
 from slippulse.lattice import driver
+from slippulse.lattice.stability import largest_step
 from slippulse.model import SCHEMES
 
 PUBLISHED = {
@@ -90,10 +92,15 @@ def test_a_stress_beyond_the_threshold_of_reverse_sliding_is_flagged(ratio, flag
     assert run.attrs["friction_ratio_needed"] >= 0.25
 
 
-def test_a_step_too_long_for_the_damping_is_flagged():
+@pytest.mark.parametrize(("times_the_bound", "stops"), [(tol.ABOVE_BOUND, False), (1.5, True)])
+def test_a_step_too_long_for_the_damping_is_flagged_or_stops(times_the_bound, stops):
     scene = sp.Scene("stress", sp.Prestress(-0.5, -0.1), 20.0, 0.05, beta=0.05, max_step=0.5)
-    object.__setattr__(scene, "max_step", 1.39)
-    assert "energy" in sp.simulate(scene).attrs["flags"]
+    object.__setattr__(scene, "max_step", times_the_bound * largest_step("localised", 4, 1.0, 0.0))
+    if stops:
+        with pytest.raises(sp.UnstableRun, match=r"unstable at t = .*max_step"):
+            sp.simulate(scene)
+    else:
+        assert "energy" in sp.simulate(scene).attrs["flags"]
 
 
 def test_strict_raises_where_a_flag_would_be_set():

@@ -38,7 +38,7 @@ class _Arguments:
         self.runs = (lattice.starts, lattice.ends, int(lattice.counts[localised.RUNS]))
         self.rules = (lattice.scene.dx, lattice.leaf, lattice.beta)
         self.foreseen = (lattice.stopping_block, lattice.stopping_time)
-        self.scratch = tuple(np.zeros((2, self.order + 2)))
+        self.difference, self.own, self.values, *self.polynomials = localised.scratch(self.order)[:5]
 
 
 def _compile_steps() -> None:
@@ -58,10 +58,12 @@ def _compile_steps() -> None:
         *given.rules,
     )
     localised.viscous_rate(w, *given.runs, lattice.mirror, dx, lattice.beta)
-    localised.foresee_sticks(w, lattice.velocity, *given.runs, *given.foreseen, *given.scratch, order, 0.1)
+    localised.foresee_sticks(
+        w, lattice.velocity, *given.runs, *given.foreseen, *given.polynomials, order, 0.1
+    )
     localised.foresee_releases(
-        lattice.release_at, *given.scratch, w, strain, tau, *given.runs, 0.1, lattice.mirror, *given.rules, True,
-        order + 1,
+        lattice.release_at, *given.polynomials, w, lattice.offset, strain, tau, *given.runs, 0.0, 0.1, lattice.mirror,
+        *given.rules, True, order + 1, 0, 1,
     )  # fmt: skip
     none = np.zeros(0, dtype=np.int64)
     localised.take_over(
@@ -70,6 +72,7 @@ def _compile_steps() -> None:
         strain,
         lattice.velocity,
         *given.runs,
+        none,
         none,
         none,
         0,
@@ -88,7 +91,6 @@ def _compile_events() -> None:
     """What a release or a stick sets off, and how the next one is found."""
     given = _Arguments()
     lattice, top = given.lattice, given.order + 1
-    patch, rows = np.zeros((top + 1, events.COLUMNS)), np.zeros((8, events.COLUMNS))
     ahead = (lattice.release_at, *given.runs, lattice.mirror)
     events.next_event(*ahead, *given.foreseen, 0)
     events.crowded(*ahead, *given.foreseen, 0, 1, 0.1)
@@ -96,9 +98,10 @@ def _compile_events() -> None:
     runs.holds(*given.runs, 1)
     runs.release_block(*given.runs, int(lattice.ends[0]))
     runs.stick_block(*given.runs, 1)
-    events.expand_anew(
+    events.change_course(
         lattice.w, lattice.offset, lattice.strain, lattice.tau, lattice.velocity, *given.runs, 1, True, 0.05, 0.1,
-        lattice.release_at, *given.foreseen, 0, patch, rows, *given.scratch, lattice.mirror, True, *given.rules, top,
+        lattice.release_at, *given.foreseen, 0, given.difference, given.own, given.values, *given.polynomials,
+        lattice.mirror, True, *given.rules, top,
     )  # fmt: skip
 
 

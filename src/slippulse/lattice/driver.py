@@ -60,6 +60,7 @@ class Lattice:
         self.counts = np.zeros(9, dtype=np.int64)
         self.totals = np.zeros(7)
         self.totals[localised.FIRST_STICK] = np.nan
+        self.scratch = localised.scratch(scene.order)
         self.samples = samples
         n_times, n_positions = (samples.times.size, samples.positions.size) if samples else (0, 0)
         self.sample_times = samples.times if samples else np.zeros(0)
@@ -144,8 +145,8 @@ class Lattice:
         if self.localised:
             return localised.advance(
                 self.w, self.offset, self.strain, self.velocity, self.tau, self.starts, self.ends, self.moved_starts,
-                self.moved_ends, self.release_at, self.stopping_block, self.stopping_time, *shared, *recorded, *rules,
-                scene.order, step, scene.duration, self.largest_force, self.call_steps,
+                self.moved_ends, self.release_at, self.stopping_block, self.stopping_time, *self.scratch, *shared,
+                *recorded, *rules, scene.order, step, scene.duration, self.largest_force, self.call_steps,
             )  # fmt: skip
         return fixed_step.advance_fixed(
             self.w[0], self.w[1], self.w[2], self.sliding, self.tau, *shared, *recorded, *rules,

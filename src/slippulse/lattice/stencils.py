@@ -103,7 +103,7 @@ def count_stopping(after, w, first, last, step):
 
     A velocity that dips below 0 and returns within the step is seen by its tangent at the start.
     """
-    count = 0
+    count = np.int64(0)
     for i in blocks(first, last):
         count += (not (after[i] >= 0.0)) | (w[1, i] + step * w[2, i] < 0.0)
     return count
@@ -156,29 +156,40 @@ def polynomial(coefficients, degree, h):
 
 
 @compiled()
-def crossing(coefficients, degree, h):
-    """Root in (0, h] of a polynomial that changes sign there: bisection made fast by Newton steps.
+def slope(coefficients, degree, h):
+    """Slope at h of a polynomial, lowest power first."""
+    value = degree * coefficients[degree]
+    for k in range(degree - 1, 0, -1):
+        value = k * coefficients[k] + h * value
+    return value
 
-    The sign at 0 tells the direction: at h it may be lost to rounding, and then the root is h.
+
+@compiled()
+def crossing(coefficients, degree, lower, upper):
+    """Root of a polynomial that changes sign between two times: Newton steps from the secant, kept by bisection.
+
+    The sign at the earlier one tells the direction: at the later it may be lost to rounding, and then it is the root.
     """
-    lower, upper = 0.0, h
-    rising = coefficients[0] < 0.0
-    root = 0.5 * h
+    start = polynomial(coefficients, degree, lower)
+    end = polynomial(coefficients, degree, upper)
+    rising = start < 0.0
+    root = 0.5 * (lower + upper)
+    if (end > 0.0) == rising and end != start:
+        root = lower + (upper - lower) * start / (start - end)
+    # The last of Newton's steps is as good as the square of the one before.
+    close = 1e-9 * upper
     for _ in range(100):
         value = coefficients[degree]
-        slope = 0.0
+        change = 0.0
         for k in range(degree - 1, -1, -1):
-            slope = value + root * slope
+            change = value + root * change
             value = coefficients[k] + root * value
         if (value > 0.0) == rising:
             upper = root
         else:
             lower = root
-        change = -value / slope if slope != 0.0 else h
-        candidate = root + change
-        if not (lower < candidate < upper):
-            candidate = 0.5 * (lower + upper)
-        if abs(candidate - root) <= 4e-16 * h or upper - lower <= 4e-16 * h:
-            return candidate
-        root = candidate
+        candidate = root - value / change if change != 0.0 else upper
+        if abs(candidate - root) <= close or upper - lower <= close:
+            return min(max(candidate, lower), upper)
+        root = candidate if lower < candidate < upper else 0.5 * (lower + upper)
     return root
