@@ -27,9 +27,9 @@ STRONGEST_DAMPING = 1.0
 SHARE = 0.7
 # Blocks across the narrowest length at the least, so that a lattice four times coarser still has 8.
 BLOCKS = 32
-# Largest step in units of dx, and order: `studies.accuracy_cost` finds errors of 3e-6 by them at any spacing, in the
+# Largest step in units of dx, and order: `studies.accuracy_cost` finds errors of 4e-6 by them at any spacing, in the
 # worst of its numbers, and by the next cheaper ones 2e-5.
-STEP, ORDER = 0.75, 8
+STEP, ORDER = 1.0, 8
 
 # Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its share of the width from slip and peak
 # (steady pulse to first order in beta). The front takes blocks from the width: at most 1/(2 tau_0 v^2).

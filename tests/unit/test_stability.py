@@ -109,7 +109,7 @@ def test_a_fixed_step_run_blows_up_just_above_the_bound_and_is_sound_just_below(
 
 
 def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps_it_just_below():
-    """What a slowly growing mode throws below zero sticks, so that it is the balance that tells; a fast one blows up."""
+    """A slowly growing mode that is thrown below zero sticks: the balance tells. A fast one blows up."""
     sound = beyond_the_bound("localised", tol.BELOW_BOUND, **STRONG, beta=1.0)
     run = run_scene(sound)
     assert run.numbers["energy_residual"] < tol.ENERGY
