@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import subprocess
+import sys
 from importlib import import_module
 from pathlib import Path
 
@@ -23,6 +25,13 @@ LONGEST = (
     "test_pipeline",
     "test_rendering",
 )
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Compile the kernels once, before the workers start and each would."""
+    if not hasattr(session.config, "workerinput") and not session.config.option.collectonly:
+        program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+        subprocess.run([sys.executable, "-c", program], check=True)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -57,7 +57,7 @@ def simulate(
     Returns
     -------
     Dataset over x with prestress, release_time, stick_time, slip, slip_velocity and slip_acceleration at the end.
-    Attributes: every scene parameter, steps, block_updates, event_updates (blocks that events expanded anew), energy
+    Attributes: every scene parameter, steps, block_updates, event_updates (blocks that events changed), energy
     balance and energy_residual, min_velocity, re_releases, flags ("" or a comma-separated list), versions.
 
     Raises

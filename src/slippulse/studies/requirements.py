@@ -23,7 +23,7 @@ def table(settings: Mapping) -> pd.DataFrame:
     -------
     rows of part "work": scene, value = block updates over sliding blocks and steps (1: nothing else is touched, 1/2:
     half of a symmetric scene), blocks = the lattice of the textbook scheme over the sliding blocks; "events": value =
-    blocks that events expanded anew over the block updates; "memory": bytes a block of the lattice for each order;
+    blocks that events changed over the block updates; "memory": bytes a block of the lattice for each order;
     "duration" and "spacing": x, value = block updates; "exponent": their slopes
     """
     rows = [row for name, scene in scenes(settings).items() for row in work(name, scene)]
@@ -70,7 +70,7 @@ def scenes(settings: Mapping) -> dict[str, Scene]:
 def work(name: str, scene: Scene) -> list[dict]:
     """Block updates a step over the mean number of sliding blocks, from the release and stick times of the run.
 
-    And what events expand anew, over the block updates.
+    And what events change, over the block updates.
     """
     run = run_scene(scene)
     released = np.isfinite(run.release_time)
