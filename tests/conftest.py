@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import copy
+import os
+import shutil
 import subprocess
 import sys
+import tempfile
 from importlib import import_module
 from pathlib import Path
 
@@ -27,11 +30,39 @@ LONGEST = (
 )
 
 
+# Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
+SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
+
+
+def compile_into(folder: Path) -> None:
+    """Compile every kernel into an empty folder, in processes of their own."""
+    program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+    subprocess.run([sys.executable, "-c", program], env=os.environ | {SHARED: str(folder)}, check=True)
+
+
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile the kernels once, before the workers start and each would."""
-    if not hasattr(session.config, "workerinput") and not session.config.option.collectonly:
-        program = "from slippulse.lattice.compilation import compile_all; compile_all()"
-        subprocess.run([sys.executable, "-c", program], check=True)
+    if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput"):
+        folder = Path(tempfile.mkdtemp(prefix="slippulse-kernels-"))
+        compile_into(folder / "untouched")
+        shutil.copytree(folder / "untouched", folder / "shared")
+        os.environ |= {SHARED: str(folder / "shared"), UNTOUCHED: str(folder / "untouched")}
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Remove the kernels of this session."""
+    if UNTOUCHED in os.environ and not hasattr(session.config, "workerinput"):
+        shutil.rmtree(Path(os.environ[UNTOUCHED]).parent)
+
+
+@pytest.fixture(scope="session")
+def untouched_kernels(tmp_path_factory) -> Path:
+    """A cache of kernels in which nothing is but what `compile_all` compiles."""
+    if UNTOUCHED in os.environ:
+        return Path(os.environ[UNTOUCHED])
+    folder = tmp_path_factory.mktemp("kernels")
+    compile_into(folder)
+    return folder
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

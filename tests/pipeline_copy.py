@@ -9,11 +9,15 @@ import subprocess
 import sys
 from pathlib import Path
 
+from numba.core.caching import _CacheLocator
+
+from slippulse.lattice import jit
+
 PARTS = ("Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock")
 
 
 def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
-    """Copy what a run needs, or link it where nothing is edited, which saves compiling; returns the folder."""
+    """Copy what a run needs, or link it where nothing is edited; returns the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     for part in PARTS:
         source = project / part
@@ -23,7 +27,18 @@ def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
             shutil.copytree(source, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
         elif source.exists():
             shutil.copy2(source, folder / part)
+    if not link:
+        share_kernels(folder)
     return folder
+
+
+def share_kernels(folder: Path) -> None:
+    """Give a copy of the sources the kernels that are compiled already: numba keeps them under the sources' path."""
+    cache = jit.cache_folder()
+    compiled = cache / Path(_CacheLocator.get_suitable_cache_subpath(jit.__file__))
+    copied = folder / Path(jit.__file__).relative_to(Path(__file__).resolve().parents[1])
+    if compiled.exists():
+        shutil.copytree(compiled, cache / _CacheLocator.get_suitable_cache_subpath(str(copied)))
 
 
 def snakemake(

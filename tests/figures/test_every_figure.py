@@ -46,10 +46,8 @@ def test_what_is_drawn_is_finite_and_repeatable(draw, tmp_path, name):
     assert len(drawn.table) > 0
     # The resolution is not what is tested, and takes most of the time.
     with matplotlib.rc_context({"savefig.dpi": 50}):
-        for attempt in ("a", "b"):
-            save_figure(
-                drawn.module.plot(drawn.table), tmp_path / f"{attempt}.png", tmp_path / f"{attempt}.pdf"
-            )
+        for attempt, figure in (("a", drawn.figure), ("b", drawn.module.plot(drawn.table))):
+            save_figure(figure, tmp_path / f"{attempt}.png", tmp_path / f"{attempt}.pdf")
     for ending in ("png", "pdf"):
         first, second = ((tmp_path / f"{attempt}.{ending}").read_bytes() for attempt in "ab")
         assert first == second

@@ -159,13 +159,15 @@ def test_sources_that_cannot_be_written_are_enough():
         for name in ("results", ".snakemake", "home"):
             (folder / name).mkdir()
             os.chown(folder / name, 65534, 65534)
+        theirs = os.environ | {"HOME": str(folder / "home"), "PYTHONPATH": str(folder / "src")}
+        theirs |= {"XDG_CACHE_HOME": "", "SLIPPULSE_CACHE": ""}
         base.chmod(0o755)
         if subprocess.run(["test", "-x", sys.executable], user=65534, check=False).returncode != 0:
             pytest.skip("the environment cannot be read by others")
         result = subprocess.run(
             [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
             cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False,
-            env=os.environ | {"HOME": str(folder / "home"), "PYTHONPATH": str(folder / "src"), "XDG_CACHE_HOME": ""},
+            env=theirs,
         )  # fmt: skip
         assert result.returncode == 0, result.stderr
         assert (folder / FIGURE).stat().st_size > 0
@@ -175,7 +177,7 @@ def test_sources_that_cannot_be_written_are_enough():
         result = subprocess.run(
             [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
             cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False,
-            env=os.environ | {"HOME": str(folder / "home"), "PYTHONPATH": str(folder / "src"), "XDG_CACHE_HOME": ""},
+            env=theirs,
         )  # fmt: skip
         assert result.returncode != 0 and "Permission denied" in result.stdout + result.stderr
     finally:

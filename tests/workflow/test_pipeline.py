@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import yaml
+from pipeline_copy import copy_project, planned
+from pipeline_copy import snakemake as run_snakemake
 
 pytestmark = pytest.mark.workflow
 
-PARTS = ["Snakefile", "workflow", "profiles", "config", "manuscript", "src", "requirements.lock"]
 TARGETS = ["results/figures/fig07_damage_zone.png", "results/figures/fig08_steady_state_displacement.png"]
 # Small enough to run in a second, large enough to have a pulse.
 TINY = {
@@ -29,36 +28,14 @@ TINY = {
 @pytest.fixture(scope="module")
 def copy_of_project(project, tmp_path_factory) -> Path:
     """A copy of the project's sources, with a space and an umlaut in its path."""
-    folder = tmp_path_factory.mktemp("a copy für tests")
-    for part in PARTS:
-        source = project / part
-        if source.is_dir():
-            shutil.copytree(source, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy2(source, folder / part)
+    folder = copy_project(project, tmp_path_factory.mktemp("a copy für tests"))
     (folder / "tiny.yaml").write_text(yaml.safe_dump(TINY), encoding="utf-8")
     return folder
 
 
 def snakemake(folder: Path, *arguments: str, config: str = "tiny.yaml") -> subprocess.CompletedProcess:
-    """Run Snakemake in a folder with its own library on the path."""
-    environment = os.environ | {"PYTHONPATH": str(folder / "src")}
-    overlay = ["--configfile", config] if config else []
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", *overlay, *arguments]
-    return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=240, check=False
-    )
-
-
-def jobs(result: subprocess.CompletedProcess) -> dict[str, int]:
-    """Rules and how often each is to run, from a dry run."""
-    assert result.returncode == 0, result.stderr + result.stdout
-    text = result.stdout + result.stderr
-    table = re.search(r"Job stats:\njob +count\n[- ]+\n(.*?)\ntotal", text, re.S)
-    if table is None:
-        assert "Nothing to be done" in text
-        return {}
-    return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}
+    """Run Snakemake in a folder on two cores."""
+    return run_snakemake(folder, *arguments, overlay=config, cores=2)
 
 
 @pytest.fixture(scope="module")
@@ -75,16 +52,16 @@ def finished(copy_of_project) -> Path:
 def test_everything_is_eleven_figures_in_three_files(copy_of_project):
     result = snakemake(copy_of_project, "--dry-run", "--quiet", "rules", config="")
     assert result.returncode == 0, result.stderr
-    planned = jobs(snakemake(copy_of_project, "--dry-run", config=""))
-    assert sum(name.startswith("fig") for name in planned) == 11
+    jobs = planned(snakemake(copy_of_project, "--dry-run", config=""))
+    assert sum(name.startswith("fig") for name in jobs) == 11
     summary = snakemake(copy_of_project, "--summary", config="").stdout
     files = set(re.findall(r"results/figures/fig\d\d_\w+\.(?:pdf|png|csv)", summary))
     assert len(files) == 33
 
 
 def test_a_draft_is_the_figures_unless_everything_is_asked_for(copy_of_project):
-    draft = jobs(snakemake(copy_of_project, "--dry-run", "--config", "preset=draft", config=""))
-    whole = jobs(
+    draft = planned(snakemake(copy_of_project, "--dry-run", "--config", "preset=draft", config=""))
+    whole = planned(
         snakemake(copy_of_project, "--dry-run", "--config", "preset=draft", "--", "everything", config="")
     )
     assert (
@@ -95,11 +72,11 @@ def test_a_draft_is_the_figures_unless_everything_is_asked_for(copy_of_project):
 
 
 def test_one_figure_needs_only_its_own_simulations(copy_of_project):
-    planned = jobs(
+    jobs = planned(
         snakemake(copy_of_project, "--dry-run", "--", "results/figures/fig04_space_time.png", config="")
     )
-    assert planned["simulate"] == 2
-    assert not any(name.startswith("fig") and name != "fig04_space_time" for name in planned)
+    assert jobs["simulate"] == 2
+    assert not any(name.startswith("fig") and name != "fig04_space_time" for name in jobs)
 
 
 def edges(graph: str) -> set[tuple[str, str]]:
@@ -119,7 +96,7 @@ def test_the_graph_in_the_readme_is_the_pipelines(copy_of_project, project):
 
 
 def test_a_second_run_does_nothing(finished):
-    assert jobs(snakemake(finished, "--dry-run", "--", *TARGETS)) == {}
+    assert planned(snakemake(finished, "--dry-run", "--", *TARGETS)) == {}
 
 
 def test_snakemakes_own_report_is_one_file_that_loads_nothing(finished):
@@ -136,8 +113,8 @@ def test_another_level_runs_only_its_chain(finished):
         "left": [0.5, 0.6]
     }
     (finished / "changed.yaml").write_text(yaml.safe_dump(changed), encoding="utf-8")
-    planned = jobs(snakemake(finished, "--dry-run", "--", *TARGETS, config="changed.yaml"))
-    assert planned == {"simulate": 1, "measure": 1, "fig08_steady_state_displacement": 1}
+    jobs = planned(snakemake(finished, "--dry-run", "--", *TARGETS, config="changed.yaml"))
+    assert jobs == {"simulate": 1, "measure": 1, "fig08_steady_state_displacement": 1}
 
 
 def test_swapped_values_are_seen(finished):
@@ -146,8 +123,8 @@ def test_swapped_values_are_seen(finished):
         "left": [0.7, 0.5]
     }
     (finished / "swapped.yaml").write_text(yaml.safe_dump(changed), encoding="utf-8")
-    planned = jobs(snakemake(finished, "--dry-run", "--", *TARGETS, config="swapped.yaml"))
-    assert planned["simulate"] == 1
+    jobs = planned(snakemake(finished, "--dry-run", "--", *TARGETS, config="swapped.yaml"))
+    assert jobs["simulate"] == 1
 
 
 @pytest.mark.parametrize(
@@ -168,7 +145,7 @@ def test_an_edit_runs_what_uses_it(finished, source, runs):
     stat = path.stat()
     try:
         path.write_bytes(before + b"\n# edited\n")
-        assert set(jobs(snakemake(finished, "--dry-run", "--", *TARGETS))) == runs
+        assert set(planned(snakemake(finished, "--dry-run", "--", *TARGETS))) == runs
     finally:
         path.write_bytes(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
