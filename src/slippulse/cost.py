@@ -10,7 +10,7 @@ from .lattice.samples import Samples
 from .model import Scene
 
 # Block updates a second on one core at order 8, and what a release or stick and the start of a scene cost in them.
-RATE, EVENT, START = 2e8, 300.0, 1e6
+RATE, EVENT, START = 2.5e8, 250.0, 8e5
 # What runs without being asked twice: a night on one core, the memory of a small machine, a large sweep.
 LARGEST_HOURS = 12.0
 LARGEST_BYTES = 4e9

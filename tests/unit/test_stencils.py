@@ -93,16 +93,16 @@ def test_stretching(random):
     assert product == pytest.approx(np.sum(np.diff(velocity) * np.diff(acceleration)), abs=tol.STENCIL * N)
 
 
-def test_count_stopping_counts_what_may_stop():
-    after = np.array([0.0, 1.0, -1e-30, np.nan, 2.0, -1.0])
-    w = np.zeros((3, 6))
-    w[1] = 1.0
-    assert stencils.count_stopping(after, w, 0, 6, 0.1) == 3
-    assert stencils.count_stopping(after, w, 4, 6, 0.1) == 1
-    w[2] = [0.0, 0.0, -11.0, 0.0, 0.0, -9.0]
-    assert stencils.count_stopping(after, w, 0, 6, 0.1) == 3
-    w[2, 1] = -11.0
-    assert stencils.count_stopping(after, w, 0, 6, 0.1) == 4
+@pytest.mark.parametrize("order", ORDERS)
+def test_what_may_stop_is_counted(order):
+    """Velocity 0 after the step, positive, negative, not a number, positive after a dip, and negative after another."""
+    w, out, h = np.zeros((order + 2, 8)), np.zeros(8), 1.0
+    w[1] = [0.0, 1.0, -1e-30, np.nan, 1.0, 1.0, 1.0, 1.0]
+    w[2] = [0.0, 0.0, 0.0, 0.0, -1.1, -1.1, -1.0, -1.0 - 1e-15]
+    w[3, 4:] = [2.0, 0.0, 0.0, 2.0]
+    assert stencils.velocity_after(out, w, 0, 8, h, order) == 5
+    assert stencils.velocity_after(out, w, 4, 7, h, order) == 2
+    assert out[[4, 5, 6]] == pytest.approx([0.9, -0.1, 0.0], abs=tol.STENCIL)
 
 
 def test_polynomial(random):

@@ -242,7 +242,7 @@ def later(derivatives, lowest, last, top, s):
         derivatives[m] = value
 
 
-@compiled()
+@compiled(inline=True)
 def velocity_at(w, i, top, s):
     """Velocity of a block a time s after the step began."""
     value = w[top, i]
@@ -293,7 +293,7 @@ def spread(difference, own, left, right, stuck, per_dx2, leaf, damping, top):
         difference[k, CENTRE] = own[k] + (0.0 if stuck else difference[k, CENTRE])
 
 
-@compiled()
+@compiled(inline=True)
 def evaluate(out, difference, lowest, top, s):
     """Derivative ``lowest`` of what an event changes a time s after it, in all columns but the last."""
     columns = np.uint64(COLUMNS - 1)

@@ -63,7 +63,7 @@ REORDER = {"reassoc", "contract", "nsz"}
 def compiled(*, reorder: bool = False, inline: bool = False):
     """Decorator: machine code without the interpreter's lock, cached; ``reorder`` lets sums vectorise.
 
-    ``inline`` is for what an event calls from one place alone: handing on a dozen arrays takes as long as using them.
+    ``inline`` is for what an event calls, from one place or few: handing on a dozen arrays takes as long as using them.
     Arrays are not counted as references, which was half of the time of a narrow pulse (an atomic operation for each of
     them in each call): they belong to whoever calls from Python, and no kernel makes or returns one.
     """

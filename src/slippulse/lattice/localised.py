@@ -30,7 +30,6 @@ from .runs import holds, release_block, stick_block
 from .stencils import (
     advance_slip,
     advance_strain,
-    count_stopping,
     first_acceleration,
     next_derivative,
     stretching,
@@ -180,8 +179,7 @@ def foresee_sticks(
     # Not a literal, for which everything that is called would be compiled once more.
     n_stopping = np.int64(0)
     for r in range(n):
-        velocity_after(velocity, w, starts[r], ends[r], h, order)
-        suspects = count_stopping(velocity, w, starts[r], ends[r], h)
+        suspects = velocity_after(velocity, w, starts[r], ends[r], h, order)
         if suspects > 0:
             n_stopping = find_sticks(
                 w, velocity, starts[r], ends[r], suspects, stopping_block, stopping_time, n_stopping, coefficients,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .jit import compiled
 
 
-@compiled()
+@compiled(inline=True)
 def release_block(starts, ends, n, block):
     """Add a stuck block to the runs: extend, join or begin one. Returns the new number of runs."""
     r = 0
@@ -32,7 +32,7 @@ def release_block(starts, ends, n, block):
     return n + 1
 
 
-@compiled()
+@compiled(inline=True)
 def stick_block(starts, ends, n, block):
     """Take a sliding block out of the runs: shorten, split or end one. Returns the new number of runs."""
     r = 0
@@ -60,7 +60,7 @@ def stick_block(starts, ends, n, block):
     return n + 1
 
 
-@compiled()
+@compiled(inline=True)
 def holds(starts, ends, n, block):
     """Whether a block is in one of the runs."""
     r = 0

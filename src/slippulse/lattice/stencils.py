@@ -69,43 +69,43 @@ def next_derivative(w, k, first, last, per_dx2, leaf, damping):
 
 
 @compiled()
-def nest_one(inner, w, k, share, first, last):
-    """One level of a Taylor polynomial from the inside out, in place: w[k] + share inner."""
-    for i in blocks(first, last):
-        inner[i] = w[k, i] + share * inner[i]
-
-
-@compiled()
-def nest_two(inner, w, k, share, lower_share, first, last):
-    """Two levels at once, with half the traffic, in place: w[k-1] + lower_share (w[k] + share inner)."""
+def nest(inner, w, k, share, lower_share, first, last):
+    """Two levels of a Taylor polynomial from the inside out, in place: w[k-1] + lower_share (w[k] + share inner)."""
     for i in blocks(first, last):
         inner[i] = w[k - 1, i] + lower_share * (w[k, i] + share * inner[i])
 
 
 @compiled()
+def may_stop(after, now, tangent):
+    """Whether a velocity is below 0 after a step, not a number, or slowing down so as to pass 0 within it.
+
+    One that dips below 0 and returns is seen by its tangent at the start.
+    """
+    return (not (after >= 0.0)) | (now + tangent < 0.0)
+
+
+@compiled()
 def velocity_after(out, w, first, last, step, order):
-    """Velocity of blocks first..last-1 a time ``step`` later, from the derivatives of slip in ``w``."""
+    """Velocity of blocks first..last-1 a time ``step`` later, and how many of them may stop on the way."""
     share = step / order
     for i in blocks(first, last):
         out[i] = w[order, i] + share * w[order + 1, i]
     k = order - 1
-    if k % 2 == 1:
-        nest_one(out, w, k, step / k, first, last)
-        k -= 1
-    while k > 0:
-        nest_two(out, w, k, step / k, step / (k - 1), first, last)
+    while k > 3:
+        nest(out, w, k, step / k, step / (k - 1), first, last)
         k -= 2
-
-
-@compiled()
-def count_stopping(after, w, first, last, step):
-    """How many blocks may stop within a step: below 0 at its end, not a number, or slowing down to pass 0.
-
-    A velocity that dips below 0 and returns within the step is seen by its tangent at the start.
-    """
     count = np.int64(0)
-    for i in blocks(first, last):
-        count += (not (after[i] >= 0.0)) | (w[1, i] + step * w[2, i] < 0.0)
+    half, third = step / 2.0, step / 3.0
+    if k == 3:
+        for i in blocks(first, last):
+            after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
+            out[i] = after
+            count += may_stop(after, w[1, i], step * w[2, i])
+    else:
+        for i in blocks(first, last):
+            after = w[1, i] + step * (w[2, i] + half * out[i])
+            out[i] = after
+            count += may_stop(after, w[1, i], step * w[2, i])
     return count
 
 
@@ -114,18 +114,24 @@ def advance_slip(w, velocity, first, last, step, order):
     """Advance slip by its Taylor polynomial and take over the new velocity; the slip increment is left in w[2]."""
     inner = w[order + 1]
     k = order
-    if k % 2 == 1:
-        nest_one(inner, w, k, step / (k + 1), first, last)
-        k -= 1
-    while k > 2:
-        nest_two(inner, w, k, step / (k + 1), step / k, first, last)
+    while k > 4:
+        nest(inner, w, k, step / (k + 1), step / k, first, last)
         k -= 2
-    half, third = step / 2.0, step / 3.0
-    for i in blocks(first, last):
-        increment = step * (w[1, i] + half * (w[2, i] + third * inner[i]))
-        w[2, i] = increment
-        w[0, i] += increment
-        w[1, i] = velocity[i]
+    half, third, fourth, fifth = step / 2.0, step / 3.0, step / 4.0, step / 5.0
+    if k == 4:
+        for i in blocks(first, last):
+            rest = w[2, i] + third * (w[3, i] + fourth * (w[4, i] + fifth * inner[i]))
+            increment = step * (w[1, i] + half * rest)
+            w[2, i] = increment
+            w[0, i] += increment
+            w[1, i] = velocity[i]
+    else:
+        for i in blocks(first, last):
+            rest = w[2, i] + third * (w[3, i] + fourth * inner[i])
+            increment = step * (w[1, i] + half * rest)
+            w[2, i] = increment
+            w[0, i] += increment
+            w[1, i] = velocity[i]
 
 
 @compiled()
