@@ -15,6 +15,7 @@ import yaml
 
 import slippulse as sp
 from slippulse.config import ConfigError, expand, resolve, validate
+from slippulse.cost import HOW_TO_GO_ON
 from slippulse.overlay import LARGEST_FILE, main, read_overlay
 
 SCHEMA = "workflow/schemas/config.schema.yaml"
@@ -383,6 +384,20 @@ def test_the_command_refuses_before_any_job(project, tmp_path, case):
     for part in named:
         assert part in said
     assert not (tmp_path / "results").exists() and not (tmp_path / "written").exists()
+
+
+@pytest.mark.workflow
+def test_what_costs_too_much_goes_on_where_that_is_allowed(project, tmp_path):
+    """As the refusal says it."""
+    for part in ("Snakefile", "workflow", "config", "src", "requirements.lock"):
+        (tmp_path / part).symlink_to(project / part)
+    (tmp_path / "mine.yaml").write_text(COMMANDS["cost"][0], encoding="utf-8")
+    result = subprocess.run(
+        [sys.executable, "-m", "snakemake", "--dry-run", *HOW_TO_GO_ON.split()[:2], "--configfile", "mine.yaml",
+         "--", "results/data/steady_displacement.nc"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert result.returncode == 0, result.stdout + result.stderr
 
 
 @pytest.mark.workflow

@@ -12,6 +12,11 @@ from slippulse.refusals import runs
 from slippulse.scenes import scene_block
 from slippulse.overlay import read_overlay
 
+# Of a switch on the command line Snakemake reads True and False, and leaves true and false text.
+for key, value in config.items():
+    if value in ("true", "false"):
+        config[key] = value == "true"
+
 try:
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     SHIPPED = read_overlay(Path(workflow.basedir) / "config/config.yaml")
