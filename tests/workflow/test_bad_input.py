@@ -194,7 +194,7 @@ CASES = {
         ["chunks: 2, and chunk", "up to 12 hours on one core a chunk: more chunks", "allow_large=true"],
     ),
     "too many hours in chunks": (
-        LONG.format(chunks=4, time="2.2e+5"),
+        LONG.format(chunks=4, time="3.0e+5"),
         ["cost: 4 runs", "up to 600 hours on one core", "allow_large=true"],
     ),
     "too much memory in a chunk": (

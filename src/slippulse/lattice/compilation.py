@@ -9,7 +9,7 @@ import numpy as np
 
 from ..model import Scene
 from ..prestress import Prestress
-from . import events, localised, runs
+from . import events, foresight, localised, runs
 from .driver import Lattice, run_scene
 
 
@@ -92,9 +92,9 @@ def _compile_events() -> None:
     given = _Arguments()
     lattice, top = given.lattice, given.order + 1
     ahead = (lattice.release_at, *given.runs, lattice.mirror)
-    events.next_event(*ahead, *given.foreseen, 0)
-    events.crowded(*ahead, *given.foreseen, 0, 1, 0.1)
-    events.due_releases(*ahead, 0.1, lattice.stopping_block)
+    foresight.next_event(*ahead, *given.foreseen, 0)
+    foresight.crowded(*ahead, *given.foreseen, 0, 1, 0.1)
+    foresight.due_releases(*ahead, 0.1, lattice.stopping_block)
     runs.holds(*given.runs, 1)
     runs.release_block(*given.runs, int(lattice.ends[0]))
     runs.stick_block(*given.runs, 1)

@@ -2,9 +2,9 @@
 
 Between events the sliding lattice is linear with constant coefficients, so its Taylor polynomial is cheap, and it
 is its own dense output: the stress of a stuck neighbour and the velocity of a sliding block are polynomials in the
-step, and the next event is the first root of either. What an event changes is added to the polynomials within its
-reach (`events`). Only the runs of sliding blocks and their neighbours are touched; everything else is at rest and its
-derivatives are zero.
+step, and the next event is the first root of either (`foresight`). What an event changes is added to the polynomials
+within its reach (`events`). Only the runs of sliding blocks and their neighbours are touched; everything else is at
+rest and its derivatives are zero.
 
 What paid for narrow pulses: events inside the step; no reference counts (a factor of 1.7); the difference that an event
 makes instead of a new expansion around it. What did not: passes written by hand for order 4, ending steps at events.
@@ -16,15 +16,8 @@ import math
 
 import numpy as np
 
-from .events import (
-    COLUMNS,
-    change_course,
-    crowded,
-    due_releases,
-    find_sticks,
-    foresee_releases,
-    next_event,
-)
+from .events import COLUMNS, change_course
+from .foresight import crowded, due_releases, find_sticks, foresee_releases, next_event
 from .jit import compiled
 from .runs import holds, release_block, stick_block
 from .stencils import (

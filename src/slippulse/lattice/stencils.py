@@ -12,6 +12,10 @@ import numpy as np
 from .jit import compiled
 
 ONE = np.uint64(1)
+# How far an event reaches on either side at order 8, the highest there is.
+REACH = 7
+# 1/j, for Taylor polynomials in derivatives.
+SHARE = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
 
 
 @compiled()
