@@ -84,5 +84,8 @@ def _amplifications(order: int, step, stiffness: np.ndarray, damping: np.ndarray
             velocity = velocity + power * derivatives[k + 1]
         power *= step / (k + 1)
     half_trace = 0.5 * (slip[0] + velocity[1])
-    root = np.sqrt((half_trace**2 - (slip[0] * velocity[1] - slip[1] * velocity[0])).astype(complex))
-    return np.maximum(np.abs(half_trace + root), np.abs(half_trace - root))
+    product = slip[0] * velocity[1] - slip[1] * velocity[0]
+    difference = half_trace**2 - product
+    # Two real eigenvalues, or two complex ones of one size.
+    real = np.abs(half_trace) + np.sqrt(np.maximum(difference, 0.0))
+    return np.where(difference >= 0.0, real, np.sqrt(np.maximum(product, 0.0)))
