@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import tolerances as tol
+from reference.from_python import from_python
 
 from slippulse.lattice import events, stencils
 from slippulse.model import ORDERS
@@ -19,7 +20,7 @@ def test_a_difference_some_time_later(order):
     difference = np.random.default_rng(order).standard_normal((top + 1, events.COLUMNS))
     values = np.zeros(events.COLUMNS)
     for lowest in range(top + 1):
-        events.evaluate(values, difference, lowest, top, s)
+        from_python(events.evaluate)(values, difference, lowest, top, s)
         for p in range(events.COLUMNS - 1):
             row = np.polynomial.Polynomial([difference[k, p] / math.factorial(k) for k in range(top + 1)])
             expected = row.deriv(lowest)(s) if lowest else row(s)
@@ -53,7 +54,7 @@ class Event:
         self.after[block] = 0.0 if stuck else 1.0
         self.offset, self.velocity = np.zeros(self.size), np.zeros(self.size)
         inside = np.flatnonzero(self.sliding)
-        stencils.velocity_after(self.velocity, self.w, inside[0], inside[-1] + 1, self.h, order)
+        from_python(stencils.velocity_after)(self.velocity, self.w, inside[0], inside[-1] + 1, self.h, order)
 
     def expanded(self, slip, velocity, sliding):
         """Derivatives of slip of the whole lattice."""
@@ -79,7 +80,7 @@ class Event:
         starts[: len(runs)], ends[: len(runs)] = runs.T
         strain = np.append(np.diff(self.slip) / self.dx, 0.0)
         top, scratch = self.top, np.zeros((2, self.top + 1))
-        return events.change_course(
+        return from_python(events.change_course)(
             self.w, self.offset, strain, self.tau, self.velocity, starts, ends, len(runs), self.block, self.stuck,
             self.now, self.h, np.full(self.size, np.inf), np.zeros(self.size, dtype=np.int64), np.zeros(self.size), 0,
             np.zeros((top + 1, events.COLUMNS)), np.zeros(top + 3), np.zeros(events.COLUMNS), scratch[0], scratch[1],

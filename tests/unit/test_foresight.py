@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import tolerances as tol
+from reference.from_python import from_python
 
 from slippulse.lattice import foresight, stencils
 
@@ -17,9 +18,9 @@ def stopping_time(velocity_coefficients: np.ndarray, h: float, now: float = 0.0)
     w = np.zeros((top + 1, 3))
     w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(velocity_coefficients)]
     velocity = np.zeros(3)
-    stencils.velocity_after(velocity, w, 1, 2, h, top - 1)
+    from_python(stencils.velocity_after)(velocity, w, 1, 2, h, top - 1)
     blocks, times, scratch = np.zeros(3, dtype=np.int64), np.zeros(3), np.zeros((2, top + 1))
-    number = foresight.find_sticks(
+    number = from_python(foresight.find_sticks)(
         w, velocity, 1, 2, 1, blocks, times, 0, scratch[0], scratch[1], now, top, h
     )
     assert number != 1 or blocks[0] == 1
@@ -49,15 +50,19 @@ def test_find_sticks_of_many_stops_at_the_last_that_may():
     """Of four blocks that all stop it looks at no more than it is told there are."""
     w, velocity = np.zeros((6, 6)), np.zeros(6)
     w[1], w[2] = 1.0, -2.0
-    stencils.velocity_after(velocity, w, 1, 5, 1.0, 4)
+    from_python(stencils.velocity_after)(velocity, w, 1, 5, 1.0, 4)
     blocks, times, scratch = np.zeros(6, dtype=np.int64), np.zeros(6), np.zeros((2, 6))
     assert (
-        foresight.find_sticks(w, velocity, 1, 5, 4, blocks, times, 0, scratch[0], scratch[1], 0.0, 5, 1.0)
+        from_python(foresight.find_sticks)(
+            w, velocity, 1, 5, 4, blocks, times, 0, scratch[0], scratch[1], 0.0, 5, 1.0
+        )
         == 4
     )
     assert list(blocks[:4]) == [1, 2, 3, 4] and times[:4] == pytest.approx(0.5, abs=tol.ROOT)
     assert (
-        foresight.find_sticks(w, velocity, 1, 5, 2, blocks, times, 0, scratch[0], scratch[1], 0.0, 5, 1.0)
+        from_python(foresight.find_sticks)(
+            w, velocity, 1, 5, 2, blocks, times, 0, scratch[0], scratch[1], 0.0, 5, 1.0
+        )
         == 2
     )
 
@@ -74,9 +79,9 @@ def test_find_sticks_places_a_stick_at_the_end_of_the_step_there():
         coefficients = np.array(
             [random.uniform(0.1, 1.0), random.uniform(-3.0, -1.0), *random.uniform(-1, 1, 3)]
         )
-        if stencils.polynomial(coefficients, 4, 1.0) >= 0.0:
+        if from_python(stencils.polynomial)(coefficients, 4, 1.0) >= 0.0:
             continue
-        root = stencils.crossing(coefficients, 4, 0.0, 1.0)
+        root = from_python(stencils.crossing)(coefficients, 4, 0.0, 1.0)
         for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
             number, first = stopping_time(coefficients, h)
             if number:
@@ -108,7 +113,7 @@ def stressed(height: float, speed: float, slowing: float, h: float, now: float =
     w[1, 1], w[2, 1] = speed, -slowing
     tau = np.array([0.0, 0.0, height, 0.0, 0.0])
     scratch, zeros = np.zeros((2, 6)), np.zeros(5)
-    when, stress = foresight.foresee_release(
+    when, stress = from_python(foresight.foresee_release)(
         scratch[0], scratch[1], w, zeros, zeros, tau, 2, now, h, 1.0, 0.0, 0.0, True, 5
     )
     assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)

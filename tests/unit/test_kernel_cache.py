@@ -6,9 +6,10 @@ import shutil
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
-from slippulse.lattice import jit
+from slippulse.lattice import jit, stencils
 
 
 @pytest.fixture
@@ -57,7 +58,7 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
     )
     (package / "caller.py").write_text(
         "from .helper import helper\nfrom .jit import compiled\n\n\n"
-        "@compiled()\ndef caller(x):\n    return 10 * helper(x)\n"
+        "@compiled(entry=True)\ndef caller(x):\n    return 10 * helper(x)\n"
     )
 
     def call() -> str:
@@ -84,6 +85,12 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
     )
     assert call() == "30"
     assert len(list((tmp_path / "cache").iterdir())) == 2
+
+
+def test_a_kernel_for_kernels_says_so_when_python_calls_it():
+    """numba would take the whole interpreter down."""
+    with pytest.raises(TypeError, match=r"^polynomial: called from Python; allowed: from a kernel"):
+        stencils.polynomial(np.ones(3), 2, 0.5)
 
 
 def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):

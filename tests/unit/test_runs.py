@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from reference.from_python import from_python
 
 from slippulse.lattice.runs import release_block, stick_block
 
@@ -25,11 +26,11 @@ class RunList:
             self.starts[r], self.ends[r] = start, end
 
     def release(self, block: int) -> list[tuple[int, int]]:
-        self.n = release_block(self.starts, self.ends, self.n, block)
+        self.n = from_python(release_block)(self.starts, self.ends, self.n, block)
         return self.runs()
 
     def stick(self, block: int) -> list[tuple[int, int]]:
-        self.n = stick_block(self.starts, self.ends, self.n, block)
+        self.n = from_python(stick_block)(self.starts, self.ends, self.n, block)
         return self.runs()
 
     def runs(self) -> list[tuple[int, int]]:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import tolerances as tol
+from reference.from_python import from_python
 
 from slippulse.lattice import stencils
 from slippulse.model import ORDERS
@@ -26,7 +27,7 @@ def test_first_acceleration(random, leaf, damping):
     w, tau = random.standard_normal((4, N)), random.standard_normal(N)
     start = w.copy()
     strain = np.append(np.diff(w[0]) / dx, 0.0)
-    stencils.first_acceleration(w, strain, tau, 1, N - 1, 1.0 / dx, leaf, damping)
+    from_python(stencils.first_acceleration)(w, strain, tau, 1, N - 1, 1.0 / dx, leaf, damping)
     slip, velocity = start[:2]
     expected = np.diff(slip, 2) / dx**2 - leaf * slip[1:-1] + tau[1:-1] + damping * np.diff(velocity, 2)
     assert w[2, 1:-1] == pytest.approx(expected, rel=tol.STENCIL, abs=tol.STENCIL / dx**2)
@@ -39,7 +40,7 @@ def test_first_acceleration(random, leaf, damping):
 def test_next_derivative(random, leaf, damping):
     w = random.standard_normal((6, N))
     start = w.copy()
-    stencils.next_derivative(w, 4, 3, N - 5, 25.0, leaf, damping)
+    from_python(stencils.next_derivative)(w, 4, 3, N - 5, 25.0, leaf, damping)
     lower, upper = start[2], start[3]
     expected = 25.0 * np.diff(lower, 2) - leaf * lower[1:-1] + damping * np.diff(upper, 2)
     assert w[4, 3 : N - 5] == pytest.approx(expected[2 : N - 6], rel=tol.STENCIL, abs=25.0 * tol.STENCIL)
@@ -50,8 +51,8 @@ def test_next_derivative(random, leaf, damping):
 def test_no_block_is_passed_over_when_the_last_is_before_the_first(random):
     w = random.standard_normal((6, N))
     start = w.copy()
-    stencils.next_derivative(w, 4, 5, 5, 25.0, 0.1, 0.1)
-    stencils.next_derivative(w, 4, 5, 3, 25.0, 0.1, 0.1)
+    from_python(stencils.next_derivative)(w, 4, 5, 5, 25.0, 0.1, 0.1)
+    from_python(stencils.next_derivative)(w, 4, 5, 3, 25.0, 0.1, 0.1)
     assert np.array_equal(w, start)
 
 
@@ -64,12 +65,12 @@ def test_velocity_and_slip_are_the_taylor_polynomials(random, order):
     increment = sum(taylor[k] * w[k] for k in range(1, order + 2))
     start = w.copy()
     out = np.zeros(N)
-    stencils.velocity_after(out, w, first, last, step, order)
+    from_python(stencils.velocity_after)(out, w, first, last, step, order)
     assert out[first:last] == pytest.approx(velocity[first:last], rel=tol.STENCIL, abs=tol.STENCIL)
     assert not out[:first].any() and not out[last:].any()
     assert np.array_equal(w, start)
 
-    stencils.advance_slip(w, out, first, last, step, order)
+    from_python(stencils.advance_slip)(w, out, first, last, step, order)
     inside = slice(first, last)
     assert w[2, inside] == pytest.approx(increment[inside], rel=tol.STENCIL, abs=tol.STENCIL)
     assert w[0, inside] == pytest.approx((start[0] + increment)[inside], rel=tol.STENCIL, abs=tol.STENCIL)
@@ -81,14 +82,14 @@ def test_velocity_and_slip_are_the_taylor_polynomials(random, order):
 def test_advance_strain(random):
     strain, w = random.standard_normal(N), random.standard_normal((4, N))
     expected = strain[:-1] + 10.0 * np.diff(w[2])
-    stencils.advance_strain(strain, w, 0, N - 1, 10.0)
+    from_python(stencils.advance_strain)(strain, w, 0, N - 1, 10.0)
     assert strain[:-1] == pytest.approx(expected, rel=tol.STENCIL, abs=10.0 * tol.STENCIL)
 
 
 def test_stretching(random):
     w = random.standard_normal((3, N))
     velocity, acceleration = w[1], w[2]
-    square, product = stencils.stretching(w, 0, N - 1)
+    square, product = from_python(stencils.stretching)(w, 0, N - 1)
     assert square == pytest.approx(np.sum(np.diff(velocity) ** 2), rel=tol.STENCIL * N)
     assert product == pytest.approx(np.sum(np.diff(velocity) * np.diff(acceleration)), abs=tol.STENCIL * N)
 
@@ -100,8 +101,8 @@ def test_what_may_stop_is_counted(order):
     w[1] = [0.0, 1.0, -1e-30, np.nan, 1.0, 1.0, 1.0, 1.0]
     w[2] = [0.0, 0.0, 0.0, 0.0, -1.1, -1.1, -1.0, -1.0 - 1e-15]
     w[3, 4:] = [2.0, 0.0, 0.0, 2.0]
-    assert stencils.velocity_after(out, w, 0, 8, h, order) == 5
-    assert stencils.velocity_after(out, w, 4, 7, h, order) == 2
+    assert from_python(stencils.velocity_after)(out, w, 0, 8, h, order) == 5
+    assert from_python(stencils.velocity_after)(out, w, 4, 7, h, order) == 2
     assert out[[4, 5, 6]] == pytest.approx([0.9, -0.1, 0.0], abs=tol.STENCIL)
 
 
@@ -109,7 +110,9 @@ def test_polynomial(random):
     coefficients = random.standard_normal(7)
     for h in (0.0, 0.3, -1.7):
         expected = np.polynomial.polynomial.polyval(h, coefficients)
-        assert stencils.polynomial(coefficients, 6, h) == pytest.approx(expected, rel=tol.STENCIL)
+        assert from_python(stencils.polynomial)(coefficients, 6, h) == pytest.approx(
+            expected, rel=tol.STENCIL
+        )
 
 
 def test_slope(random):
@@ -117,7 +120,7 @@ def test_slope(random):
     slope = np.polynomial.polynomial.polyder(coefficients)
     for h in (0.0, 0.3, -1.7):
         expected = np.polynomial.polynomial.polyval(h, slope)
-        assert stencils.slope(coefficients, 6, h) == pytest.approx(expected, rel=tol.STENCIL)
+        assert from_python(stencils.slope)(coefficients, 6, h) == pytest.approx(expected, rel=tol.STENCIL)
 
 
 @pytest.mark.parametrize("lower", [0.0, 0.01])
@@ -131,15 +134,17 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
     pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
     roots = [inside, -random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0), pair, pair.conjugate()]
     coefficients = sign * np.real(np.polynomial.polynomial.polyfromroots(roots))
-    found = stencils.crossing(coefficients, 5, lower * h, h)
+    found = from_python(stencils.crossing)(coefficients, 5, lower * h, h)
     assert found == pytest.approx(inside, abs=tol.ROOT)
 
 
 def test_crossing_finds_a_root_with_zero_slope():
-    assert stencils.crossing(np.array([-0.125, 0.75, -1.5, 1.0]), 3, 0.0, 1.0) == pytest.approx(
+    assert from_python(stencils.crossing)(np.array([-0.125, 0.75, -1.5, 1.0]), 3, 0.0, 1.0) == pytest.approx(
         0.5, abs=tol.ROOT ** (1.0 / 3.0)
     )
 
 
 def test_crossing_finds_a_root_at_the_end():
-    assert stencils.crossing(np.array([-1.0, 1.0]), 1, 0.0, 1.0) == pytest.approx(1.0, abs=tol.ROOT)
+    assert from_python(stencils.crossing)(np.array([-1.0, 1.0]), 1, 0.0, 1.0) == pytest.approx(
+        1.0, abs=tol.ROOT
+    )

@@ -26,7 +26,7 @@ def advance_polynomials(slip, velocity, a, b, c, d, h):
         velocity[i] += h * (a[i] + h / 2.0 * (b[i] + h / 3.0 * (c[i] + h / 4.0 * d[i])))
 
 
-@compiled()
+@compiled(entry=True)
 def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
     """Order 4 steps of slip w[0] and velocity w[1], with no state, no event, no bookkeeping: w has 6 rows."""
     n = tau.shape[0]
@@ -59,7 +59,7 @@ def kick_and_drift(slip, velocity, force, h):
         slip[i] += h * velocity[i]
 
 
-@compiled()
+@compiled(entry=True)
 def two_stage_steps(slip, velocity, force, tau, steps, h, per_dx2, leaf, damping):
     """Symplectic Euler in two branch-free passes: the least that any scheme does to a block."""
     n = tau.shape[0]

@@ -1,32 +1,43 @@
-"""Compiles every kernel into the cache, in two processes side by side: what an event does, and all the rest."""
+"""Compiles every kernel into the cache, in two processes side by side."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
 
+import numba
 import numpy as np
 
 from ..model import Scene
 from ..prestress import Prestress
 from . import events, foresight, localised, runs
-from .driver import Lattice, run_scene
+from .driver import Lattice
+
+# What the other process says when all that an event sets off is in the cache.
+EVENTS_ARE_COMPILED = "events"
 
 
 def compile_all() -> None:
     """Compile the kernels of both schemes.
 
-    What another process has compiled meanwhile is taken from the cache; should it have failed, it is compiled here.
+    This process compiles what a step calls, then the step; the other one what an event sets off, and meanwhile what no
+    step calls. What the other has compiled is taken from the cache; should it have failed, it is compiled here.
     """
-    with subprocess.Popen([sys.executable, "-m", __name__]) as other:
-        run_scene(_scene("fixed_step"))
+    with subprocess.Popen([sys.executable, "-m", __name__], stdout=subprocess.PIPE, text=True) as other:
         _compile_steps()
+        other.stdout.readline()
+        Lattice(_scene("localised"), None, 0.0).run(None)
         other.wait()
-    run_scene(_scene("localised"))
+    _compile_rest()
 
 
 def _scene(scheme: str) -> Scene:
     return Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme)
+
+
+def _compile(kernel, *arguments) -> None:
+    """Compile a kernel for arguments like these."""
+    kernel.compile(tuple(numba.typeof(argument) for argument in arguments))
 
 
 class _Arguments:
@@ -46,44 +57,30 @@ def _compile_steps() -> None:
     given = _Arguments()
     lattice, order, dx = given.lattice, given.order, given.lattice.scene.dx
     w, strain, tau = lattice.w, lattice.strain, lattice.tau
-    localised.finish(
+    _compile(
+        localised.foresee_sticks,
         w,
-        strain,
-        tau,
-        lattice.starts,
-        lattice.ends,
-        lattice.counts,
-        lattice.totals,
-        lattice.mirror,
-        *given.rules,
-    )
-    localised.viscous_rate(w, *given.runs, lattice.mirror, dx, lattice.beta)
-    localised.foresee_sticks(
-        w, lattice.velocity, *given.runs, *given.foreseen, *given.polynomials, order, 0.1
-    )
-    localised.foresee_releases(
-        lattice.release_at, *given.polynomials, w, lattice.offset, strain, tau, *given.runs, 0.0, 0.1, lattice.mirror,
-        *given.rules, True, order + 1, 0, 1,
-    )  # fmt: skip
-    none = np.zeros(0, dtype=np.int64)
-    localised.take_over(
-        w,
-        lattice.offset,
-        strain,
         lattice.velocity,
         *given.runs,
-        none,
-        none,
-        none,
-        0,
+        *given.foreseen,
+        *given.polynomials,
         order,
         0.1,
-        lattice.mirror,
-        dx,
     )
-    localised.take_samples(
-        w, lattice.offset, 0.0, 0.1, order, lattice.counts, lattice.sample_times, lattice.sample_blocks,
-        lattice.sample_slip, lattice.sample_velocity,
+    _compile(
+        foresight.foresee_releases, lattice.release_at, *given.polynomials, w, lattice.offset, strain, tau,
+        *given.runs, 0.0, 0.1, lattice.mirror, *given.rules, True, order + 1, 0, 1,
+    )  # fmt: skip
+    _compile(localised.derivatives, w, strain, tau, *given.runs, lattice.mirror, order + 1, *given.rules)
+    _compile(localised.viscous_rate, w, *given.runs, lattice.mirror, dx, lattice.beta)
+    none = np.zeros(0, dtype=np.int64)
+    _compile(
+        localised.take_over, w, lattice.offset, strain, lattice.velocity, *given.runs, none, none, none, 0, order, 0.1,
+        lattice.mirror, dx,
+    )  # fmt: skip
+    _compile(
+        localised.take_samples, w, lattice.offset, 0.0, 0.1, order, lattice.counts, lattice.sample_times,
+        lattice.sample_blocks, lattice.sample_slip, lattice.sample_velocity,
     )  # fmt: skip
 
 
@@ -92,18 +89,31 @@ def _compile_events() -> None:
     given = _Arguments()
     lattice, top = given.lattice, given.order + 1
     ahead = (lattice.release_at, *given.runs, lattice.mirror)
-    foresight.next_event(*ahead, *given.foreseen, 0)
-    foresight.crowded(*ahead, *given.foreseen, 0, 1, 0.1)
-    foresight.due_releases(*ahead, 0.1, lattice.stopping_block)
-    runs.holds(*given.runs, 1)
-    runs.release_block(*given.runs, int(lattice.ends[0]))
-    runs.stick_block(*given.runs, 1)
-    events.change_course(
-        lattice.w, lattice.offset, lattice.strain, lattice.tau, lattice.velocity, *given.runs, 1, True, 0.05, 0.1,
-        lattice.release_at, *given.foreseen, 0, given.difference, given.own, given.values, *given.polynomials,
-        lattice.mirror, True, *given.rules, top,
+    _compile(foresight.next_event, *ahead, *given.foreseen, 0)
+    _compile(foresight.crowded, *ahead, *given.foreseen, 0, 1, 0.1)
+    _compile(foresight.due_releases, *ahead, 0.1, lattice.stopping_block)
+    _compile(runs.holds, *given.runs, 1)
+    _compile(runs.release_block, *given.runs, 1)
+    _compile(runs.stick_block, *given.runs, 1)
+    _compile(
+        events.change_course, lattice.w, lattice.offset, lattice.strain, lattice.tau, lattice.velocity, *given.runs, 1,
+        True, 0.05, 0.1, lattice.release_at, *given.foreseen, 0, given.difference, given.own, given.values,
+        *given.polynomials, lattice.mirror, True, *given.rules, top,
+    )  # fmt: skip
+
+
+def _compile_rest() -> None:
+    """How a run ends, and the textbook scheme."""
+    Lattice(_scene("fixed_step"), None, 0.0).run(None)
+    given = _Arguments()
+    lattice = given.lattice
+    _compile(
+        localised.finish, lattice.w, lattice.strain, lattice.tau, lattice.starts, lattice.ends, lattice.counts,
+        lattice.totals, lattice.mirror, *given.rules,
     )  # fmt: skip
 
 
 if __name__ == "__main__":
     _compile_events()
+    print(EVENTS_ARE_COMPILED, flush=True)
+    _compile_rest()

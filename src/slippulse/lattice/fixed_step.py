@@ -31,7 +31,7 @@ from .localised import (
 )
 
 
-@compiled()
+@compiled(entry=True)
 def advance_fixed(
     slip, velocity, force, sliding, tau,
     release_time, stick_time, counts, totals,

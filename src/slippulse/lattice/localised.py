@@ -209,7 +209,7 @@ def take_over(
     return fastest
 
 
-@compiled()
+@compiled(entry=True)
 def advance(
     w, offset, strain, velocity, tau, starts, ends, moved_starts, moved_ends, release_at, stopping_block,
     stopping_time, difference, own, values, coefficients, slopes, kinks, changed_first, changed_last, stopped,
@@ -337,7 +337,7 @@ def advance(
     return CONTINUE
 
 
-@compiled()
+@compiled(entry=True)
 def finish(w, strain, tau, starts, ends, counts, totals, mirror, dx, leaf, beta):
     """Leave the acceleration of the end in w[2] and close the viscous loss."""
     n = counts[RUNS]
