@@ -87,6 +87,14 @@ class Prestress:
             level = np.where(x * math.copysign(1.0, position) >= abs(position), value, level)
         return level
 
+    def _level_at(self, x: float) -> float:
+        """`level` at one position: root finding asks for thousands, one at a time."""
+        level = self.left if x < 0.0 else self.right
+        for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
+            if x * math.copysign(1.0, position) >= abs(position):
+                level = value
+        return float(level)
+
     def __call__(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 when there are no bumps."""
         x = np.asarray(x, dtype=float)
@@ -104,7 +112,7 @@ class Prestress:
         edges = [x for x in inside if min(lower, upper) <= x <= max(lower, upper)]
         total = 0.0
         for a, b in pairwise(edges):
-            level = float(self.level(np.asarray(0.5 * (a + b))))
+            level = self._level_at(0.5 * (a + b))
             total += level * (b - a) + (self.peak - level) * _gaussian_area(a, b, 0.0, self.width)
         for centre, amplitude, width in self.bumps:
             total += amplitude * _gaussian_area(min(lower, upper), max(lower, upper), centre, width)

@@ -11,6 +11,8 @@ M_+(0) / M_+(i/(b v)) = tau_0 ("elastic"). Leaf springs are left out: gamma dx^2
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from ..checks import check_choice, check_number
@@ -165,18 +167,10 @@ def _quadrature(excess: float, ratio: float, release: str, periods: int) -> floa
     of the expansion in 1/Z, integrated in closed form.
     """
     v, b = 1.0 + excess, ratio
-    whole = periods * int(np.ceil(1.0 + 2.0 * b / v / np.pi))
-    edges = np.concatenate([[0.0], np.pi * 2.0 ** np.arange(-60.0, 0.0), np.pi * np.arange(1, 2 * whole + 1)])
-    half = 0.5 * np.diff(edges)[:, None]
-    z = (0.5 * (edges[1:] + edges[:-1])[:, None] + half * NODES).ravel()
-    weight = (half * WEIGHTS).ravel()
-    bend = np.where(z < 1e-4, z**2 * (1.0 - z**2 / 12.0), 2.0 * (1.0 - np.cos(z)))
+    z, weight, bend, lag, end = _panels(periods * int(np.ceil(1.0 + 2.0 * b / v / np.pi)))
     q = b * bend / (v * z)
-    # Re M = 1 - p, p = bend/(v z)^2, without cancellation at small z, where p -> 1/v^2 and v may be close to 1.
-    lag = np.where(z < 1e-2, z**2 / 12.0 * (1.0 - z**2 / 30.0 * (1.0 - z**2 / 56.0)), 1.0 - bend / z**2)
     real = (excess * (2.0 + excess) + lag) / v**2
     argument = np.arctan2(-q, real)
-    end = edges[-1]
     # q = b bend/(v z) decays slowly: its integral over all z is pi b / v, and only the rest is left to the panels.
     total = np.sum(weight * (argument + q) / z) - np.pi * b / v
     # Averages over a period: bend -> 2, bend^2 -> 6, bend^3 -> 20.
@@ -196,6 +190,22 @@ def _quadrature(excess: float, ratio: float, release: str, periods: int) -> floa
         shifted += y * (second * tails[0] + fourth * tails[1]) + odd * tails[0]
         total -= shifted
     return float(total / np.pi)
+
+
+@lru_cache(maxsize=16)
+def _panels(whole: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]:
+    """Nodes z up to so many whole periods, their weights, and what of the integrand they alone tell.
+
+    Re M = 1 - p, p = bend/(v z)^2, without cancellation at small z, where p -> 1/v^2 and v may be close to 1, takes
+    lag = 1 - bend/z^2.
+    """
+    edges = np.concatenate([[0.0], np.pi * 2.0 ** np.arange(-60.0, 0.0), np.pi * np.arange(1, 2 * whole + 1)])
+    half = 0.5 * np.diff(edges)[:, None]
+    z = (0.5 * (edges[1:] + edges[:-1])[:, None] + half * NODES).ravel()
+    weight = (half * WEIGHTS).ravel()
+    bend = np.where(z < 1e-4, z**2 * (1.0 - z**2 / 12.0), 2.0 * (1.0 - np.cos(z)))
+    lag = np.where(z < 1e-2, z**2 / 12.0 * (1.0 - z**2 / 30.0 * (1.0 - z**2 / 56.0)), 1.0 - bend / z**2)
+    return z, weight, bend, lag, float(edges[-1])
 
 
 def _tail_moments(end: float, y: float) -> tuple[float, float]:
