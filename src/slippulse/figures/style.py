@@ -60,7 +60,7 @@ def panel_letter(axes, letter: str) -> None:
 
 
 def _embed_outlines_alone() -> None:
-    """Leave out of a PDF's fonts how letters join and kern: every letter has its place, and this is half of the work."""
+    """Leave out of a PDF's fonts how letters join and kern: each has its place, and this is half of the work."""
     from fontTools.subset import Options
 
     joining = ["GDEF", "GPOS", "GSUB"]
