@@ -73,7 +73,8 @@ def test_half_the_lattice_gives_the_whole_result(boundary, scheme, ratio):
 @pytest.mark.parametrize("profile", [EVEN, UNEVEN], ids=["even", "uneven"])
 def test_the_size_of_the_first_lattice_does_not_change_a_bit(monkeypatch, profile, scheme):
     whole = simulated(profile, scheme=scheme)
-    monkeypatch.setattr(driver, "FIRST_BLOCKS", 16)
+    for name, value in {"FIRST_BLOCKS": 16, "PAGE": 8, "BEYOND_PAGES": 3}.items():
+        monkeypatch.setattr(driver, name, value)
     grown = simulated(profile, scheme=scheme)
     assert grown.equals(whole)
     assert grown.attrs["block_updates"] == whole.attrs["block_updates"]

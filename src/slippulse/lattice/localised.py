@@ -7,7 +7,8 @@ within its reach (`events`). Only the runs of sliding blocks and their neighbour
 rest and its derivatives are zero.
 
 What paid for narrow pulses: events inside the step; no reference counts (a factor of 1.7); the difference that an event
-makes instead of a new expansion around it. What did not: passes written by hand for order 4, ending steps at events.
+makes instead of a new expansion around it; rows that begin at different places of their pages. What did not: passes
+written by hand for order 4, ending steps at events.
 """
 
 from __future__ import annotations
