@@ -233,7 +233,9 @@ def validate(
     import jsonschema
     import yaml
 
-    schema = yaml.safe_load(Path(schema_path).read_text(encoding="utf-8"))
+    from .overlay import LOADER
+
+    schema = yaml.load(Path(schema_path).read_text(encoding="utf-8"), Loader=LOADER)
     validator = jsonschema.Draft202012Validator(schema)
     config = _builtins(config)
     problems = not_finite(config)
