@@ -105,3 +105,23 @@ def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
         check=True,
     )
     assert {path.name for path in untouched_kernels.rglob("*.nbc")} == compiled
+
+
+def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp_path):
+    """What went missing in the meantime is, and nothing else."""
+    folder = tmp_path / "kernels"
+    shutil.copytree(untouched_kernels, folder)
+
+    def compiled() -> dict[str, int]:
+        program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+        environment = {"PATH": "", "SLIPPULSE_CACHE": str(folder)}
+        subprocess.run([sys.executable, "-c", program], env=environment, check=True)
+        return {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
+
+    before = {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
+    assert compiled() == before
+    finish = next(path for path in folder.rglob("*finish*.nbc"))
+    finish.unlink()
+    after = compiled()
+    assert set(after) == set(before)
+    assert {name for name in before if before[name] != after[name]} == {finish.name}

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import subprocess
 import sys
+from pathlib import Path
 
 import numba
 import numpy as np
+from numba.core.registry import cpu_target
 
 from ..model import Scene
 from ..prestress import Prestress
@@ -18,17 +22,30 @@ EVENTS_ARE_COMPILED = "events"
 
 
 def compile_all() -> None:
-    """Compile the kernels of both schemes.
+    """Compile the kernels of both schemes, unless that is done.
 
     This process compiles what a step calls, then the step; the other one what an event sets off, and meanwhile what no
     step calls. What the other has compiled is taken from the cache; should it have failed, it is compiled here.
     """
-    with subprocess.Popen([sys.executable, "-m", __name__], stdout=subprocess.PIPE, text=True) as other:
-        _compile_steps()
-        other.stdout.readline()
-        Lattice(_scene("localised"), None, 0.0).run(None)
-        other.wait()
+    mark = _mark()
+    if mark.exists():
+        _compile_the_step()
+    else:
+        with subprocess.Popen([sys.executable, "-m", __name__], stdout=subprocess.PIPE, text=True) as other:
+            _compile_steps()
+            other.stdout.readline()
+            _compile_the_step()
+            other.wait()
     _compile_rest()
+    with contextlib.suppress(OSError):
+        mark.touch()
+
+
+def _mark() -> Path:
+    """The file beside the kernels that says that all are there, for this processor and this compiler."""
+    target = (numba.__version__, *cpu_target.target_context.codegen().magic_tuple())
+    digest = hashlib.sha256(repr(target).encode()).hexdigest()[:16]
+    return Path(localised.advance.stats.cache_path) / f"compiled-{digest}"
 
 
 def _scene(scheme: str) -> Scene:
@@ -82,6 +99,11 @@ def _compile_steps() -> None:
         localised.take_samples, w, lattice.offset, 0.0, 0.1, order, lattice.counts, lattice.sample_times,
         lattice.sample_blocks, lattice.sample_slip, lattice.sample_velocity,
     )  # fmt: skip
+
+
+def _compile_the_step() -> None:
+    """The step itself, which takes in all that it calls."""
+    Lattice(_scene("localised"), None, 0.0).run(None)
 
 
 def _compile_events() -> None:
