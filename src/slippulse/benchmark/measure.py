@@ -22,7 +22,7 @@ from ..versions import versions
 from . import stencils
 
 LEVEL, GAMMA, RATIO, DX, DURATION = 0.5, 0.65, 0.1, 0.01, 400.0
-REPEATS = 3
+REPEATS, TURNS = 3, 6
 # When the kernel is timed: a crack with 4,200 to 6,200 sliding blocks on each side, a pulse of 200 when it is steady.
 CRACK, PULSE = (3400.0, 5000.0), (60.0, 200.0)
 # Steps of the textbook scheme around these powers of a half, over this many blocks of path.
@@ -96,6 +96,23 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
     return max(rates)
 
 
+def in_turns(scene: Scene, until: float) -> tuple[float, float, dict[str, float]]:
+    """Best rates of the kernel and of the stencils, in turns: a slow spell of the machine then meets both.
+
+    Returns
+    -------
+    block updates a second of the kernel, mean sliding blocks, block updates a second of each stencil
+    """
+    start, rate, rates = scene.duration, 0.0, {}
+    for _ in range(TURNS):
+        object.__setattr__(scene, "duration", start)
+        found, blocks = kernel_rate(scene, until)
+        rate = max(rate, found)
+        for name, stencil in stencil_rates(round(blocks), 0.05).items():
+            rates[name] = max(rates.get(name, 0.0), stencil)
+    return rate, blocks, rates
+
+
 def kernel() -> dict:
     """The kernel against branch-free stencils of the same order: many sliding blocks, and a pulse of 200."""
     more = {"max_step": 0.5, "order": 4}
@@ -112,8 +129,7 @@ def kernel() -> dict:
     )
     found = {}
     for name, scene, until in (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1])):
-        rate, blocks = kernel_rate(scene, until)
-        rates = stencil_rates(round(blocks))
+        rate, blocks, rates = in_turns(scene, until)
         found[name] = {
             "sliding_blocks": blocks,
             "order": 4,
