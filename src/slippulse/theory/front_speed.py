@@ -22,6 +22,8 @@ RELEASES = ("total", "elastic")
 # Quadrature: Gauss-Legendre nodes on each panel of half a period, and how many periods beyond the last scale.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 PERIODS = 48
+# The nodes of up to so many periods are kept for the next quadrature: 1 MB.
+MOST_KEPT = 1000
 # Two quadratures that differ by more than this (relative, in tau) are refused.
 QUADRATURE_TOLERANCE = 1e-11
 
@@ -167,7 +169,8 @@ def _quadrature(excess: float, ratio: float, release: str, periods: int) -> floa
     of the expansion in 1/Z, integrated in closed form.
     """
     v, b = 1.0 + excess, ratio
-    z, weight, bend, lag, end = _panels(periods * int(np.ceil(1.0 + 2.0 * b / v / np.pi)))
+    whole = periods * int(np.ceil(1.0 + 2.0 * b / v / np.pi))
+    z, weight, bend, lag, end = (_kept_panels if whole <= MOST_KEPT else _panels)(whole)
     q = b * bend / (v * z)
     real = (excess * (2.0 + excess) + lag) / v**2
     argument = np.arctan2(-q, real)
@@ -192,7 +195,6 @@ def _quadrature(excess: float, ratio: float, release: str, periods: int) -> floa
     return float(total / np.pi)
 
 
-@lru_cache(maxsize=16)
 def _panels(whole: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, float]:
     """Nodes z up to so many whole periods, their weights, and what of the integrand they alone tell.
 
@@ -206,6 +208,9 @@ def _panels(whole: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray,
     bend = np.where(z < 1e-4, z**2 * (1.0 - z**2 / 12.0), 2.0 * (1.0 - np.cos(z)))
     lag = np.where(z < 1e-2, z**2 / 12.0 * (1.0 - z**2 / 30.0 * (1.0 - z**2 / 56.0)), 1.0 - bend / z**2)
     return z, weight, bend, lag, float(edges[-1])
+
+
+_kept_panels = lru_cache(maxsize=16)(_panels)
 
 
 def _tail_moments(end: float, y: float) -> tuple[float, float]:
