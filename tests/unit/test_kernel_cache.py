@@ -125,3 +125,11 @@ def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp
     after = compiled()
     assert set(after) == set(before)
     assert {name for name in before if before[name] != after[name]} == {finish.name}
+
+
+def test_nothing_is_compiled_where_the_compiler_is_switched_off(tmp_path):
+    """Whoever looks for a fault with a debugger runs the pipeline so."""
+    program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+    environment = {"PATH": "", "SLIPPULSE_CACHE": str(tmp_path), "NUMBA_DISABLE_JIT": "1"}
+    subprocess.run([sys.executable, "-c", program], env=environment, check=True)
+    assert not list(tmp_path.rglob("*.nbc"))

@@ -22,11 +22,13 @@ EVENTS_ARE_COMPILED = "events"
 
 
 def compile_all() -> None:
-    """Compile the kernels of both schemes, unless that is done.
+    """Compile the kernels of both schemes, unless that is done or the compiler is switched off.
 
     This process compiles what a step calls, then the step; the other one what an event sets off, and meanwhile what no
     step calls. What the other has compiled is taken from the cache; should it have failed, it is compiled here.
     """
+    if numba.config.DISABLE_JIT:
+        return
     mark = _mark()
     if mark.exists():
         _compile_the_step()

@@ -17,7 +17,7 @@ CALL_STEPS = 20_000
 # Blocks on each side at first; the lattice doubles whenever a front comes near its end.
 FIRST_BLOCKS = 512
 # Length of a row modulo a page of memory, in blocks. Rows that begin at one place of their pages compete for the same
-# lines of the cache: a pulse of 200 blocks took 7 to 25 % longer at order 8.
+# lines of the cache: a pulse of 200 blocks took 7 to 30 % longer at order 8.
 PAGE, BEYOND_PAGES = 512, 200
 # Blocks at rest that are kept beyond the outermost released one.
 MARGIN = 16
