@@ -61,7 +61,7 @@ lock:
 	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
 
 replicate: $(READY)
-	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.overlay "$$OVERLAY"
+	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.overlay "$$OVERLAY"
 	@"$(BIN)/python" workflow/unlock.py .
 	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
 	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large=true)) \
@@ -72,7 +72,7 @@ rulegraph: $(READY)
 	    $${TARGET:-results/figures/fig05_scaling.png results/claims.json} 2>/dev/null
 
 verify: $(READY)
-	@"$(BIN)/python" -m slippulse.verify results $(if $(AGAINST),--against "$$AGAINST")
+	@"$(BIN)/python" -m slippulse.data.verify results $(if $(AGAINST),--against "$$AGAINST")
 
 faults: $(READY)
 	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
@@ -85,7 +85,7 @@ slurm-test: $(VENV)/.slurm
 
 benchmark: $(READY)
 	@mkdir -p results/benchmarks
-	@"$(BIN)/python" -m slippulse.benchmark config/config.yaml results/benchmarks
+	@"$(BIN)/python" -m benchmarks config/config.yaml results/benchmarks
 
 check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check

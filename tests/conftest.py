@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from slippulse.store import load_table, save_table
+from slippulse.data.store import load_table, save_table
 
 PROJECT = Path(__file__).resolve().parents[1]
 
@@ -36,7 +36,7 @@ SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
 
 def compile_into(folder: Path) -> None:
     """Compile every kernel into an empty folder, in processes of their own."""
-    program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+    program = "from slippulse.solver.compilation import compile_all; compile_all()"
     subprocess.run([sys.executable, "-c", program], env=os.environ | {SHARED: str(folder)}, check=True)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from numba.core.caching import _CacheLocator
 
-from slippulse.lattice import jit
+from slippulse.solver import jit
 
 PARTS = ("Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock")
 

@@ -9,28 +9,20 @@
 Importing is light: the compiled kernels and xarray are loaded when the first scene is simulated.
 """
 
-from importlib import import_module
-
-from . import theory
-from .model import Scene
-from .prestress import Prestress
+from .lazy import lazy_names
 
 __version__ = "0.1.0"
-_LAZY = {
-    "simulate": "simulation",
-    "Samples": "simulation",
-    "UnstableRun": "simulation",
-    "UnresolvedRun": "simulation",
-    "run_sweep": "sweep",
-    "settings_for": "accuracy",
+
+_HOMES = {
+    "Prestress": "model.prestress",
+    "Samples": "model.samples",
+    "Scene": "model.scene",
+    "UnresolvedRun": "simulation.simulate",
+    "UnstableRun": "solver.lattice",
+    "run_sweep": "simulation.sweep",
+    "settings_for": "configuration.accuracy",
+    "simulate": "simulation.simulate",
+    "theory": "theory",
 }
-
-__all__ = [
-    "Prestress", "Samples", "Scene", "UnresolvedRun", "UnstableRun", "run_sweep", "settings_for", "simulate", "theory",
-]  # fmt: skip
-
-
-def __getattr__(name: str):
-    if name in _LAZY:
-        return getattr(import_module(f".{_LAZY[name]}", __name__), name)
-    raise AttributeError(f"module 'slippulse' has no attribute {name!r}")
+__all__ = list(_HOMES)
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -10,9 +10,9 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.benchmark import __main__ as command
-from slippulse.benchmark import measure, stencils
-from slippulse.benchmark.records import read_records
+from benchmarks import __main__ as command
+from benchmarks import measure, stencils
+from slippulse.data.job_times import read_records
 from slippulse.figures import pipeline_time
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4

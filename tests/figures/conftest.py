@@ -9,10 +9,10 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from slippulse.config import expand, resolve
+from slippulse.configuration.expand import expand, resolve
+from slippulse.data.store import load_table, save_table
 from slippulse.measure.table import measure
-from slippulse.store import load_table, save_table
-from slippulse.sweep import run_sweep
+from slippulse.simulation.sweep import run_sweep
 
 # A few points of each list are enough to draw.
 THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from slippulse.data.store import load_table, save_table
 from slippulse.figures import fig01_system_sketch as figure
-from slippulse.store import load_table, save_table
 
 THICKNESS, STRIP = 2.0, 0.1
 

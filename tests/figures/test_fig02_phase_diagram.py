@@ -8,15 +8,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from slippulse.data.store import load_table, save_table
 from slippulse.figures import fig02_phase_diagram as figure
 from slippulse.figures.style import GREY
 from slippulse.measure.regime import REGIMES
 from slippulse.measure.table import measure
-from slippulse.model import Scene
-from slippulse.prestress import Prestress
-from slippulse.simulation import Samples
-from slippulse.store import load_table, save_table
-from slippulse.sweep import run_sweep
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
+from slippulse.simulation.simulate import Samples
+from slippulse.simulation.sweep import run_sweep
 
 MEASURE = {
     "share": 0.95,

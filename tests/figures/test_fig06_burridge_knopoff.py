@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from slippulse import Prestress, Samples, Scene, run_sweep
+from slippulse.data.points import point
+from slippulse.data.store import load_table, save_table
 from slippulse.figures import fig06_burridge_knopoff as figure
-from slippulse.points import point
-from slippulse.store import load_table, save_table
 
 LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 

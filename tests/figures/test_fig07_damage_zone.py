@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from slippulse.data.store import load_table, save_table
 from slippulse.figures import fig07_damage_zone as figure
-from slippulse.store import load_table, save_table
 
 SETTINGS = {
     "stiffness_ratios": {"from": 1e-4, "to": 2.0, "count": 31},

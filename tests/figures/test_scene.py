@@ -10,19 +10,19 @@ import pytest
 import tolerances as tol
 from PIL import Image
 
-from slippulse.config import expand, resolve
+from slippulse.comparison.scene_numbers import scene_numbers
+from slippulse.configuration.expand import expand, resolve
+from slippulse.configuration.scenes import check_scene, scene_block
+from slippulse.data.points import point
+from slippulse.data.store import load_table, save_table
 from slippulse.figures import scene as figure
 from slippulse.figures.scene import number_text
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.figures.style import save_figure
-from slippulse.measure.beside_theory import scene_numbers
 from slippulse.measure.table import PARAMETERS, measure
 from slippulse.measure.uncertainty import grid_tables
-from slippulse.points import point
-from slippulse.scene_page import scene_page
-from slippulse.scenes import check_scene, scene_block
-from slippulse.store import load_table, save_table
-from slippulse.sweep import run_sweep
+from slippulse.pages.scene import scene_page
+from slippulse.simulation.sweep import run_sweep
 
 TITLE = "A <scene> & its $title"
 SCENES = {

@@ -7,8 +7,8 @@ import math
 from hypothesis import strategies as st
 
 import slippulse as sp
-from slippulse.lattice.stability import largest_step
-from slippulse.model import ORDERS, RELEASES, SCHEMES
+from slippulse.model.scene import ORDERS, RELEASES, SCHEMES
+from slippulse.model.stability import largest_step
 
 # Levels far below and just below the threshold, at and beside 0.
 LEVELS = st.one_of(

@@ -14,11 +14,11 @@ import yaml
 from matplotlib.figure import Figure
 
 from slippulse.claims.ledger import judge
-from slippulse.config import expand, resolve
+from slippulse.configuration.expand import expand, resolve
+from slippulse.data.store import save_table
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.report.build import build_report
 from slippulse.report.inputs import Inputs
-from slippulse.store import save_table
 from slippulse.theory import front_speed, steady_pulse
 
 SIMULATIONS = ("scaling_displacement", "scaling_stress", "steady_displacement")

@@ -7,8 +7,9 @@ import math
 import pytest
 
 from slippulse.figures import study_extremes
-from slippulse.simulation import UnstableRun
-from slippulse.studies.edges import FLAGGED, NO_NUMBER, REFUSED, RIGHT, STOPPED, WRONG, Edge, Measured
+from slippulse.simulation.simulate import UnstableRun
+from slippulse.studies.edges import Edge, Measured
+from slippulse.studies.outcomes import FLAGGED, NO_NUMBER, REFUSED, RIGHT, STOPPED, WRONG
 
 
 def judged(measured) -> str:

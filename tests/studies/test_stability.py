@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tolerances as tol
 
-from slippulse.lattice.stability import MARGIN, WEAK_ORDERS
+from slippulse.model.stability import MARGIN, WEAK_ORDERS
 from slippulse.studies.stability import boundary, chain
 
 

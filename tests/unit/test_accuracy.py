@@ -6,7 +6,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.config import accuracy_of, expand, promise_of, resolve
+from slippulse.configuration.expand import accuracy_of, expand, promise_of, resolve
 
 PULSE = {"boundary": "displacement", "gamma": 0.65, "prestress": sp.Prestress(0.5, 0.5), "damping_ratio": 0.1}
 CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}

@@ -7,10 +7,11 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from slippulse.chunks import dealing, runs_of
-from slippulse.config import expand, resolve
-from slippulse.cost import expected_cost
-from slippulse.jobs import (
+from slippulse.configuration.cost import expected_cost
+from slippulse.configuration.expand import expand, resolve
+from slippulse.data.chunks import dealing, runs_of
+from slippulse.data.join import ChunksDiffer
+from slippulse.steps.jobs import (
     join_data,
     join_measurements,
     join_uncertainties,
@@ -18,7 +19,6 @@ from slippulse.jobs import (
     simulate_block,
     study_grid,
 )
-from slippulse.join import ChunksDiffer
 
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either kind alone too; a

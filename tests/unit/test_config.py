@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from slippulse.config import ConfigError, expand, resolve, validate
+from slippulse.configuration.expand import ConfigError, expand, resolve, validate
 
 SCHEMA = "workflow/schemas/config.schema.yaml"
 

@@ -9,7 +9,7 @@ import pytest
 import tolerances as tol
 from reference.from_python import from_python
 
-from slippulse.lattice import foresight, stencils
+from slippulse.solver import foresight, stencils
 
 
 def stopping_time(velocity_coefficients: np.ndarray, h: float, now: float = 0.0) -> tuple[int, float]:

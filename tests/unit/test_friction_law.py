@@ -12,7 +12,7 @@ from reference.lattice_state import elastic_stress, sliding, threshold_stress, t
 from scipy.optimize import brentq
 
 import slippulse as sp
-from slippulse.model import SCHEMES
+from slippulse.model.scene import SCHEMES
 
 FINE = {"max_step": 0.05, "order": 8, "resolved_blocks": 1}
 

@@ -8,9 +8,9 @@ from itertools import pairwise
 
 import pytest
 
+from slippulse.data.provenance import provenance
 from slippulse.figures.style import new_figure, save_figure
-from slippulse.index_page import captions_from, claims_page, index_page, scenes_page
-from slippulse.provenance import provenance
+from slippulse.pages.index import captions_from, claims_page, index_page, scenes_page
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 CLAIM = {

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from slippulse.lattice import jit, stencils
+from slippulse.solver import jit, stencils
 
 
 @pytest.fixture
@@ -113,7 +113,7 @@ def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp
     shutil.copytree(untouched_kernels, folder)
 
     def compiled() -> dict[str, int]:
-        program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+        program = "from slippulse.solver.compilation import compile_all; compile_all()"
         environment = {"PATH": "", "SLIPPULSE_CACHE": str(folder)}
         subprocess.run([sys.executable, "-c", program], env=environment, check=True)
         return {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
@@ -129,7 +129,7 @@ def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp
 
 def test_nothing_is_compiled_where_the_compiler_is_switched_off(tmp_path):
     """Whoever looks for a fault with a debugger runs the pipeline so."""
-    program = "from slippulse.lattice.compilation import compile_all; compile_all()"
+    program = "from slippulse.solver.compilation import compile_all; compile_all()"
     environment = {"PATH": "", "SLIPPULSE_CACHE": str(tmp_path), "NUMBA_DISABLE_JIT": "1"}
     subprocess.run([sys.executable, "-c", program], env=environment, check=True)
     assert not list(tmp_path.rglob("*.nbc"))

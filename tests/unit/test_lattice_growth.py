@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slippulse.lattice.driver import Lattice
-from slippulse.model import Scene
-from slippulse.prestress import Prestress
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
+from slippulse.solver.lattice import Lattice
 
 EVEN, UNEVEN = Prestress(0.5, 0.5), Prestress(0.5, 0.4)
 

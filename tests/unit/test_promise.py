@@ -9,12 +9,12 @@ import pandas as pd
 import pytest
 
 import slippulse as sp
-from slippulse.measure.beside_theory import scene_numbers
+from slippulse.comparison.scene_numbers import scene_numbers
 from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS, measure
 from slippulse.measure.uncertainty import grid_tables
-from slippulse.scene_page import scene_page
-from slippulse.sweep import run_sweep
+from slippulse.pages.scene import scene_page
+from slippulse.simulation.sweep import run_sweep
 
 SHARE = 0.95
 PULSE = {

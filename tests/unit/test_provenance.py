@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from slippulse.provenance import (
+from slippulse.data.provenance import (
     changes,
     checksums,
     job_times,
@@ -21,7 +21,7 @@ from slippulse.provenance import (
     source_files,
     tree_digest,
 )
-from slippulse.verify import changed_files, compare, main
+from slippulse.data.verify import changed_files, compare, main
 
 
 def test_an_overlay_is_marked_value_by_value():

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 
 from slippulse.measure.regime import REGIMES, classify
-from slippulse.model import Scene
-from slippulse.prestress import Prestress
-from slippulse.simulation import Samples, simulate
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
+from slippulse.simulation.simulate import Samples, simulate
 
 STILL, TOLERANCE, DURATION = 0.05, 0.02, 30.0
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from reference.from_python import from_python
 
-from slippulse.lattice.runs import release_block, stick_block
+from slippulse.solver.segments import release_block, stick_block
 
 BLOCKS = 24
 

@@ -9,11 +9,11 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.config import expand, resolve
-from slippulse.lattice.driver import UnstableRun, run_scene
-from slippulse.lattice.stability import largest_step
-from slippulse.model import ORDERS, SCHEMES
-from slippulse.simulation import judge
+from slippulse.configuration.expand import expand, resolve
+from slippulse.model.scene import ORDERS, SCHEMES
+from slippulse.model.stability import largest_step
+from slippulse.simulation.simulate import judge
+from slippulse.solver.lattice import UnstableRun, run_scene
 
 # Wave numbers of the lattice, as 4 sin^2(k/2).
 MODES = np.linspace(0.0, 4.0, 401)

@@ -9,8 +9,8 @@ import pytest
 import tolerances as tol
 from reference.from_python import from_python
 
-from slippulse.lattice import stencils
-from slippulse.model import ORDERS
+from slippulse.model.scene import ORDERS
+from slippulse.solver import stencils
 
 N = 37
 

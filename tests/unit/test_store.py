@@ -10,8 +10,8 @@ import pytest
 import xarray as xr
 
 import slippulse as sp
-from slippulse.simulation import VARIABLES
-from slippulse.store import load_dataset, load_table, save_dataset, save_table, write_whole
+from slippulse.data.store import load_dataset, load_table, save_dataset, save_table, write_whole
+from slippulse.simulation.simulate import VARIABLES
 
 SCENES = [
     sp.Scene("displacement", sp.Prestress(tau, 0.5), 2.0, 0.1, gamma=0.65, beta=0.01) for tau in (0.3, 0.5)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.points import FIELDS, FRONTS, point
-from slippulse.store import save_dataset
-from slippulse.sweep import run_sweep
+from slippulse.data.points import FIELDS, FRONTS, point
+from slippulse.data.store import save_dataset
+from slippulse.simulation.sweep import run_sweep
 
 RECORDS = ("fronts", "fields", "samples")
 SCENES = [

@@ -7,9 +7,9 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.lattice import driver
-from slippulse.lattice.stability import largest_step
-from slippulse.model import SCHEMES
+from slippulse.model.scene import SCHEMES
+from slippulse.model.stability import largest_step
+from slippulse.solver import driver
 
 PUBLISHED = {
     "boundary": "displacement",

@@ -9,8 +9,8 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.lattice import driver
-from slippulse.model import SCHEMES
+from slippulse.model.scene import SCHEMES
+from slippulse.solver import driver
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 COUNTS = ("releases", "sticks", "re_releases")

@@ -13,7 +13,7 @@ from scipy.special import j0
 
 import slippulse as sp
 from slippulse.measure.fronts import arrival, position_at
-from slippulse.theory.front_speed import _kept_panels
+from slippulse.theory.front_law import _kept_panels
 from slippulse.theory.transition import prestress_balance_position
 
 GAMMA = 2.0 / 3.0

@@ -9,8 +9,8 @@ import pytest
 import yaml
 
 import slippulse as sp
-from slippulse.config import ConfigError, expand, resolve, validate
-from slippulse.overlay import LARGEST_FILE, main, read_overlay
+from slippulse.configuration.expand import ConfigError, expand, resolve, validate
+from slippulse.configuration.overlay import LARGEST_FILE, main, read_overlay
 
 SCHEMA = "workflow/schemas/config.schema.yaml"
 # Enough of the shipped simulations for every case, so that a refusal of scenes is quick.

@@ -11,7 +11,7 @@ import tolerances as tol
 from pipeline_copy import copy_project, snakemake
 
 from slippulse import theory
-from slippulse.overlay import read_overlay
+from slippulse.configuration.overlay import read_overlay
 
 pytestmark = pytest.mark.workflow
 

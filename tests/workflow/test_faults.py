@@ -96,7 +96,7 @@ def test_the_remedy_for_a_harmed_data_file_gives_the_same_bytes(finished):
 
 
 def test_an_unreadable_table_is_named(finished):
-    from slippulse.store import UnreadableFile, load_table
+    from slippulse.data.store import UnreadableFile, load_table
 
     path = finished / "edited.csv"
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
@@ -120,7 +120,7 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
     path.write_text("what was there\n")
     program = (
         "import sys, numpy, pandas\n"
-        "from slippulse.jobs import logged\nfrom slippulse import store\n"
+        "from slippulse.steps.jobs import logged\nfrom slippulse.data import store\n"
         "numbers = pandas.DataFrame({'a': numpy.arange(1e5)})\n"
         "with logged(sys.argv[2]):\n"
         f"    store.save_{kind}(numbers{'.to_xarray()' if kind == 'dataset' else ''}, sys.argv[1])\n"
@@ -140,7 +140,7 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
 
 def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
     (tmp_path / "logs").write_text("a file")
-    program = "import sys\nfrom slippulse.jobs import logged\nwith logged(sys.argv[1]): pass\n"
+    program = "import sys\nfrom slippulse.steps.jobs import logged\nwith logged(sys.argv[1]): pass\n"
     result = subprocess.run(
         [sys.executable, "-c", program, str(tmp_path / "logs/one.log")],
         capture_output=True,
@@ -154,7 +154,7 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
 def test_a_job_leaves_at_once_but_not_before_all_is_said_and_cleared_away(tmp_path):
     program = (
         "import atexit, sys\n"
-        "from slippulse.jobs import job\n"
+        "from slippulse.steps.jobs import job\n"
         "atexit.register(lambda: print('cleared away'))\n"
         "with job(sys.argv[1]):\n"
         "    print('said', end='')\n"

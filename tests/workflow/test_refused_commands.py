@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.cost import HOW_TO_GO_ON
+from slippulse.configuration.cost import HOW_TO_GO_ON
 
 STEADY = "simulations: {steady_displacement: "
 

@@ -5,12 +5,12 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from slippulse.config import ConfigError, accuracy_of, resolve, validate
-from slippulse.config import expand as expand_block
-from slippulse.cost import expected_cost
-from slippulse.refusals import runs
-from slippulse.scenes import scene_block
-from slippulse.overlay import read_overlay
+from slippulse.configuration.expand import ConfigError, accuracy_of, resolve, validate
+from slippulse.configuration.expand import expand as expand_block
+from slippulse.configuration.cost import expected_cost
+from slippulse.configuration.refusals import runs
+from slippulse.configuration.scenes import scene_block
+from slippulse.configuration.overlay import read_overlay
 
 # Of a switch on the command line Snakemake reads True and False, and leaves true and false text.
 for key, value in config.items():
@@ -44,9 +44,8 @@ ESTIMATE_WITHIN = 3.0
 
 
 def sources(*patterns):
-    """Library files that a result depends on: an edit of one re-runs what uses it, and no more."""
-    found = [path for pattern in patterns for path in sorted(SOURCES.glob(pattern))]
-    return [str(path.relative_to(workflow.basedir)) for path in found]
+    """Library files that a result depends on."""
+    return [str(path.relative_to(workflow.basedir)) for path in sorted(SOURCES.rglob("*.py"))]
 
 
 KERNEL_SOURCES = sources("lattice/*.py")

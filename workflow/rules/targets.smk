@@ -2,7 +2,7 @@
 
 import sys
 
-from slippulse.refusals import check_affordable, check_folder, check_targets
+from slippulse.configuration.refusals import check_affordable, check_folder, check_targets
 
 
 def refuse_unknown_targets():

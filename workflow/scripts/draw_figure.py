@@ -1,6 +1,6 @@
 """Write the table of one figure and draw the figure from it."""
 
-from slippulse.jobs import draw_figure, job
+from slippulse.steps.jobs import draw_figure, job
 
 with job(snakemake.log[0]):
     draw_figure(

@@ -1,6 +1,6 @@
 """Summarise Snakemake's own benchmark files in one figure."""
 
-from slippulse.jobs import draw_pipeline_time, job
+from slippulse.steps.jobs import draw_pipeline_time, job
 
 with job(snakemake.log[0]):
     draw_pipeline_time(

@@ -1,6 +1,6 @@
 """Draw one scene and write its page."""
 
-from slippulse.jobs import draw_scene, job
+from slippulse.steps.jobs import draw_scene, job
 
 with job(snakemake.log[0]):
     draw_scene(

@@ -1,6 +1,6 @@
 """Put the grid studies of a sweep's chunks into one."""
 
-from slippulse.jobs import job, join_uncertainties
+from slippulse.steps.jobs import job, join_uncertainties
 
 with job(snakemake.log[0]):
     join_uncertainties(

@@ -1,6 +1,6 @@
 """Run the scenes of one simulation block."""
 
-from slippulse.jobs import job, simulate_block
+from slippulse.steps.jobs import job, simulate_block
 
 with job(snakemake.log[0]):
     simulate_block(

@@ -1,6 +1,6 @@
 """Numerical uncertainty of every number of one simulation block, from coarser lattices."""
 
-from slippulse.jobs import job, study_grid
+from slippulse.steps.jobs import job, study_grid
 
 with job(snakemake.log[0]):
     study_grid(

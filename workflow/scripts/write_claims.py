@@ -1,6 +1,6 @@
 """Compute the ledger of claims."""
 
-from slippulse.jobs import job, write_claims
+from slippulse.steps.jobs import job, write_claims
 
 with job(snakemake.log[0]):
     write_claims(

@@ -1,6 +1,6 @@
 """Write the page that leads to all results."""
 
-from slippulse.jobs import job, write_index
+from slippulse.steps.jobs import job, write_index
 
 with job(snakemake.log[0]):
     write_index(

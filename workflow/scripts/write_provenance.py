@@ -1,6 +1,6 @@
 """Write provenance, checksums and manifest of the results."""
 
-from slippulse.jobs import job, write_provenance
+from slippulse.steps.jobs import job, write_provenance
 
 with job(snakemake.log[0]):
     write_provenance(

@@ -1,6 +1,6 @@
 """Execute the replication report and render it."""
 
-from slippulse.jobs import job, write_report
+from slippulse.steps.jobs import job, write_report
 
 with job(snakemake.log[0]):
     write_report(

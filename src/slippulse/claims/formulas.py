@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..theory.dimensional import Layer, damage_zone_stress_drop
-from ..theory.front_speed import front_speed_undamped
+from ..theory.front_law import front_speed_undamped
 from ..theory.pulse import paper_pulse
 from .evidence import Evidence
 from .ledger import Claim

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from ..theory.front_speed import front_speed, front_speed_undamped, lattice_front_speed
+from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed
 from ..theory.pulse import paper_pulse, steady_pulse
 from .evidence import Evidence
 from .ledger import Claim

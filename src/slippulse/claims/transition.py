@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pandas as pd
 
-from ..prestress import Prestress
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
+from ..comparison.exact_transition import exact_transition
+from ..model.scene import prestress_from
+from ..theory.rupture import ArrestingCrack
 from .evidence import Evidence
 from .ledger import Claim
 
@@ -63,16 +62,13 @@ def definition(boundary: str, share: float) -> str:
 def exact_deviation(evidence: Evidence, boundary: str, share: float) -> dict[str, str]:
     """Deviation of the extrapolated sweep from the exact theory, in words."""
     out = {}
-    theory: dict[tuple, tuple[float, float]] = {}
     for quantity in PAPER:
         study = evidence.uncertainties[f"scaling_{boundary}"]
         study = study[study["quantity"] == quantity]
         deviations = []
         for row in study.itertuples():
-            key = (row.left, row.width, row.gamma, row.damping_ratio, row.release)
-            if key not in theory:
-                theory[key] = exact(boundary, row, share)
-            value = theory[key][0 if quantity == "transition_time" else 1]
+            found = exact_transition(row._asdict(), share)
+            value = found.time if quantity == "transition_time" else found.length
             deviations.append(abs(row.extrapolated / value - 1.0))
         deviations = np.array(deviations)
         deviations = deviations[np.isfinite(deviations)]
@@ -81,17 +77,6 @@ def exact_deviation(evidence: Evidence, boundary: str, share: float) -> dict[str
             f" {np.max(deviations):.2g} (largest)"
         )
     return out
-
-
-def exact(boundary: str, row, share: float) -> tuple[float, float]:
-    """Exact T_trans and L_trans for one row of a measured table."""
-    if boundary == "displacement":
-        found = exact_transition_displacement(
-            Prestress(row.left, row.right, row.width), row.gamma, row.damping_ratio, row.release
-        )
-        return found.time, found.length
-    crack = ArrestingCrack(Prestress(row.left, row.right, row.width), row.damping_ratio, row.release)
-    return crack.share_time(share), crack.share_length(share)
 
 
 def slope(evidence: Evidence, boundary: str, quantity: str, name: str, prediction: str) -> Claim:
@@ -201,13 +186,10 @@ def damping_effect(evidence: Evidence, boundary: str) -> Claim:
 def far_field_peak(evidence: Evidence) -> Claim:
     """'The slip velocity of the pulse is entirely determined by tau at nucleation', against its exact peak."""
     points = evidence.points("steady_stress", "pulse_peak_velocity")
-    predicted = []
-    for row in points.itertuples():
-        more = json.loads(row.steps_and_bumps) if hasattr(row, "steps_and_bumps") else {}
-        profile = Prestress(
-            row.left, row.right, row.width, **{key: value for key, value in more.items() if value}
-        )
-        predicted.append(ArrestingCrack(profile, row.damping_ratio, row.release).peak_velocity)
+    predicted = [
+        ArrestingCrack(prestress_from(row._asdict()), row.damping_ratio, row.release).peak_velocity
+        for row in points.itertuples()
+    ]
     return evidence.collapse(
         "stress_pulse_set_by_prestress",
         "section III A, figure 3",

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
+from ..data.points import point
 from ..measure.regime import REGIMES
-from ..points import point
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 
 # Panel letter, simulation, and the columns of its axes in the measured table.

@@ -10,8 +10,8 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ..data.points import point
 from ..measure.fronts import position_at
-from ..points import point
 from .shared.space_time import draw_map, draw_profile, edges, prestress_profile, velocity_map
 from .style import BLACK, ORANGE, PAGE, new_figure, panel_letter
 

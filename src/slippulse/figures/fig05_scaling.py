@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..prestress import Prestress
+from ..model.prestress import Prestress
 from .shared.scaling import SYMBOLS, collapse_rows, colour_bars, deviations, draw_collapse, norms
 from .style import BLUE, GREEN, ORANGE, PAGE, new_figure, panel_letter
 

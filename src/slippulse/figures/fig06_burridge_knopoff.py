@@ -14,8 +14,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
-from ..points import point
-from .shared.pulses import profile_of
+from ..data.points import point
+from ..model.scene import prestress_from
 from .style import BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 PANELS = ("displacement", "stress")
@@ -77,7 +77,7 @@ def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
                     "x": x,
                     "slip": slip,
                     "slip_velocity": velocity,
-                    "prestress": profile_of(run)(x),
+                    "prestress": prestress_from(run.attrs)(x),
                     "state": np.where(velocity > 0.0, "sliding", moved),
                     "arresting_block": (x == arresting_block(run)) & (name == "stress"),
                 }

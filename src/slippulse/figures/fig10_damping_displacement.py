@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..theory.front_speed import front_speed
+from ..theory.front_law import front_speed
 from .fig05_scaling import PREDICTIONS
 from .shared.scaling import damping_rows, draw_damping
 from .style import ORANGE, PAGE, new_figure

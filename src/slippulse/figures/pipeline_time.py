@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from ..benchmark.records import read_records
+from ..data.job_times import read_records
 from .style import BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 # Jobs shown one by one.

@@ -10,7 +10,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..measure.beside_theory import far_pulse
+from ..comparison.scene_numbers import far_pulse
 from .shared.space_time import draw_map, draw_profile, edges, limits, prestress_profile, thin, velocity_map
 from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 

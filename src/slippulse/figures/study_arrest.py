@@ -10,10 +10,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from ..data.points import point
 from ..measure.fronts import arrival, path
-from ..points import point
+from ..model.scene import prestress_from
 from ..theory.rupture import ArrestingCrack
-from .shared.pulses import profile_of
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
 SHARES = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99)
@@ -46,7 +46,7 @@ def table(
         run = point(sweep, int(index))
         ratio = row["damping_ratio"]
         if ratio not in cracks:
-            cracks[ratio] = ArrestingCrack(profile_of(run), ratio, row["release"])
+            cracks[ratio] = ArrestingCrack(prestress_from(run.attrs), ratio, row["release"])
         crack = cracks[ratio]
         scale = abs(crack.balance_position)
         common = {"damping_ratio": ratio, "dx": row["dx"], "flags": row["flags"]}

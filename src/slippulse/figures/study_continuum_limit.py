@@ -9,8 +9,8 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..prestress import Prestress
-from ..theory.front_speed import front_speed, front_speed_undamped
+from ..model.scene import prestress_from
+from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import exact_transition_displacement
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
@@ -85,8 +85,9 @@ def _theory(run: pd.Series, continuum: bool) -> dict[str, float]:
         "pulse_width": pulse.width,
     }
     if continuum:
-        profile = Prestress(run["left"], run["right"], run["width"])
-        exact = exact_transition_displacement(profile, run["gamma"], run["damping_ratio"], run["release"])
+        exact = exact_transition_displacement(
+            prestress_from(run), run["gamma"], run["damping_ratio"], run["release"]
+        )
         out |= {"transition_time": exact.time, "transition_length": exact.length}
     return out
 

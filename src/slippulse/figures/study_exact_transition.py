@@ -9,8 +9,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..prestress import Prestress
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
+from ..comparison.exact_transition import exact_transition
 from .shared.scaling import SYMBOLS
 from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
@@ -42,12 +41,10 @@ def table(
 
 
 def _rows(runs: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
-    exact: dict[tuple, dict] = {}
     rows = []
     for _, run in runs.iterrows():
-        key = (run["left"], run["right"], run["width"], run["gamma"], run["damping_ratio"], run["release"])
-        if key not in exact:
-            exact[key] = _exact(boundary, share, *key)
+        found = exact_transition(run, share)
+        exact = {"time": found.time, "length": found.length}
         for quantity, column in COLUMNS.items():
             rows.append(
                 {
@@ -60,20 +57,11 @@ def _rows(runs: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
                     "dx": run["dx"],
                     "measured": run[column],
                     "paper": run[f"paper_{column}"],
-                    "exact": exact[key][quantity],
+                    "exact": exact[quantity],
                     "flags": run["flags"],
                 }
             )
     return pd.DataFrame(rows)
-
-
-def _exact(boundary, share, left, right, width, gamma, ratio, release) -> dict[str, float]:
-    profile = Prestress(left, right, width)
-    if boundary == "displacement":
-        transition = exact_transition_displacement(profile, gamma, ratio, release)
-        return {"time": transition.time, "length": transition.length}
-    crack = ArrestingCrack(profile, ratio, release)
-    return {"time": crack.share_time(share), "length": crack.share_length(share)}
 
 
 def plot(table: pd.DataFrame) -> Figure:

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..studies.edges import FLAGGED, NO_NUMBER, NOT_OFFERED, REFUSED, RIGHT, STOPPED, WRONG
+from ..studies.outcomes import FLAGGED, NO_NUMBER, NOT_OFFERED, REFUSED, RIGHT, STOPPED, WRONG
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, PURPLE, new_figure
 
 COLOURS = {

@@ -10,7 +10,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..theory.front_speed import front_speed, front_speed_undamped, prestress_for_speed
+from ..theory.front_law import front_speed, front_speed_undamped, prestress_for_speed
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
 RULES = ("total", "elastic")

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..theory.front_speed import front_speed
+from ..theory.front_law import front_speed
 from ..theory.pulse import paper_pulse, steady_pulse
 from .shared.pulses import COLOURS
 from .style import GREY, PAGE, new_figure, panel_letter

@@ -8,7 +8,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..lattice.stability import MARGIN
+from ..model.stability import MARGIN
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
 # Below this the damping axis is linear, so that 0 has a place.

@@ -10,11 +10,11 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ..data.points import point
 from ..measure.pulses import leading_pulse
-from ..points import point
-from ..theory.front_speed import front_speed
+from ..model.scene import prestress_from
+from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse
-from .shared.pulses import profile_of
 from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
 
 POINTS = 400
@@ -41,7 +41,7 @@ def table(
     sweep = data["pulses_across_a_step"]
     for index in range(sweep.sizes["point"]):
         run = point(sweep, index)
-        profile = profile_of(run)
+        profile = prestress_from(run.attrs)
         place, level = profile.steps[-1]
         ratio, gamma = run.attrs["damping_ratio"], run.attrs["gamma"]
         new = steady_pulse(
@@ -65,7 +65,7 @@ def table(
     sweep = data["regimes_beyond"]
     for index in range(sweep.sizes["point"]):
         run = point(sweep, index)
-        profile = profile_of(run)
+        profile = prestress_from(run.attrs)
         place, level = profile.steps[-1]
         ahead = run["sample_position"].values > 0.0
         largest = run["sample_velocity"].values[:, ahead].max(axis=1)

@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
-from ..store import write_whole
+from ..data.store import write_whole
 
 matplotlib.use("Agg")
 

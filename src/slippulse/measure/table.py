@@ -1,4 +1,4 @@
-"""Every number of every point of a sweep, one row a point."""
+"""Every number of one run."""
 
 from __future__ import annotations
 
@@ -6,69 +6,65 @@ import json
 from collections.abc import Mapping
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
-from ..points import point
 from .fronts import front_speed, position_at
-from .pulses import acceleration_amplitude, leading_pulse, slip_variation
+from .pulses import LeadingPulse, acceleration_amplitude, leading_pulse, slip_variation
 from .regime import classify
-from .steadiness import pulse_state
 from .transition import transition_displacement, transition_stress
 
+# What names a run rather than measures it; enough to have its scene back (`Scene.from_attributes`).
 PARAMETERS = (
-    "boundary", "left", "right", "width", "gamma", "beta", "damping_ratio", "dx", "max_step", "duration",
-    "release", "scheme", "flags", "steps", "block_updates", "energy_residual", "min_velocity", "min_stuck_stress",
-    "friction_ratio_needed", "re_releases", "end_time",
+    "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx", "max_step",
+    "duration", "release", "scheme", "order", "half_lattice", "friction_ratio", "resolved_blocks", "flags", "steps",
+    "block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases",
+    "end_time",
 )  # fmt: skip
 
 
-def measure(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
-    """Measure every point of a sweep.
+def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
+    """Measure one run.
 
     Parameters
     ----------
-    sweep : data of a sweep
+    run : one run, out of a sweep or as `simulate` returned it
     settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
 
     Returns
     -------
-    one row a point: the parameters, then what the recorded data allow; NaN where a quantity does not apply
+    its parameters, then what the recorded data allow, NaN where a quantity does not apply; and its leading pulse, where
+    slip velocity is recorded
     """
-    rows = []
-    for index in range(sweep.sizes["point"]):
-        run = point(sweep, index)
-        row = {name: run.attrs[name] for name in PARAMETERS}
-        steps = json.loads(run.attrs["steps_and_bumps"])["steps"]
-        row["beyond"] = steps[-1][1] if steps else row["right"]
-        for side in ("right", "left"):
-            speed, intercept, error = front_speed(run, settings["front_window"], side)
-            row |= {
-                f"front_speed_{side}": speed,
-                f"front_intercept_{side}": intercept,
-                f"front_speed_error_{side}": error,
-            }
-        if run.attrs["boundary"] == "displacement" and run.attrs["left"] == run.attrs["right"] > 0.0:
-            row |= transition_displacement(run)
-        if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:
-            row |= transition_stress(run, settings["share"])
-        row["first_stick_time"] = run.attrs["first_stick_time"]
-        for time in settings["trailing_times"]:
-            row[f"trailing_edge_{time:g}"] = float(position_at(run, time, "right", "stick_time"))
-        if "slip_velocity" in run:
-            row["largest_velocity"] = float(np.max(run["slip_velocity"]))
-            pulse = leading_pulse(run, settings["front_window"])
-            row |= {
-                "pulse_front": pulse.front,
-                "pulse_width": pulse.width,
-                "pulse_peak_velocity": pulse.peak_velocity,
-                "pulse_slip": pulse.slip,
-                "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
-                "pulse_acceleration": acceleration_amplitude(run, pulse),
-                "slip_variation": slip_variation(run, pulse),
-                "pulse_state": pulse_state(run, pulse),
-            }
-        if "sample_velocity" in run and run.sizes["sample_position"] > 1:
-            row |= classify(run, settings["still"], settings["steady_tolerance"])
-        rows.append(row)
-    return pd.DataFrame(rows)
+    row = {name: run.attrs[name] for name in PARAMETERS}
+    steps = json.loads(run.attrs["steps_and_bumps"])["steps"]
+    row["beyond"] = steps[-1][1] if steps else row["right"]
+    for side in ("right", "left"):
+        speed, intercept, error = front_speed(run, settings["front_window"], side)
+        row |= {
+            f"front_speed_{side}": speed,
+            f"front_intercept_{side}": intercept,
+            f"front_speed_error_{side}": error,
+        }
+    if run.attrs["boundary"] == "displacement" and run.attrs["left"] == run.attrs["right"] > 0.0:
+        row |= transition_displacement(run)
+    if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:
+        row |= transition_stress(run, settings["share"])
+    row["first_stick_time"] = run.attrs["first_stick_time"]
+    for time in settings["trailing_times"]:
+        row[f"trailing_edge_{time:g}"] = float(position_at(run, time, "right", "stick_time"))
+    pulse = None
+    if "slip_velocity" in run:
+        pulse = leading_pulse(run, settings["front_window"])
+        row |= {
+            "largest_velocity": float(np.max(run["slip_velocity"])),
+            "pulse_front": pulse.front,
+            "pulse_width": pulse.width,
+            "pulse_peak_velocity": pulse.peak_velocity,
+            "pulse_slip": pulse.slip,
+            "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
+            "pulse_acceleration": acceleration_amplitude(run, pulse),
+            "slip_variation": slip_variation(run, pulse),
+        }
+    if "sample_velocity" in run and run.sizes["sample_position"] > 1:
+        row |= classify(run, settings["still"], settings["steady_tolerance"])
+    return row, pulse

@@ -5,12 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..prestress import Prestress
-from ..theory.transition import (
-    paper_transition_displacement,
-    paper_transition_stress,
-    prestress_balance_position,
-)
+from ..model.balance import prestress_balance_position
+from ..model.scene import prestress_from
 from .fronts import arrival, longest_wait, path, position_at
 
 NAN = float("nan")
@@ -31,12 +27,9 @@ def transition_displacement(run: xr.Dataset) -> dict[str, float]:
     length = NAN
     if np.isfinite(time):
         length = float(position_at(run, time, "right") + position_at(run, time, "left"))
-    paper_time, paper_length = paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
     out = {
         "transition_time": time,
         "transition_length": length,
-        "paper_transition_time": paper_time,
-        "paper_transition_length": paper_length,
         "first_stick_position": run.attrs["first_stick_position"],
     }
     for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
@@ -73,9 +66,7 @@ def transition_stress(run: xr.Dataset, share: float) -> dict[str, float | str]:
     release on the left), which the paper draws, does not: in the continuum it never comes. ``transition_state`` is
     "resolved", "stalled" where the lattice held the left front up on its way, or "not reached".
     """
-    profile = Prestress(run.attrs["left"], run.attrs["right"], run.attrs["width"], run.attrs["peak"])
-    distance = abs(prestress_balance_position(profile))
-    paper_time, paper_length = paper_transition_stress(profile)
+    distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time = arrival(run, share * distance, "left")
     times, distances = path(run, "left")
     arrest = float(np.max(times)) if times.size else NAN
@@ -91,8 +82,6 @@ def transition_stress(run: xr.Dataset, share: float) -> dict[str, float | str]:
         "transition_length": share * distance + float(position_at(run, time, "right"))
         if np.isfinite(time)
         else NAN,
-        "paper_transition_time": paper_time,
-        "paper_transition_length": paper_length,
         "balance_distance": distance,
         "last_release_time": arrest,
         "last_release_distance": float(distances[-1]) if distances.size else NAN,

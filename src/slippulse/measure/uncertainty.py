@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from ..roots import root_between
+from ..model.roots import root_between
 
 # Observed orders outside this range are not an order: the three values are then only a spread.
 ORDERS = (0.5, 6.0)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from ..theory.front_speed import front_speed, front_speed_undamped
+from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
 from .attempt import attempt
 from .markdown import table

@@ -12,7 +12,7 @@ from pathlib import Path
 import pandas as pd
 import yaml
 
-from ..store import load_table
+from ..data.store import load_table
 
 # Where the executed notebook finds the list of its inputs; without it, the results folder beside it is read.
 VARIABLE = "SLIPPULSE_REPORT_INPUTS"

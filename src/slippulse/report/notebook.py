@@ -9,7 +9,7 @@ import numpy as np
 from IPython.display import Markdown, display
 
 from .. import theory
-from ..prestress import Prestress
+from ..model.prestress import Prestress
 from .accuracy import grid_studies, presets, speeds
 from .alterations import alteration_note
 from .attempt import attempt

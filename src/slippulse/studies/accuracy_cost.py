@@ -8,14 +8,14 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from ..lattice.stability import MARGIN, largest_step
 from ..measure.fronts import arrival, front_speed, path
 from ..measure.pulses import leading_pulse
-from ..model import Scene
-from ..prestress import Prestress
-from ..simulation import simulate
-from ..theory.front_speed import front_speed as exact_speed
-from ..theory.front_speed import front_speed_undamped
+from ..model.prestress import Prestress
+from ..model.scene import Scene
+from ..model.stability import MARGIN, largest_step
+from ..simulation.simulate import simulate
+from ..theory.front_law import front_speed as exact_speed
+from ..theory.front_law import front_speed_undamped
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import ArrestingCrack, exact_transition_displacement
 

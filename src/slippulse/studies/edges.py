@@ -8,17 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ..lattice.stability import MARGIN, largest_step
+from ..comparison.steadiness import pulse_state
 from ..measure.fronts import front_speed, path
 from ..measure.pulses import leading_pulse
-from ..measure.steadiness import pulse_state
-from ..model import Scene
-from ..prestress import Prestress
-from ..simulation import UnstableRun, simulate
-
-RIGHT, FLAGGED, REFUSED, STOPPED = "right", "flagged", "refused", "stopped"
-NO_NUMBER, NOT_OFFERED, WRONG = "no number", "not offered", "WRONG WITHOUT A FLAG"
-VERDICTS = (RIGHT, FLAGGED, REFUSED, STOPPED, NO_NUMBER, NOT_OFFERED, WRONG)
+from ..model.prestress import Prestress
+from ..model.scene import Scene
+from ..model.stability import MARGIN, largest_step
+from ..simulation.simulate import UnstableRun, simulate
+from .outcomes import FLAGGED, NO_NUMBER, NOT_OFFERED, REFUSED, RIGHT, STOPPED, WRONG
 
 
 @dataclass(frozen=True)

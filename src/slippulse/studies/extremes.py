@@ -9,17 +9,18 @@ from functools import lru_cache, partial
 import numpy as np
 import pandas as pd
 
-from ..lattice.driver import run_scene
 from ..measure.fronts import front_speed, path
 from ..measure.pulses import leading_pulse
 from ..measure.transition import STALL, transition_stress
-from ..prestress import Prestress
-from ..simulation import simulate
-from ..theory.front_speed import front_speed as exact_speed
-from ..theory.front_speed import lattice_front_speed
+from ..model.prestress import Prestress
+from ..simulation.simulate import simulate
+from ..solver.lattice import run_scene
+from ..theory.front_law import front_speed as exact_speed
+from ..theory.front_law import lattice_front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
 from ..theory.rupture import ArrestingCrack, Fronts, exact_transition_displacement
-from .edges import NOT_OFFERED, Edge, Measured, flags_of, scene, speed
+from .edges import Edge, Measured, flags_of, scene, speed
+from .outcomes import NOT_OFFERED
 from .single_precision import crack_velocity
 
 GAMMA, LEVEL, RATIO = 0.65, 0.5, 0.1

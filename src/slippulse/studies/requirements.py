@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from ..lattice.driver import Lattice, run_scene
-from ..model import Scene
-from ..prestress import Prestress
+from ..model.prestress import Prestress
+from ..model.scene import Scene
+from ..solver.lattice import Lattice, run_scene
 
 
 def table(settings: Mapping) -> pd.DataFrame:

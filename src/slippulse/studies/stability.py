@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from ..lattice.driver import Lattice
-from ..lattice.localised import STICKS
-from ..lattice.stability import MARGIN, largest_step
-from ..model import ORDERS, Scene
-from ..prestress import Prestress
-from ..simulation import UnstableRun
+from ..model.prestress import Prestress
+from ..model.scene import ORDERS, Scene
+from ..model.stability import MARGIN, largest_step
+from ..simulation.simulate import UnstableRun
+from ..solver.lattice import Lattice
+from ..solver.taylor import STICKS
 
 # Far below any stress: blocks there never slide.
 HELD = -1.0e9

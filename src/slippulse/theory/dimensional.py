@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..checks import check_choice, check_number
+from ..model.checks import check_choice, check_number
 
 
 @dataclass(frozen=True)

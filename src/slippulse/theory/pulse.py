@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..checks import check_number
-from .front_speed import front_speed_undamped
+from ..model.checks import check_number
+from .front_law import front_speed_undamped
 
 
 @dataclass(frozen=True)

@@ -19,11 +19,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.polynomial import Chebyshev, legendre
 
-from ..checks import check_number
-from ..prestress import Prestress
-from ..roots import root_between
-from .front_speed import front_speed, front_speed_undamped
-from .transition import prestress_balance_position
+from ..model.balance import prestress_balance_position
+from ..model.checks import check_number
+from ..model.prestress import Prestress
+from ..model.roots import root_between
+from .front_law import front_speed, front_speed_undamped
 
 NODES, WEIGHTS = legendre.leggauss(12)
 # From values at the nodes of a panel to the Legendre coefficients of their integral from its left end.

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
-from ...points import point
-from ...prestress import Prestress
-from ...theory.front_speed import front_speed
+from ...model.scene import prestress_from
+from ...theory.front_law import front_speed
 from ...theory.pulse import paper_pulse, steady_pulse
 from ...theory.rupture import ArrestingCrack
 from ..style import BLUE, GREEN, ORANGE, PURPLE, SKY
@@ -59,7 +58,7 @@ def pulse_rows(sweep: xr.Dataset, window: float, fields: tuple[str, ...]) -> pd.
             if label["damping_ratio"] == 0.0:
                 parts.append(theory_rows(paper_pulse(label["left"], label["gamma"]), "paper", fields, label))
         else:
-            crack = ArrestingCrack(profile_of(run), label["damping_ratio"], run.attrs["release"])
+            crack = ArrestingCrack(prestress_from(run.attrs), label["damping_ratio"], run.attrs["release"])
             far = far_rows(crack, fields, label)
             parts.append(far)
             span = -float(far["x"].min())
@@ -131,19 +130,6 @@ def far_rows(crack: ArrestingCrack, names, label: Mapping) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def profile_of(run: xr.Dataset) -> Prestress:
-    """The pre-stress of a run, from its attributes."""
-    more = json.loads(run.attrs["steps_and_bumps"])
-    return Prestress(
-        run.attrs["left"],
-        run.attrs["right"],
-        run.attrs["width"],
-        run.attrs["peak"],
-        steps=more["steps"],
-        bumps=more["bumps"],
-    )
-
-
 def prestress_rows(sweep: xr.Dataset, reach: float) -> pd.DataFrame:
     """Distinct pre-stress profiles of a sweep, for an inset; ``reach`` in units of the widest Gaussian."""
     x = np.linspace(-1.0, 1.0, 161) * reach * float(sweep["width"].max())
@@ -154,7 +140,7 @@ def prestress_rows(sweep: xr.Dataset, reach: float) -> pd.DataFrame:
         if key not in seen:
             seen.add(key)
             parts.append(
-                pd.DataFrame({"role": "inset", "x": x, "y": profile_of(run)(x)}).assign(
+                pd.DataFrame({"role": "inset", "x": x, "y": prestress_from(run.attrs)(x)}).assign(
                     run=index, left=key[0], right=key[1], width=key[2]
                 )
             )

@@ -1,0 +1,56 @@
+"""`python -m slippulse.benchmark config/config.yaml results/benchmarks`: measure, and write benchmark.json there."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from pathlib import Path
+
+import yaml
+
+from slippulse.data.store import write_whole
+from slippulse.studies import requirements
+
+from . import measure
+
+
+def main(config_path: str, folder: str) -> None:
+    """Run every measurement and say the ratios."""
+    config = yaml.safe_load(Path(config_path).read_text(encoding="utf-8"))
+    accuracy, window = config["presets"]["paper"], config["measure"]["front_window"]
+    parts = {
+        "machine": measure.machine,
+        "kernel": measure.kernel,
+        "whole_scene": lambda: measure.whole_scene(accuracy, window),
+        "exponents": lambda: measure.exponents(accuracy),
+        "settings": lambda: measure.settings_compared(config["presets"], window),
+        "requirements": lambda: requirements.table(config["studies"]["requirements"]).to_dict("records"),
+        "pipeline": lambda: measure.pipeline(Path(folder)),
+    }
+    found = {}
+    for name, part in parts.items():
+        began = time.perf_counter()
+        found[name] = part()
+        print(f"  {name}: {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
+    output = Path(folder) / "benchmark.json"
+    text = json.dumps(found, indent=1).replace("NaN", "null") + "\n"
+    write_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+    scene, kernel = found["whole_scene"], found["kernel"]
+    for name, entry in kernel.items():
+        print(
+            f"{name}: {entry['block_updates_per_second']:.3g} block updates a second,"
+            f" {entry['ratio_to_branch_free_order_4']:.2f} of a branch-free step of order 4,"
+            f" {entry['ratio_to_branch_free_two_stage']:.2f} of a branch-free two-stage stencil"
+        )
+    faster = scene["times_faster_than_textbook"]
+    print(
+        f"whole scene: {scene['seconds']:.2f} s, front speed within {scene['front_speed_error']:.1e}; textbook scheme"
+        f" at the same error, extrapolated: {faster['numba']:.3g} times as long compiled,"
+        f" {faster['numpy']:.3g} in plain numpy"
+    )
+    print(f"twice the duration: {scene['cost_of_twice_the_duration']:.2f} times the cost; all in {output}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:3])

@@ -1,0 +1,272 @@
+"""The measurements of `make benchmark`: each a function that returns builtins, all in one run on one core."""
+
+from __future__ import annotations
+
+import os
+import platform
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from slippulse.data.versions import versions
+from slippulse.measure.fronts import front_speed
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
+from slippulse.simulation.simulate import simulate
+from slippulse.solver import localised
+from slippulse.solver.lattice import Lattice, run_scene
+from slippulse.theory.front_law import front_speed as exact_speed
+from slippulse.theory.pulse import steady_pulse
+
+from . import stencils
+
+LEVEL, GAMMA, RATIO, DX, DURATION = 0.5, 0.65, 0.1, 0.01, 400.0
+REPEATS, TURNS = 3, 6
+# When the kernel is timed: a crack with 4,200 to 6,200 sliding blocks on each side, a pulse of 200 when it is steady.
+CRACK, PULSE = (3400.0, 5000.0), (60.0, 200.0)
+# Steps of the textbook scheme around these powers of a half, over this many blocks of path.
+POWERS, LENGTH = (3, 4, 5, 6, 7, 8, 9), 160.0
+DURATIONS, SPACINGS = (100.0, 200.0, 400.0, 800.0), (0.02, 0.01, 0.005)
+
+
+def machine() -> dict:
+    """Class of the machine, without its name."""
+    model = ""
+    if Path("/proc/cpuinfo").exists():
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
+    return {
+        "architecture": platform.machine(),
+        "processor": model,
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        "versions": versions(),
+    }
+
+
+def best(run: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Least processor seconds of a few repeats: what else the machine does should not count."""
+    times = []
+    for _ in range(repeats):
+        start = time.process_time()
+        run()
+        times.append(time.process_time() - start)
+    return min(times)
+
+
+def stencil_rates(blocks: int, seconds: float = 0.15) -> dict[str, float]:
+    """Block updates a second of the branch-free stencils on an array of so many blocks."""
+    tau = np.full(blocks, 0.5)
+    w = np.zeros((6, blocks))
+    force = np.zeros(blocks)
+    constants = (1e-6, 1.0, 1e-6, RATIO)
+    steps = {"taylor": 20, "two_stage": 20}
+    calls = {
+        "taylor": lambda count: stencils.taylor_steps(w, tau, count, *constants),
+        "two_stage": lambda count: stencils.two_stage_steps(w[0], w[1], force, tau, count, *constants),
+    }
+    rates = {}
+    for name, call in calls.items():
+        call(1)
+        taken = best(lambda call=call, name=name: call(steps[name]), 1)
+        count = max(20, int(20 * seconds / max(taken, 1e-9)))
+        rates[name] = blocks * count / best(lambda call=call, count=count: call(count))
+    return rates
+
+
+def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
+    """Block updates a second of the localised kernel from ``scene.duration`` to ``until``, and the mean sliding blocks.
+
+    Everything is included: events, growth of the lattice, energy balance.
+    """
+    rates = []
+    start = scene.duration
+    for _ in range(REPEATS):
+        object.__setattr__(scene, "duration", start)
+        lattice = Lattice(scene, None, scene.beta)
+        lattice.run(None)
+        updates, steps = (int(lattice.counts[i]) for i in (localised.BLOCK_UPDATES, localised.STEPS))
+        object.__setattr__(scene, "duration", until)
+        began = time.process_time()
+        lattice.run(None)
+        taken = time.process_time() - began
+        updates = int(lattice.counts[localised.BLOCK_UPDATES]) - updates
+        rates.append((updates / taken, updates / (int(lattice.counts[localised.STEPS]) - steps)))
+    return max(rates)
+
+
+def in_turns(scene: Scene, until: float) -> tuple[float, float, dict[str, float]]:
+    """Best rates of the kernel and of the stencils, in turns: a slow spell of the machine then meets both.
+
+    Returns
+    -------
+    block updates a second of the kernel, mean sliding blocks, block updates a second of each stencil
+    """
+    start, rate, rates = scene.duration, 0.0, {}
+    for _ in range(TURNS):
+        object.__setattr__(scene, "duration", start)
+        found, blocks = kernel_rate(scene, until)
+        rate = max(rate, found)
+        for name, stencil in stencil_rates(round(blocks), 0.05).items():
+            rates[name] = max(rates.get(name, 0.0), stencil)
+    return rate, blocks, rates
+
+
+def kernel() -> dict:
+    """The kernel against branch-free stencils of the same order: many sliding blocks, and a pulse of 200."""
+    more = {"max_step": 0.5, "order": 4}
+    crack = Scene("displacement", Prestress(LEVEL, LEVEL, 8.0), CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **more)
+    width = steady_pulse(LEVEL, GAMMA, 0.0, float(exact_speed(LEVEL, RATIO))).width
+    pulse = Scene(
+        "displacement",
+        Prestress(LEVEL, LEVEL),
+        PULSE[0],
+        width / 200.0,
+        gamma=GAMMA,
+        beta=RATIO * width / 200.0,
+        **more,
+    )
+    found = {}
+    for name, scene, until in (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1])):
+        rate, blocks, rates = in_turns(scene, until)
+        found[name] = {
+            "sliding_blocks": blocks,
+            "order": 4,
+            "block_updates_per_second": rate,
+            "branch_free_order_4_per_second": rates["taylor"],
+            "branch_free_two_stage_per_second": rates["two_stage"],
+            "ratio_to_branch_free_order_4": rate / rates["taylor"],
+            "ratio_to_branch_free_two_stage": rate / rates["two_stage"],
+        }
+    return found
+
+
+def whole_scene(accuracy: Mapping, window: float) -> dict:
+    """The whole scene against the textbook scheme over the full lattice at the same error of the front speed.
+
+    The textbook runs are extrapolated: seconds a step over the full lattice, times the steps that the error needs. That
+    error is of first order in the step and does not depend on the spacing, so it is measured on a small lattice.
+    """
+    scene = _scene(DURATION, DX, accuracy)
+    exact = float(exact_speed(LEVEL, RATIO))
+    error = abs(front_speed(simulate(scene), window)[0] / exact - 1.0)
+    seconds = best(lambda: run_scene(scene))
+    twice = best(lambda: run_scene(_scene(2.0 * DURATION, DX, accuracy)))
+    errors = textbook_errors(window)
+    step = error / float(np.median([entry["error"] / entry["step"] for entry in errors[-9:]]))
+    blocks = int(2.0 * exact * DURATION / DX)
+    needed = DURATION / (step * DX)
+    each = {"numba": textbook_numba_step(blocks), "numpy": textbook_numpy_step(blocks)}
+    return {
+        "scene": f"tau_0 = {LEVEL}, gamma = {GAMMA}, beta/dx = {RATIO}, dx = {DX}, duration {DURATION}",
+        "seconds": seconds,
+        "front_speed_error": error,
+        "seconds_of_twice_the_duration": twice,
+        "cost_of_twice_the_duration": twice / seconds,
+        "textbook_errors": errors,
+        "textbook_step_at_equal_error": step,
+        "textbook_lattice_blocks": blocks,
+        "textbook_steps": needed,
+        "textbook_seconds_a_step": each,
+        "textbook_seconds_extrapolated": {name: needed * value for name, value in each.items()},
+        "times_faster_than_textbook": {name: needed * value / seconds for name, value in each.items()},
+    }
+
+
+def _scene(duration: float, dx: float, accuracy: Mapping) -> Scene:
+    return Scene(
+        "displacement", Prestress(LEVEL, LEVEL), duration, dx, gamma=GAMMA, beta=RATIO * dx,
+        max_step=accuracy["max_step"], order=accuracy["order"],
+    )  # fmt: skip
+
+
+def textbook_errors(window: float) -> list[dict]:
+    """Error of the textbook scheme's front speed against its step, three steps around each power of a half.
+
+    Against the localised scheme at order 8 on the same path, so that the way to the steady speed does not count.
+    """
+
+    def speed(scheme: str, step: float) -> float:
+        values = {"scheme": scheme, "max_step": step, "order": 8}
+        scene = Scene("stress", Prestress(LEVEL, LEVEL, 2.0), LENGTH, 1.0, beta=RATIO, **values)
+        return front_speed(simulate(scene), window)[0]
+
+    reference = speed("localised", 0.5)
+    steps = [factor * 2.0**-power for power in POWERS for factor in (1.0, 0.93, 0.86)]
+    return [{"step": step, "error": abs(speed("fixed_step", step) / reference - 1.0)} for step in steps]
+
+
+def textbook_numba_step(blocks: int) -> float:
+    """Seconds a step of the textbook scheme in compiled code over a lattice of so many blocks."""
+    # Bumps too small to do anything make the lattice as large as it will have to be.
+    far = 0.5 * blocks * DX
+    profile = Prestress(LEVEL, LEVEL, bumps=((far, 1e-12, DX), (-far, 1e-12, DX)))
+    duration, step = 2.0, 0.25
+    scene = Scene(
+        "displacement", profile, duration, DX, gamma=GAMMA, beta=RATIO * DX, scheme="fixed_step", max_step=step,
+        half_lattice=False,
+    )  # fmt: skip
+    lattice = Lattice(scene, None, scene.beta)
+    size = lattice.w.shape[1]
+    seconds = best(lambda: Lattice(scene, None, scene.beta).run(None), 2)
+    return seconds / (duration / (step * DX)) * blocks / size
+
+
+def textbook_numpy_step(blocks: int) -> float:
+    """Seconds a step of the textbook scheme in plain numpy over a lattice of so many blocks."""
+    x = DX * (np.arange(blocks) - blocks // 2)
+    tau = Prestress(LEVEL, LEVEL)(x)
+    steps = 60
+    return best(lambda: stencils.numpy_steps(tau, steps, 0.25 * DX, DX, GAMMA, RATIO * DX), 2) / steps
+
+
+def exponents(accuracy: Mapping) -> dict:
+    """Slopes of the seconds against duration and 1/dx, in logarithms."""
+    over_time = [best(lambda t=t: run_scene(_scene(t, DX, accuracy))) for t in DURATIONS]
+    over_dx = [best(lambda dx=dx: run_scene(_scene(DURATIONS[0], dx, accuracy))) for dx in SPACINGS]
+    return {
+        "duration": {"values": DURATIONS, "seconds": over_time, "exponent": _slope(DURATIONS, over_time)},
+        "spacing": {"values": SPACINGS, "seconds": over_dx, "exponent": _slope(SPACINGS, over_dx)},
+    }
+
+
+def _slope(x, y) -> float:
+    return float(np.polyfit(np.log(x), np.log(y), 1)[0])
+
+
+def settings_compared(presets: Mapping, window: float) -> list[dict]:
+    """Seconds and front-speed error of each preset, and of higher orders at longer steps on its spacing."""
+    exact = float(exact_speed(LEVEL, RATIO))
+    found = []
+    for name, preset in presets.items():
+        others = [(preset["order"], preset["max_step"]), (4, 0.5), (6, 1.0), (8, 1.0)]
+        for order, step in dict.fromkeys(others):
+            scene = _scene(60.0, preset["dx"], {"order": order, "max_step": step})
+            error = abs(front_speed(simulate(scene), window)[0] / exact - 1.0)
+            found.append(
+                {
+                    "preset": name if (order, step) == others[0] else "",
+                    "dx": preset["dx"],
+                    "order": order,
+                    "step": step,
+                    "seconds": best(lambda scene=scene: run_scene(scene)),
+                    "front_speed_error": error,
+                }
+            )
+    return found
+
+
+def pipeline(folder: Path) -> dict:
+    """Seconds and memory of the pipeline's jobs by rule, from Snakemake's own records; empty before it has run."""
+    from slippulse.data.job_times import read_records
+
+    records = read_records(folder)
+    if records.empty:
+        return {}
+    return {
+        "job_seconds": float(records["seconds"].sum()),
+        "largest_memory_MB": float(records["memory"].max()),
+        "by_rule": {rule: float(rows["seconds"].sum()) for rule, rows in records.groupby("rule")},
+    }

@@ -1,0 +1,1 @@
+"""The configuration: checked, expanded into scenes, and what they cost."""

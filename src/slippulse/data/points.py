@@ -1,0 +1,84 @@
+"""A sweep as one Dataset: its runs put together, and one of them taken out again. Loads no compiler."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from .variables import VARIABLES
+
+FRONTS = ("release_time", "stick_time")
+FIELDS = ("slip", "slip_velocity", "slip_acceleration")
+
+
+def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
+    """One run of a sweep as `simulate` returned it, as far as it was recorded."""
+    out = xr.Dataset()
+    scalars = [
+        name
+        for name, variable in sweep.variables.items()
+        if variable.dims == ("point",) and name != "row_size"
+    ]
+    if "row_size" in sweep:
+        ends = np.cumsum(sweep.variables["row_size"].values)
+        rows = slice(int(ends[index] - sweep.variables["row_size"].values[index]), int(ends[index]))
+        for name in ("x", "prestress", *FRONTS, *FIELDS):
+            if name in sweep:
+                out[name] = ("x", sweep.variables[name].values[rows])
+        out = out.set_coords("x")
+    if "sample_time" in sweep:
+        out = out.assign_coords(
+            sample_time=("sample_time", sweep.variables["sample_time"].values[index]),
+            sample_position=("sample_position", sweep.variables["sample_position"].values[index]),
+        )
+        for name in ("sample_slip", "sample_velocity"):
+            out[name] = (("sample_time", "sample_position"), sweep.variables[name].values[index])
+    out.attrs = {name: sweep.variables[name].values[index].item() for name in scalars} | dict(sweep.attrs)
+    return out
+
+
+def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
+    """Put the runs of a sweep into one Dataset."""
+    first = results[0]
+    per_point = {
+        name: ("point", np.array([result.attrs[name] for result in results]))
+        for name in first.attrs
+        if name != "versions"
+    }
+    out = xr.Dataset(per_point)
+    for name in out.variables:
+        # Parameters and counts carry their meaning in their name; all are non-dimensional.
+        out[name].attrs = {"units": "1", "long_name": name.replace("_", " ")}
+    kept = (
+        "x",
+        "prestress",
+        *(FRONTS if "fronts" in record else ()),
+        *(FIELDS if "fields" in record else ()),
+    )
+    if len(kept) > 2:
+        out["row_size"] = ("point", np.array([result.sizes["x"] for result in results]))
+        out["row_size"].attrs = {
+            "units": "1",
+            "long_name": "number of blocks of a point",
+            "sample_dimension": "block",
+        }
+        for name in kept:
+            out[name] = ("block", np.concatenate([result[name].values for result in results]))
+    if "samples" in record:
+        out["sample_time"] = (
+            ("point", "time"),
+            np.stack([result["sample_time"].values for result in results]),
+        )
+        out["sample_position"] = (
+            ("point", "position"),
+            np.stack([result["sample_position"].values for result in results]),
+        )
+        for name in ("sample_slip", "sample_velocity"):
+            out[name] = (("point", "time", "position"), np.stack([result[name].values for result in results]))
+    for name in set(out.variables) & set(VARIABLES):
+        units, long_name = VARIABLES[name]
+        out[name].attrs = {"units": units, "long_name": long_name}
+    out.attrs = {"versions": first.attrs["versions"]}
+    return out

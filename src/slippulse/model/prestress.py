@@ -1,0 +1,144 @@
+"""The pre-stress profile: a Gaussian peak on side levels, with optional steps and bumps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+from numbers import Real
+
+import numpy as np
+
+from .checks import check_number
+
+
+@dataclass(frozen=True)
+class Prestress:
+    """Non-dimensional pre-stress tau(x), with nucleation at x = 0.
+
+    The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``, where ``level`` is ``left`` for
+    x < 0 and ``right`` for x >= 0 until a step replaces it.
+
+    Parameters
+    ----------
+    left, right : float
+        Levels far to the left and right (tau_{0,l} and tau_{0,r}; units of the static minus the kinetic friction).
+    width : float
+        Standard deviation W of the Gaussian (units of the layer thickness H), > 0.
+    peak : float
+        Value at x = 0. At 1 the block there is released at t = 0; below 1 nothing moves.
+    steps : tuple of (position, level)
+        Beyond ``position`` (away from x = 0) the side's level becomes ``level``.
+    bumps : tuple of (centre, amplitude, width)
+        Gaussians added to the profile: a barrier (amplitude < 0), an asperity, or a second nucleation point.
+
+    Raises
+    ------
+    ValueError
+        If a value is not a finite number, a width is not positive, or a step stands at x = 0.
+
+    Source: section III of the paper; steps and bumps are this project's addition.
+    """
+
+    left: float
+    right: float
+    width: float = 1.0
+    peak: float = 1.0
+    steps: tuple[tuple[float, float], ...] = ()
+    bumps: tuple[tuple[float, float, float], ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("left", "right"):
+            # A level at the threshold would release block after block at t = 0, without end.
+            check_number(f"prestress.{name}", getattr(self, name), below=1.0)
+        check_number("prestress.peak", self.peak)
+        check_number("prestress.width", self.width, above=0.0)
+        for name in ("left", "right", "width", "peak"):
+            object.__setattr__(self, name, float(getattr(self, name)))
+        object.__setattr__(self, "steps", _tuples("prestress.steps", self.steps, ("position", "level")))
+        object.__setattr__(
+            self, "bumps", _tuples("prestress.bumps", self.bumps, ("centre", "amplitude", "width"))
+        )
+        for position, level in self.steps:
+            check_number("prestress.steps level", level, below=1.0)
+            if position == 0.0:
+                raise ValueError(
+                    "prestress.steps: position is 0.0; allowed: any other number (use left and right)"
+                )
+        for *_, width in self.bumps:
+            check_number("prestress.bumps width", width, above=0.0)
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether tau(-x) = tau(x), so that half the lattice is enough."""
+        mirrored_steps = {(-position, level) for position, level in self.steps}
+        mirrored_bumps = {(-centre, amplitude, width) for centre, amplitude, width in self.bumps}
+        return (
+            self.left == self.right
+            and set(self.steps) == mirrored_steps
+            and set(self.bumps) == mirrored_bumps
+        )
+
+    def level(self, x: np.ndarray) -> np.ndarray:
+        """Side level at positions x, steps included, the Gaussian and the bumps not."""
+        x = np.asarray(x, dtype=float)
+        level = np.where(x < 0.0, self.left, self.right)
+        for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
+            level = np.where(x * math.copysign(1.0, position) >= abs(position), value, level)
+        return level
+
+    def _level_at(self, x: float) -> float:
+        """`level` at one position: root finding asks for thousands, one at a time."""
+        level = self.left if x < 0.0 else self.right
+        for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
+            if x * math.copysign(1.0, position) >= abs(position):
+                level = value
+        return float(level)
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 when there are no bumps."""
+        x = np.asarray(x, dtype=float)
+        # peak + (level - peak)(1 - exp): no cancellation near x = 0, where the release threshold is met.
+        tau = self.peak + (self.level(x) - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
+        # Bumps at equal distances first to each other, so that a mirrored profile is mirrored to the last bit.
+        parts = [(abs(c), a, w, a * np.exp(-0.5 * ((x - c) / w) ** 2)) for c, a, w in self.bumps]
+        for _, group in groupby(sorted(parts, key=lambda part: part[:3]), key=lambda part: part[:3]):
+            tau = tau + sum(values for *_, values in group)
+        return tau
+
+    def integral(self, lower: float, upper: float) -> float:
+        """Integral of tau from ``lower`` to ``upper`` (finite), in closed form between the steps."""
+        inside = sorted({0.0, *(position for position, _ in self.steps)} | {lower, upper})
+        edges = [x for x in inside if min(lower, upper) <= x <= max(lower, upper)]
+        total = 0.0
+        for a, b in pairwise(edges):
+            level = self._level_at(0.5 * (a + b))
+            total += level * (b - a) + (self.peak - level) * _gaussian_area(a, b, 0.0, self.width)
+        for centre, amplitude, width in self.bumps:
+            total += amplitude * _gaussian_area(min(lower, upper), max(lower, upper), centre, width)
+        return total if upper >= lower else -total
+
+
+def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:
+    a, b = ((x - centre) / (math.sqrt(2.0) * width) for x in (lower, upper))
+    scale = width * math.sqrt(0.5 * math.pi)
+    # On one side of the centre the tails are taken, which do not cancel.
+    if a > 0.0:
+        return scale * (math.erfc(a) - math.erfc(b))
+    if b < 0.0:
+        return scale * (math.erfc(-b) - math.erfc(-a))
+    return scale * (math.erf(b) - math.erf(a))
+
+
+def _tuples(key: str, rows: object, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:
+    allowed = f"a list of [{', '.join(names)}]"
+    if isinstance(rows, str) or not hasattr(rows, "__iter__"):
+        raise ValueError(f"{key}: {rows!r}; allowed: {allowed}")
+    out = []
+    for row in rows:
+        if not hasattr(row, "__len__") or len(row) != len(names) or not all(isinstance(v, Real) for v in row):
+            raise ValueError(f"{key}: {row!r}; allowed: {allowed}, numbers")
+        for name, value in zip(names, row, strict=True):
+            check_number(f"{key} {name}", value)
+        out.append(tuple(float(value) for value in row))
+    return tuple(out)

@@ -1,0 +1,207 @@
+"""What is modelled: one scene, its parameters, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from .checks import check_choice, check_number
+from .prestress import Prestress
+from .stability import largest_step
+
+BOUNDARIES = ("displacement", "stress")
+RELEASES = ("total", "elastic")
+SCHEMES = ("localised", "fixed_step")
+ORDERS = (3, 4, 5, 6, 7, 8)
+
+# A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width
+# carries an error of about one block in this many.
+RESOLVED_BLOCKS = 8
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One rupture: the equation's parameters, the pre-stress, the lattice and the scheme.
+
+    The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
+
+        dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2.
+
+    A block is released when its stress reaches 1 and sticks when its velocity reaches 0.
+
+    Parameters
+    ----------
+    boundary : "displacement" or "stress"
+        Condition at the top of the layer: Gamma = 1 or Gamma = 0.
+    prestress : Prestress
+        Non-dimensional pre-stress tau(x).
+    duration : float
+        Time to simulate (units of H / wave speed), > 0.
+    dx : float
+        Block spacing (units of H), > 0; dx = 1 is the Burridge-Knopoff model.
+    gamma : float
+        Elasticity ratio 2G/(lambda + 2G); > 0 under "displacement", left at 0 under "stress".
+    beta : float
+        Damping, >= 0. What selects the front speed is beta/dx.
+    release : "total" or "elastic"
+        Whether the released stress includes the damping force.
+    scheme : "localised" or "fixed_step"
+        Taylor steps with each release and stick at its instant, or symplectic Euler with events checked once a step.
+    max_step : float
+        Largest time step in units of dx; the step itself under "fixed_step".
+    order : int
+        Order of the Taylor step, 3 to 8; not used by "fixed_step".
+    half_lattice : bool
+        Simulate x >= 0 only when the pre-stress is symmetric.
+    friction_ratio : float
+        mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio).
+    resolved_blocks : int
+        A pulse of fewer sliding blocks is flagged as unresolved.
+
+    Raises
+    ------
+    ValueError
+        One line naming the key, the value and what is allowed.
+
+    Source: equation (5) of the paper with the damping's sign corrected, its section II A, and its appendix B.
+    """
+
+    boundary: str
+    prestress: Prestress
+    duration: float
+    dx: float
+    gamma: float = 0.0
+    beta: float = 0.0
+    release: str = "total"
+    scheme: str = "localised"
+    max_step: float = 0.2
+    order: int = 4
+    half_lattice: bool = True
+    friction_ratio: float = 5.0
+    resolved_blocks: int = RESOLVED_BLOCKS
+
+    def __post_init__(self) -> None:
+        check_choice("boundary", self.boundary, BOUNDARIES)
+        check_choice("release", self.release, RELEASES)
+        check_choice("scheme", self.scheme, SCHEMES)
+        check_choice("order", self.order, ORDERS)
+        for name, kind, allowed in (
+            ("order", int, "a whole number"),
+            ("resolved_blocks", int, "a whole number >= 1"),
+            ("half_lattice", bool, "true or false"),
+        ):
+            if type(getattr(self, name)) is not kind:
+                raise ValueError(f"{name}: {getattr(self, name)!r}; allowed: {allowed}")
+        if not isinstance(self.prestress, Prestress):
+            raise ValueError(f"prestress: {self.prestress!r}; allowed: a Prestress")
+        check_number("duration", self.duration, above=0.0)
+        check_number("dx", self.dx, above=0.0)
+        check_number("beta", self.beta, at_least=0.0)
+        check_number("friction_ratio", self.friction_ratio, at_least=0.0)
+        check_number("resolved_blocks", self.resolved_blocks, at_least=1)
+        if self.boundary == "stress":
+            if self.gamma != 0.0:
+                raise ValueError(
+                    f"gamma: {self.gamma!r}; allowed: 0 or left out under boundary 'stress' (no leaf springs)"
+                )
+        else:
+            check_number("gamma", self.gamma, above=0.0)
+        if self.prestress.width < self.dx:
+            raise ValueError(
+                f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
+            )
+        check_number("max_step", self.max_step, above=0.0)
+        # Single-precision or integer parameters would be computed with as such, and compiled for.
+        for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
+            object.__setattr__(self, name, float(getattr(self, name)))
+        bound = self.largest_stable_step
+        if self.max_step > bound:
+            raise ValueError(
+                f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
+                f" {self.scheme!r} at beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {self.gamma * self.dx**2:.4g}"
+            )
+
+    @property
+    def damping_ratio(self) -> float:
+        """beta/dx, which selects the front speed."""
+        return self.beta / self.dx
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the scene is simulated on half the lattice."""
+        return self.half_lattice and self.prestress.symmetric
+
+    @property
+    def reverse_threshold(self) -> float:
+        """Stress at which a block would slide backwards, -(1 + 2 mu_k/(mu_s - mu_k))."""
+        return -(1.0 + 2.0 * self.friction_ratio)
+
+    @property
+    def largest_stable_step(self) -> float:
+        """Largest stable time step in units of dx."""
+        return largest_step(self.scheme, self.order, self.damping_ratio, self.gamma * self.dx**2)
+
+    def attributes(self) -> dict:
+        """Every parameter as plain numbers and text, for attributes of a data file; inverse of `from_attributes`."""
+        profile = self.prestress
+        return {
+            "boundary": self.boundary,
+            "gamma": self.gamma,
+            "beta": self.beta,
+            "damping_ratio": self.damping_ratio,
+            "left": profile.left,
+            "right": profile.right,
+            "width": profile.width,
+            "peak": profile.peak,
+            "steps_and_bumps": json.dumps(
+                {
+                    "steps": [list(step) for step in profile.steps],
+                    "bumps": [list(bump) for bump in profile.bumps],
+                }
+            ),
+            "duration": self.duration,
+            "dx": self.dx,
+            "release": self.release,
+            "scheme": self.scheme,
+            "max_step": self.max_step,
+            "order": self.order,
+            "half_lattice": int(self.half_lattice),
+            "friction_ratio": self.friction_ratio,
+            "resolved_blocks": self.resolved_blocks,
+        }
+
+    @classmethod
+    def from_attributes(cls, attributes: Mapping) -> Scene:
+        """The scene of a run.
+
+        Parameters
+        ----------
+        attributes : the attributes of a Dataset, or a row of a measured table
+
+        Raises
+        ------
+        ValueError
+            If a parameter is missing.
+        """
+        try:
+            return cls(
+                prestress=prestress_from(attributes),
+                half_lattice=bool(attributes["half_lattice"]),
+                order=int(attributes["order"]),
+                resolved_blocks=int(attributes["resolved_blocks"]),
+                **{name: attributes[name] for name in ("boundary", "release", "scheme")},
+                **{
+                    name: float(attributes[name])
+                    for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio")
+                },
+            )
+        except KeyError as error:
+            raise ValueError(f"{error.args[0]}: missing; allowed: every attribute of a run") from None
+
+
+def prestress_from(attributes: Mapping) -> Prestress:
+    """The pre-stress of a run, from the attributes of its Dataset or its row of a measured table."""
+    more = json.loads(attributes["steps_and_bumps"])
+    left, right, width, peak = (float(attributes[name]) for name in ("left", "right", "width", "peak"))
+    return Prestress(left, right, width, peak, more["steps"], more["bumps"])

@@ -1,0 +1,1 @@
+"""Scenes in, Datasets out: one scene, or a sweep of many."""

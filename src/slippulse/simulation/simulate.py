@@ -1,0 +1,141 @@
+"""One scene in, one Dataset out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+
+from ..data.variables import VARIABLES
+from ..data.versions import versions
+from ..model.samples import Samples
+from ..model.scene import Scene
+from ..solver.lattice import LatticeRun, UnstableRun, run_scene
+
+# A velocity this far below zero, as a share of the largest, means that a stick was stepped over.
+NEGATIVE_VELOCITY = 1e-9
+# An energy balance that misses this share of its largest part means that the step was too long for the damping.
+ENERGY_RESIDUAL = 1e-2
+
+
+class UnresolvedRun(RuntimeError):
+    """A run finished, but its numbers are not those of the model; raised on request, otherwise flagged."""
+
+
+def simulate(
+    scene: Scene,
+    samples: Samples | None = None,
+    progress: Callable[[float], None] | None = None,
+    strict: bool = False,
+) -> xr.Dataset:
+    """Simulate one scene.
+
+    Parameters
+    ----------
+    scene : the scene
+    samples : where and when to record slip and slip velocity during the run; nothing when left out
+    progress : called with the share of the duration done
+    strict : raise instead of flagging a run that meets the reverse-sliding threshold or does not resolve its pulse
+
+    Returns
+    -------
+    Dataset over x with prestress, release_time, stick_time, slip, slip_velocity and slip_acceleration at the end.
+    Attributes: every scene parameter, steps, block_updates, event_updates (blocks that events changed), energy
+    balance and energy_residual, min_velocity, re_releases, flags ("" or a comma-separated list), versions.
+
+    Raises
+    ------
+    UnstableRun
+        When slip velocity is not finite or beyond anything the pre-stress can drive.
+    UnresolvedRun
+        With ``strict``, when a flag is set.
+    """
+    run = run_scene(scene, samples, progress)
+    numbers = run.numbers | judge(scene, run)
+    if strict and numbers["flags"]:
+        raise UnresolvedRun(f"the run is flagged: {numbers['flags']} ({describe_flags(scene, numbers)})")
+    data = {
+        name: ("x", getattr(run, name))
+        for name in ("prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
+    }
+    coordinates = {"x": ("x", run.x)}
+    if samples is not None:
+        coordinates["sample_time"] = ("sample_time", samples.times)
+        coordinates["sample_position"] = ("sample_position", samples.positions)
+        data["sample_slip"] = (("sample_time", "sample_position"), run.sample_slip)
+        data["sample_velocity"] = (("sample_time", "sample_position"), run.sample_velocity)
+    dataset = xr.Dataset(data, coords=coordinates)
+    for name in dataset.variables:
+        units, long_name = VARIABLES[name]
+        dataset[name].attrs = {"units": units, "long_name": long_name}
+    dataset.attrs = scene.attributes() | numbers | {"versions": versions()}
+    return dataset
+
+
+def judge(scene: Scene, run: LatticeRun) -> dict:
+    """Flags of a finished run: what would make its numbers something else than the model's."""
+    pulse_blocks = narrowest_pulse(scene, run)
+    flags = []
+    if run.numbers["min_stuck_stress"] <= scene.reverse_threshold:
+        flags.append("reverse_sliding")
+    if 0 < pulse_blocks < scene.resolved_blocks:
+        flags.append("unresolved_pulse")
+    if died_out(run):
+        flags.append("died_out")
+    # The textbook scheme overshoots zero once a stick by construction: reported as min_velocity, not flagged.
+    overshoot = -NEGATIVE_VELOCITY * max(1.0, float(np.max(run.slip_velocity)))
+    if scene.scheme == "localised" and run.numbers["min_velocity"] < overshoot:
+        flags.append("negative_velocity")
+    if scene.scheme == "localised" and run.numbers["energy_residual"] > ENERGY_RESIDUAL:
+        flags.append("energy")
+    return {"pulse_blocks": pulse_blocks, "flags": ",".join(flags)}
+
+
+def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:
+    """Blocks across the narrowest pulse at the end; under a stress boundary the nucleation peak sets the scale."""
+    if scene.boundary == "stress":
+        return int(nucleation_size(scene) / scene.dx)
+    sliding = np.isfinite(run.release_time) & ~np.isfinite(run.stick_time)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], sliding, [False]]).astype(np.int8)))
+    lengths = edges[1::2] - edges[0::2]
+    # The pulses are the outermost sliding runs; pieces left over behind them are not.
+    return int(min(lengths[0], lengths[-1])) if lengths.size else 0
+
+
+def nucleation_size(scene: Scene) -> float:
+    """Width of the Gaussian, or the distance to where it falls to 0 on the way to a strongly negative level."""
+    profile = scene.prestress
+    sizes = [profile.width]
+    for level in (profile.left, profile.right):
+        if level < 0.0 < profile.peak:
+            sizes.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
+    return min(sizes)
+
+
+def died_out(run: LatticeRun) -> bool:
+    """Whether a front stands still on a side where the pre-stress ahead of it would drive it on for ever."""
+    released = np.isfinite(run.release_time)
+    sliding = released & ~np.isfinite(run.stick_time)
+    for side in (-1.0, 1.0):
+        half = side * run.x >= 0.0
+        reach = side * run.x[half & released]
+        if reach.size and not np.any(half & sliding):
+            ahead = half & (side * run.x > reach.max())
+            if ahead.any() and run.prestress[ahead][np.argmin(side * run.x[ahead])] > 0.0:
+                return True
+    return False
+
+
+def describe_flags(scene: Scene, numbers: dict) -> str:
+    """The figures behind the flags, in one line."""
+    return (
+        f"lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding at"
+        f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse {numbers['pulse_blocks']}, needed"
+        f" {scene.resolved_blocks}; smallest velocity {numbers['min_velocity']:.3g}; energy residual"
+        f" {numbers['energy_residual']:.2g}, allowed {ENERGY_RESIDUAL:g}"
+    )
+
+
+__all__ = ["Samples", "UnresolvedRun", "UnstableRun", "simulate"]
