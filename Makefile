@@ -15,7 +15,10 @@ export CORES PRESET OVERLAY TARGET AGAINST
 VENV := .venv
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
-INSTALL := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --compile --no-deps --require-hashes
+PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes
+# uv of the lock, or pip where there is no uv for this machine.
+INSTALL := sh -c '"$(BIN)/uv" --version >/dev/null 2>&1 && exec "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes "$$@" || exec "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes "$$@"' install
+PIP_EDITABLE := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 
 .PHONY: help setup slurm lock replicate rulegraph verify faults test slurm-test benchmark check clean distclean
 
@@ -36,12 +39,12 @@ setup: $(READY)
 
 $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
-	@echo "Setting up $(VENV) from requirements.lock (once; about 500 MB)"
+	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
-	@$(INSTALL) --only-binary :all: -r requirements-build.lock
+	@$(PIP) --only-binary :all: -r requirements-build.lock
 	@$(INSTALL) --only-binary :all: --no-binary connection-pool --no-build-isolation -r requirements.lock
-	@"$(BIN)/python" -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@$(PIP_EDITABLE)
 	@touch "$(READY)"
 
 # Only what a cluster adds: every other package is that of requirements.lock.
