@@ -3,25 +3,24 @@
 
 rule write_claims:
     input:
-        CLAIM_SOURCES,
-        measured=[f"results/measurements/{name}.csv" for name in CLAIM_SIMULATIONS],
-        coarser=[f"results/uncertainties/coarser/{name}.csv" for name in CLAIM_SIMULATIONS],
-        uncertainties=[f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS],
+        sources("steps.write_claims"),
+        measured=tables("measurements", CLAIM_SIMULATIONS),
+        coarser=tables("uncertainties/coarser", CLAIM_SIMULATIONS),
+        uncertainties=tables("uncertainties", CLAIM_SIMULATIONS),
     output:
         json="results/claims.json",
-        html=report(
-            "results/claims.html",
-            caption="../report/claims.rst",
-            category="Claims",
-            labels={"table": "claims"},
-        ),
+        html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
     log:
         "results/logs/write_claims.log",
     benchmark:
         "results/benchmarks/write_claims.tsv"
     params:
-        settings={key: config[key] for key in ("claims", "published", "measure")},
+        step="write_claims",
+        claims=plain(config["claims"]),
+        published=plain(config["published"]),
+        share=config["measure"]["share"],
+        configuration=digest_of(config),
     message:
         "Judging the claims"
     script:
-        "../scripts/write_claims.py"
+        "../scripts/step.py"

@@ -1,25 +1,18 @@
 # One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
 
-for figure, needs in (FIGURES | STUDIES).items():
+for figure, needs in NEEDS.items():
 
     rule:
         name:
             figure
         input:
-            sources(
-                "figures/style.py",
-                f"figures/{figure}.py",
-                "figures/shared/*.py",
-                "theory/*.py",
-                "studies/edges.py",
-            ),
+            sources("steps.draw_figure", f"figures.{figure}"),
             data=[f"results/data/{name}.nc" for name in needs.get("data", [])],
-            measured=[f"results/measurements/{name}.csv" for name in needs.get("measured", [])]
+            measured=tables("measurements", needs.get("measured", []))
             + [f"results/studies/{name}.csv" for name in needs.get("studies", [])],
         output:
             png=report(
                 f"results/figures/{figure}.png",
-                caption=f"../report/{figure}.rst",
                 category="Figures of the paper" if figure in FIGURES else "Studies",
                 labels={"figure": figure},
             ),
@@ -30,9 +23,11 @@ for figure, needs in (FIGURES | STUDIES).items():
         benchmark:
             f"results/benchmarks/figures/{figure}.tsv"
         params:
+            step="draw_figure",
             figure=figure,
-            settings=figure_settings(figure),
+            values=settings_of_figure(figure),
+            configuration=configuration_of_figure(figure),
         message:
             f"Drawing {figure}"
         script:
-            "../scripts/draw_figure.py"
+            "../scripts/step.py"

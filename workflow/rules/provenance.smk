@@ -1,32 +1,27 @@
-# What the results were made from, and what they are: provenance, checksums, manifest.
+# What there is when everything is made, what it was made from, and the page that leads to it.
 
-NEEDS = list((FIGURES | STUDIES).values())
-# Every file of the paper but logs, benchmarks and what is written here.
-RESULTS = sorted(
-    {
-        *figure_files(FIGURES | STUDIES),
-        *(f"results/data/{name}.nc" for needs in NEEDS for name in needs.get("data", [])),
-        *(f"results/data/{name}.nc" for needs in NEEDS for name in needs.get("measured", [])),
-        *(f"results/data/{name}.nc" for name in CLAIM_SIMULATIONS),
-        *(f"results/measurements/{name}.csv" for needs in NEEDS for name in needs.get("measured", [])),
-        *(f"results/measurements/{name}.csv" for name in CLAIM_SIMULATIONS),
-        *(f"results/studies/{name}.csv" for needs in NEEDS for name in needs.get("studies", [])),
-        "results/studies/requirements.csv",
-        *(f"results/uncertainties/{name}.csv" for name in CLAIM_SIMULATIONS),
-        "results/claims.json",
-        "results/claims.html",
-        "results/manuscript/replication.html",
-        "results/manuscript/replication.pdf",
-    }
-)
+DRAWN = simulations_of(NEEDS)
+STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
+RESULTS = [
+    *figure_files(NEEDS),
+    *(f"results/data/{name}.nc" for name in sorted({*DRAWN, *STUDIED})),
+    *tables("measurements", sorted({*DRAWN, *STUDIED})),
+    *tables("uncertainties", STUDIED),
+    *(f"results/studies/{name}.csv" for name in SOLVER_STUDIES),
+    *scene_files(SCENES),
+    "results/claims.json",
+    "results/claims.html",
+    "results/manuscript/replication.html",
+    "results/manuscript/replication.pdf",
+]
 
 
 rule write_provenance:
     input:
-        sources("provenance.py"),
-        list(captions_of(FIGURES | STUDIES).values()),
+        sources("steps.write_provenance"),
         LOCK,
-        files=RESULTS,
+        results=RESULTS,
+        captions=[f"workflow/report/{name}.rst" for name in NEEDS],
     output:
         provenance="results/provenance.json",
         checksums="results/checksums.txt",
@@ -36,35 +31,37 @@ rule write_provenance:
     benchmark:
         "results/benchmarks/write_provenance.tsv"
     params:
-        root=lambda wildcards: str(workflow.basedir),
-        config=builtins_of(config),
-        shipped=builtins_of(SHIPPED),
-        captions=captions_of(FIGURES | STUDIES),
+        step="write_provenance",
+        config=plain(config),
+        shipped=plain(SHIPPED),
+        configuration=digest_of(config),
     message:
         "Noting what the results were made from"
     script:
-        "../scripts/write_provenance.py"
+        "../scripts/step.py"
 
 
 rule write_index:
     input:
-        sources("index_page.py", "pages.py"),
-        list(captions_of(FIGURES | STUDIES).values()),
-        pngs=[f"results/figures/{name}.png" for name in FIGURES | STUDIES],
+        sources("steps.write_index"),
+        [f"workflow/report/{name}.rst" for name in NEEDS],
+        pictures=[f"results/figures/{name}.png" for name in NEEDS],
         claims="results/claims.json",
         provenance="results/provenance.json",
         report="results/manuscript/replication.html",
     output:
-        "results/index.html",
+        html="results/index.html",
     log:
         "results/logs/write_index.log",
     benchmark:
         "results/benchmarks/write_index.tsv"
     params:
+        step="write_index",
         figures=captions_and_settings(FIGURES),
         studies=captions_and_settings(STUDIES),
         scenes={name: scene["title"] for name, scene in SCENES.items()},
+        configuration=digest_of(config),
     message:
         "Writing results/index.html, the page to open"
     script:
-        "../scripts/write_index.py"
+        "../scripts/step.py"

@@ -1,49 +1,179 @@
-# One data file a simulation block of the configuration; its scenes run in a pool of threads.
-
-
-rule compile_kernels:
-    input:
-        KERNEL_SOURCES,
-        LOCK,
-    output:
-        "results/kernels.txt",
-    log:
-        "results/logs/compile_kernels.log",
-    benchmark:
-        "results/benchmarks/compile_kernels.tsv"
-    # Everything waits for it.
-    priority: 2
-    threads: 2
-    message:
-        "Compiling the lattice kernels (once)"
-    script:
-        "../scripts/compile_kernels.py"
+# One data file a simulation of the configuration, one table of measured numbers, and one of their uncertainties.
+# A simulation with `chunks` makes these of each chunk, NAME/3-of-8, and then puts them together. The files of the chunks
+# stay: to measure anew, or to make a lost chunk again, needs them.
 
 
 wildcard_constraints:
     simulation=ONE_JOB,
 
 
+rule compile_kernels:
+    input:
+        sources("steps.compile_kernels"),
+        LOCK,
+    output:
+        kernels="results/kernels.txt",
+    log:
+        "results/logs/compile_kernels.log",
+    benchmark:
+        "results/benchmarks/compile_kernels.tsv"
+    # Everything waits for it.
+    priority: 2
+    params:
+        step="compile_kernels",
+    message:
+        "Compiling the lattice kernels (once)"
+    script:
+        "../scripts/step.py"
+
+
 rule simulate:
     input:
-        SIMULATION_SOURCES,
+        sources("steps.simulate"),
         LOCK,
         kernels="results/kernels.txt",
     output:
-        "results/data/{simulation}.nc",
+        data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
     benchmark:
         "results/benchmarks/simulate/{simulation}.tsv"
     # Before what only draws: the claims wait for the last of the measurements.
     priority: 1
-    threads: sweep_threads
+    threads: job_threads
     resources:
-        runtime=sweep_minutes,
-        mem_mb=sweep_megabytes,
+        runtime=job_minutes,
+        mem_mb=job_megabytes,
     params:
-        block=simulation_block,
+        step="simulate",
+        simulation=lambda wildcards: wildcards.simulation,
+        sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
     message:
         "Simulating {wildcards.simulation}"
     script:
-        "../scripts/simulate.py"
+        "../scripts/step.py"
+
+
+rule measure:
+    input:
+        sources("steps.measure"),
+        data="results/data/{simulation}.nc",
+    output:
+        measured="results/measurements/{simulation}.csv",
+    log:
+        "results/logs/measure/{simulation}.log",
+    benchmark:
+        "results/benchmarks/measure/{simulation}.tsv"
+    priority: 1
+    params:
+        step="measure",
+        measure=plain(config["measure"]),
+        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+    message:
+        "Measuring {wildcards.simulation}"
+    script:
+        "../scripts/step.py"
+
+
+rule study_grid:
+    input:
+        sources("steps.study_grid"),
+        LOCK,
+        kernels="results/kernels.txt",
+        finest="results/measurements/{simulation}.csv",
+    output:
+        uncertainties="results/uncertainties/{simulation}.csv",
+        coarser="results/uncertainties/coarser/{simulation}.csv",
+    log:
+        "results/logs/study_grid/{simulation}.log",
+    benchmark:
+        "results/benchmarks/study_grid/{simulation}.tsv"
+    priority: 1
+    resources:
+        runtime=job_minutes,
+        mem_mb=job_megabytes,
+    params:
+        step="study_grid",
+        simulation=lambda wildcards: wildcards.simulation,
+        sweeps=lambda wildcards: coarser_sweeps(wildcards.simulation),
+        measure=plain(config["measure"]),
+        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+    message:
+        "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
+    script:
+        "../scripts/step.py"
+
+
+rule join_data:
+    input:
+        sources("steps.join_data"),
+        chunks=lambda wildcards: [f"results/data/{chunk}.nc" for chunk in CHUNKS[wildcards.simulation]],
+    output:
+        data="results/data/{simulation}.nc",
+    log:
+        "results/logs/join_data/{simulation}.log",
+    benchmark:
+        "results/benchmarks/join_data/{simulation}.tsv"
+    wildcard_constraints:
+        simulation=CHUNKED,
+    resources:
+        mem_mb=job_megabytes,
+    params:
+        step="join_data",
+        record=lambda wildcards: SIMULATIONS[wildcards.simulation]["record"],
+        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+    message:
+        "Putting the data of {wildcards.simulation} together"
+    script:
+        "../scripts/step.py"
+
+
+rule join_measurements:
+    input:
+        sources("steps.join_measurements"),
+        chunks=lambda wildcards: tables("measurements", CHUNKS[wildcards.simulation]),
+    output:
+        measured="results/measurements/{simulation}.csv",
+    log:
+        "results/logs/join_measurements/{simulation}.log",
+    benchmark:
+        "results/benchmarks/join_measurements/{simulation}.tsv"
+    wildcard_constraints:
+        simulation=CHUNKED,
+    priority: 1
+    params:
+        step="join_measurements",
+        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+    message:
+        "Putting the measurements of {wildcards.simulation} together"
+    script:
+        "../scripts/step.py"
+
+
+rule join_uncertainties:
+    input:
+        sources("steps.join_uncertainties"),
+        finest="results/measurements/{simulation}.csv",
+        uncertainties=lambda wildcards: tables("uncertainties", CHUNKS[wildcards.simulation]),
+        coarser=lambda wildcards: tables("uncertainties/coarser", CHUNKS[wildcards.simulation]),
+    output:
+        uncertainties="results/uncertainties/{simulation}.csv",
+        coarser="results/uncertainties/coarser/{simulation}.csv",
+    log:
+        "results/logs/join_uncertainties/{simulation}.log",
+    benchmark:
+        "results/benchmarks/join_uncertainties/{simulation}.tsv"
+    wildcard_constraints:
+        simulation=CHUNKED,
+    priority: 1
+    resources:
+        runtime=lambda wildcards, attempt: attempt * joining(wildcards).minutes,
+        mem_mb=lambda wildcards, attempt: attempt * joining(wildcards).megabytes,
+    params:
+        step="join_uncertainties",
+        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+    message:
+        "Putting the grid studies of {wildcards.simulation} together"
+    script:
+        "../scripts/step.py"

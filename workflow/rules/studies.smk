@@ -1,48 +1,28 @@
 # Studies of the solver itself: one table each, from runs of their own.
 
+for study in SOLVER_STUDIES:
 
-rule study:
-    input:
-        SIMULATION_SOURCES,
-        MEASURE_SOURCES,
-        sources("studies/*.py"),
-        LOCK,
-        kernels="results/kernels.txt",
-    output:
-        "results/studies/{study}.csv",
-    log:
-        "results/logs/studies/{study}.log",
-    benchmark:
-        "results/benchmarks/studies/{study}.tsv"
-    params:
-        study=lambda wildcards: wildcards.study,
-        settings=study_settings,
-    message:
-        "Studying {wildcards.study}"
-    script:
-        "../scripts/run_study.py"
-
-
-rule study_pipeline_time:
-    input:
-        sources("figures/style.py", "figures/pipeline_time.py", "benchmark/records.py"),
-        figure_files(FIGURES | STUDIES),
-        "results/claims.json",
-        "results/studies/requirements.csv",
-    output:
-        png=report(
-            "results/figures/study_pipeline_time.png",
-            caption="../report/study_pipeline_time.rst",
-            category="Studies",
-            labels={"figure": "study_pipeline_time"},
-        ),
-        pdf="results/figures/study_pipeline_time.pdf",
-        csv="results/figures/study_pipeline_time.csv",
-    log:
-        "results/logs/study_pipeline_time.log",
-    benchmark:
-        "results/benchmarks/study_pipeline_time.tsv"
-    message:
-        "Drawing where the time went"
-    script:
-        "../scripts/draw_pipeline_time.py"
+    rule:
+        name:
+            f"study_of_{study}"
+        input:
+            sources("steps.run_study", f"studies.{study}"),
+            LOCK,
+            kernels="results/kernels.txt",
+        output:
+            table=f"results/studies/{study}.csv",
+        log:
+            f"results/logs/studies/{study}.log",
+        benchmark:
+            f"results/benchmarks/studies/{study}.tsv"
+        resources:
+            runtime=20,
+        params:
+            step="run_study",
+            study=study,
+            values=settings_of_study(study),
+            configuration=configuration(study=settings_of_study(study)),
+        message:
+            f"Studying {study}"
+        script:
+            "../scripts/step.py"

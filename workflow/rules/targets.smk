@@ -1,7 +1,8 @@
-# Included last: what is asked for on the command line is something that a rule makes.
+# Included last: what is asked for on the command line is something that a rule makes, and affordable.
 
 import sys
 
+from slippulse.configuration.expand import expand as expand_sweep
 from slippulse.configuration.refusals import check_affordable, check_folder, check_targets
 
 
@@ -9,24 +10,38 @@ def refuse_unknown_targets():
     """A misspelt file on the command line is refused with the nearest one that a rule makes."""
     known = [str(file) for rule in workflow.rules for file in rule.output if not file.contains_wildcard()]
     known += [f"results/scenes/{name}.{ending}" for name in SCENES for ending in ("png", "html", "gif")]
-    try:
-        check_folder(Path("results"))
-        check_targets(
-            sys.argv[1:], lambda file: any(rule.is_producer(file) for rule in workflow.rules), known
-        )
-    except ConfigError as error:
-        raise WorkflowError(str(error)) from None
+    check_folder(Path("results"))
+    check_targets(sys.argv[1:], lambda file: any(rule.is_producer(file) for rule in workflow.rules), known)
+
+
+def simulations_behind(file):
+    """Simulations that a file under results/ is made from; all of them where it may be any."""
+    name = Path(file).stem
+    if file.startswith("results/studies/"):
+        return set()
+    if name in NEEDS:
+        return set(simulations_of([name]))
+    if file == "results/scenes/index.html":
+        return set(SCENES)
+    found = {other for other in SIMULATIONS if name == other or name == f"{other}_numbers"}
+    return found or set(SIMULATIONS)
 
 
 def refuse_dear_targets():
     """With `accuracy` the cost of what is asked for is checked, and not that of the whole paper."""
     if "promise" not in ACCURACY or config.get("allow_large", False) or not workflow.is_main_process:
         return
-    try:
-        check_affordable({key: expand_block(block) for key, block in blocks_behind(sys.argv[1:]).items()})
-    except ConfigError as error:
-        raise WorkflowError(f"The configuration is refused:\n{error}") from None
+    files = [argument for argument in sys.argv[1:] if argument.startswith("results/")]
+    if not files and "scenes" in sys.argv[1:]:
+        files = ["results/scenes/index.html"]
+    elif not files and not ACCURACY.get("whole", True) and "everything" not in sys.argv[1:]:
+        files = figure_files(FIGURES)
+    names = {name for file in files or [""] for name in simulations_behind(file)}
+    check_affordable({f"simulations.{name}": expand_sweep(sweep_of(name)) for name in sorted(names)})
 
 
-refuse_unknown_targets()
-refuse_dear_targets()
+try:
+    refuse_unknown_targets()
+    refuse_dear_targets()
+except ConfigError as error:
+    raise WorkflowError(f"Refused:\n{error}") from None

@@ -13,16 +13,8 @@ from pathlib import Path
 
 import yaml
 
+from .records import file_digest
 from .versions import PACKAGES
-
-
-def file_digest(path: str | Path) -> str:
-    """SHA-256 of a file."""
-    digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
-    return digest.hexdigest()
 
 
 def tree_digest(root: str | Path, paths: Iterable[str | Path]) -> str:

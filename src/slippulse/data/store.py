@@ -11,6 +11,8 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
+from .origin import configuration
+
 
 def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
     """Let ``write`` fill a file beside ``path`` and move it there when it is complete."""
@@ -28,6 +30,11 @@ def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
         part.unlink(missing_ok=True)
 
 
+def write_text(text: str, path: str | Path) -> None:
+    """Write a text file in UTF-8."""
+    write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
 @cache
 def _umask() -> int:
     # It can only be read by setting it, so once: threads would see each other's zero.
@@ -41,6 +48,8 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
 
     Through memory: HDF5 that meets a full disk half way does not always leave the interpreter standing.
     """
+    if configuration():
+        dataset = dataset.assign_attrs(configuration=configuration())
     content = dataset.to_netcdf(engine="h5netcdf", format="NETCDF4")
     write_whole(path, lambda part: part.write_bytes(content))
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .provenance import file_digest
+from .records import file_digest
 
 # What makes a run the same run in another tree, whatever its lattice.
 SAME = ("boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release")

@@ -12,6 +12,9 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 
 from .style import BLACK, BLUE, ORANGE, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {}
+
 TITLES = {"stress": r"$\Gamma = 0$: stress imposed", "displacement": r"$\Gamma = 1$: displacement held"}
 # In thicknesses: length of the layer shown, depth of what is rigid, largest displacement drawn.
 LENGTH, RIGID, DISPLACEMENT = 3.5, 0.2, 0.5

@@ -17,6 +17,12 @@ from ..data.points import point
 from ..measure.regime import REGIMES
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {
+    "data": ["regimes_displacement", "regimes_stress", "regimes_beyond"],
+    "measured": ["regimes_displacement", "regimes_stress", "regimes_beyond"],
+}
+
 # Panel letter, simulation, and the columns of its axes in the measured table.
 DIAGRAMS = (
     ("a", "regimes_displacement", "left", "gamma"),

@@ -8,17 +8,25 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from .shared.pulses import (
     COLOURS,
+    displacement_handles,
     draw_displacement,
     draw_prestress,
     draw_stress,
     prestress_rows,
     pulse_rows,
+    stress_handles,
 )
 from .style import PAGE, new_figure, panel_letter
+
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {
+    "data": ["steady_displacement", "steady_stress"],
+    "measured": ["steady_displacement", "steady_stress"],
+    "settings": ["measure.front_window"],
+}
 
 VELOCITY = ("slip_velocity",)
 
@@ -66,45 +74,3 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_ylabel(r"slip velocity $\dot{\bar u}$")
         panel_letter(axes, letter)
     return figure
-
-
-def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:
-    """Legend: colours are tau_0, line styles the damping of the theory, pale lines the simulation."""
-    levels = np.sort(rows.loc[rows["role"] == "theory", "left"].unique())
-    ratios = np.sort(rows.loc[rows["role"] == "theory", "damping_ratio"].unique())
-    handles = [
-        Line2D([], [], color=colour, label=rf"$\bar\tau_0 = {level:g}$")
-        for colour, level in zip(COLOURS, levels, strict=False)
-    ]
-    handles += [
-        Line2D(
-            [],
-            [],
-            color="black",
-            linewidth=0.9,
-            linestyle=style,
-            label=rf"theory, $\bar\beta/\mathrm{{d}}\bar x = {ratio:g}$",
-        )
-        for style, ratio in zip(("-", "--", ":", "-."), ratios, strict=False)
-    ]
-    return [*handles, Line2D([], [], color="black", linewidth=3.0, alpha=0.35, label="simulation")]
-
-
-def stress_handles(rows: pd.DataFrame) -> list[Line2D]:
-    """Legend: one colour a profile, dashes the exact peak."""
-    runs = rows[rows["role"] == "simulation"].groupby("run").first()
-    handles = [
-        Line2D(
-            [],
-            [],
-            color=colour,
-            label=rf"$\bar\tau_{{0,l}} = {run.left:g}$, $\bar W_{{\bar\tau}} = {run.width:g}$",
-        )
-        for colour, run in zip(COLOURS, runs.itertuples(), strict=False)
-    ]
-    return [
-        *handles,
-        Line2D([], [], color="black", linewidth=0.9, label="exact far-field pulse"),
-        Line2D([], [], color="black", linewidth=0.8, linestyle=(0, (2, 1)), label="its largest velocity"),
-        Line2D([], [], color="black", linewidth=3.0, alpha=0.35, label="simulation"),
-    ]

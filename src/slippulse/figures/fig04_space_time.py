@@ -15,6 +15,12 @@ from ..measure.fronts import position_at
 from .shared.space_time import draw_map, draw_profile, edges, prestress_profile, velocity_map
 from .style import BLACK, ORANGE, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {
+    "data": ["space_time_displacement", "space_time_stress"],
+    "measured": ["space_time_displacement", "space_time_stress"],
+}
+
 PANELS = (("displacement", "a", 1), ("stress", "b", 0))
 PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 HALO = [effects.withStroke(linewidth=2.2, foreground="white")]

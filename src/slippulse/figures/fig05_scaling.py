@@ -10,15 +10,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..model.prestress import Prestress
-from .shared.scaling import SYMBOLS, collapse_rows, colour_bars, deviations, draw_collapse, norms
+from .shared.scaling import PREDICTIONS, SYMBOLS, collapse_rows, colour_bars, deviations, draw_collapse, norms
 from .style import BLUE, GREEN, ORANGE, PAGE, new_figure, panel_letter
 
-PREDICTIONS = {
-    "displacement_length": r"$2\pi/\sqrt{\bar\gamma(1-\bar\tau_0^2)}$",
-    "displacement_time": r"$\pi/\sqrt{\bar\gamma}$",
-    "stress_length": r"$2|\bar x_-|$",
-    "stress_time": r"$|\bar x_-|$",
-}
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"measured": ["scaling_displacement", "scaling_stress"], "settings": ["measure.share"]}
+
 INSET_POINTS = 161
 
 

@@ -18,6 +18,9 @@ from ..data.points import point
 from ..model.scene import prestress_from
 from .style import BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
+
 PANELS = ("displacement", "stress")
 # Blocks shown besides the middle one, and blocks shown beyond the one that stops the left front.
 SHOWN, BEYOND = 18, 2

@@ -13,6 +13,9 @@ from matplotlib.patches import FancyArrowPatch, Rectangle
 from ..theory.dimensional import damage_zone_stress_drop
 from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {}
+
 # The sketch, in thicknesses of the zone: host rock, width, where displacements are counted from, slip and imposed
 # displacement; and the ratio G/G_r that it is drawn for.
 ROCK, WIDTH, ORIGIN, SLIP, IMPOSED, STIFFNESS_RATIO = 1.6, 4.2, 1.95, 1.1, 1.9, 0.2

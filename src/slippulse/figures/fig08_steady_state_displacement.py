@@ -8,9 +8,15 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .fig03_steady_state import displacement_handles
-from .shared.pulses import FIELDS, draw_displacement, pulse_rows
+from .shared.pulses import FIELDS, displacement_handles, draw_displacement, pulse_rows
 from .style import PAGE, new_figure, panel_letter
+
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {
+    "data": ["steady_displacement"],
+    "measured": ["steady_displacement"],
+    "settings": ["measure.front_window"],
+}
 
 
 def table(

@@ -8,9 +8,19 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .fig03_steady_state import stress_handles
-from .shared.pulses import COLOURS, FIELDS, draw_prestress, draw_stress, prestress_rows, pulse_rows
+from .shared.pulses import (
+    COLOURS,
+    FIELDS,
+    draw_prestress,
+    draw_stress,
+    prestress_rows,
+    pulse_rows,
+    stress_handles,
+)
 from .style import PAGE, new_figure, panel_letter
+
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"data": ["steady_stress"], "measured": ["steady_stress"], "settings": ["measure.front_window"]}
 
 
 def table(

@@ -10,9 +10,11 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..theory.front_law import front_speed
-from .fig05_scaling import PREDICTIONS
-from .shared.scaling import damping_rows, draw_damping
+from .shared.scaling import PREDICTIONS, damping_rows, draw_damping
 from .style import ORANGE, PAGE, new_figure
+
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"measured": ["damping_displacement"]}
 
 
 def table(

@@ -8,9 +8,11 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .fig05_scaling import PREDICTIONS
-from .shared.scaling import damping_rows, draw_damping
+from .shared.scaling import PREDICTIONS, damping_rows, draw_damping
 from .style import PAGE, new_figure
+
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"measured": ["damping_stress"]}
 
 
 def table(

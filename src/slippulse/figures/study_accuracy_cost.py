@@ -12,6 +12,9 @@ from matplotlib.lines import Line2D
 
 from .style import BLACK, BLUE, CYCLE, GREY, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"studies": ["accuracy_cost"]}
+
 PANELS = {
     "front_speed": "front speed",
     "peak_velocity": "peak velocity",

@@ -16,6 +16,9 @@ from ..model.scene import prestress_from
 from ..theory.rupture import ArrestingCrack
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"data": ["arrest"], "measured": ["arrest"]}
+
 SHARES = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99)
 # The share whose convergence is drawn for every damping ratio.
 DRAWN_SHARE = 0.9

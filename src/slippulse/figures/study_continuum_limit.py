@@ -15,6 +15,9 @@ from ..theory.pulse import steady_pulse
 from ..theory.rupture import exact_transition_displacement
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"measured": ["continuum_fixed_ratio", "continuum_fixed_beta"]}
+
 SERIES = {
     "fixed ratio, total": (BLUE, "o", r"fixed $\bar\beta/\mathrm{d}\bar x = %g$, %s"),
     "fixed beta, total": (ORANGE, "s", r"fixed $\bar\beta = %g$, %s"),

@@ -13,6 +13,12 @@ from ..comparison.exact_transition import exact_transition
 from .shared.scaling import SYMBOLS
 from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {
+    "measured": ["scaling_displacement", "scaling_stress", "transition_convergence"],
+    "settings": ["measure.share"],
+}
+
 MARKERS = {"displacement": ("o", BLUE, r"$\Gamma = 1$"), "stress": ("s", ORANGE, r"$\Gamma = 0$")}
 COLUMNS = {"time": "transition_time", "length": "transition_length"}
 

@@ -12,6 +12,9 @@ from matplotlib.figure import Figure
 from ..studies.outcomes import FLAGGED, NO_NUMBER, NOT_OFFERED, REFUSED, RIGHT, STOPPED, WRONG
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, PURPLE, new_figure
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"studies": ["extremes"]}
+
 COLOURS = {
     RIGHT: BLUE,
     FLAGGED: ORANGE,

@@ -13,6 +13,9 @@ from matplotlib.figure import Figure
 from ..theory.front_law import front_speed, front_speed_undamped, prestress_for_speed
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"measured": ["front_speed", "front_speed_slow"], "settings": ["model.damping_ratio"]}
+
 RULES = ("total", "elastic")
 SWEEPS = ("front_speed", "front_speed_slow")
 # Pre-stress levels drawn against the damping ratio.
@@ -32,7 +35,7 @@ def table(
     ----------
     data : not used
     measured : the simulations in SWEEPS, both release rules
-    settings : paper_damping_ratio
+    settings : model (damping_ratio)
 
     Returns
     -------
@@ -70,7 +73,7 @@ def table(
         # Reached at beta/dx -> infinity (elastic) or at beta/dx = 1 (total).
         parts.append(_line("limit", rule, tau0, np.nan if rule == "elastic" else 1.0, limit))
         parts.append(_line("undamped", rule, tau0, 0.0, front_speed_undamped(tau0)))
-    ratio = settings["paper_damping_ratio"]
+    ratio = settings["model"]["damping_ratio"]
     parts.append(pd.DataFrame([{"role": "paper", "damping_ratio": ratio}]))
     return pd.concat(parts, ignore_index=True)
 

@@ -14,6 +14,9 @@ from ..theory.pulse import paper_pulse, steady_pulse
 from .shared.pulses import COLOURS
 from .style import GREY, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"measured": ["pulse_damping"]}
+
 QUANTITIES = {
     "peak_velocity": r"largest slip velocity",
     "width": r"width",

@@ -11,6 +11,9 @@ from matplotlib.figure import Figure
 from ..model.stability import MARGIN
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"studies": ["stability"]}
+
 # Below this the damping axis is linear, so that 0 has a place.
 LINEAR = 0.01
 

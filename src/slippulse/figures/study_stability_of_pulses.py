@@ -17,6 +17,9 @@ from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse
 from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
 
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "settings": ["measure.front_window"]}
+
 POINTS = 400
 
 

@@ -19,6 +19,9 @@ from ..theory.front_law import front_speed_undamped
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import ArrestingCrack, exact_transition_displacement
 
+# Keys of the configuration that it reads besides studies.accuracy_cost.
+SETTINGS = ("measure.front_window", "presets")
+
 # Errors of the scenes, relative to exact theory, the largest over the damping ratios.
 QUANTITIES = (
     "front_speed", "peak_velocity", "width", "final_slip", "transition_time", "share_time", "arrest_position", "energy",
@@ -46,7 +49,7 @@ def table(settings: Mapping) -> pd.DataFrame:
 
     Source: exact speed, pulse and transitions of `slippulse.theory`, all in the continuum limit at fixed beta/dx.
     """
-    window = settings["front_window"]
+    window = settings["measure"]["front_window"]
     theory = exact(settings)
     rows = []
     for scheme, order, step, dx in ladder(settings):

@@ -23,6 +23,9 @@ from .edges import Edge, Measured, flags_of, scene, speed
 from .outcomes import NOT_OFFERED
 from .single_precision import crack_velocity
 
+# Keys of the configuration that it reads besides studies.extremes.
+SETTINGS = ("measure.front_window",)
+
 GAMMA, LEVEL, RATIO = 0.65, 0.5, 0.1
 
 
@@ -42,7 +45,7 @@ def table(settings: Mapping) -> pd.DataFrame:
         near_one, near_zero, elasticity, damping, spacing, nucleation_width, negative_level, long_run, precision,
         peak, two_nucleations, barrier, printed_sign, beyond_the_bound,
     )  # fmt: skip
-    window, tolerances = settings["front_window"], settings["tolerances"]
+    window, tolerances = settings["measure"]["front_window"], settings["tolerances"]
     edges = [edge for family in families for edge in family(settings, window, tolerances)]
     return pd.DataFrame([edge.row() for edge in edges])
 

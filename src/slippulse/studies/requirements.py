@@ -11,6 +11,9 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.lattice import Lattice, run_scene
 
+# Keys of the configuration that it reads besides studies.requirements.
+SETTINGS = ()
+
 
 def table(settings: Mapping) -> pd.DataFrame:
     """Count work and memory, and fit how the work grows.

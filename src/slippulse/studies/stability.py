@@ -13,6 +13,9 @@ from ..simulation.simulate import UnstableRun
 from ..solver.lattice import Lattice
 from ..solver.taylor import STICKS
 
+# Keys of the configuration that it reads besides studies.stability.
+SETTINGS = ("presets",)
+
 # Far below any stress: blocks there never slide.
 HELD = -1.0e9
 # Steps between two looks at whether anything has stuck: a run that blows up sticks and is released over and over.

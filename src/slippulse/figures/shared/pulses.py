@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.lines import Line2D
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
@@ -186,3 +187,45 @@ def draw_prestress(inset, rows: pd.DataFrame, by: str) -> None:
     inset.set_xlabel(r"$\bar x$", fontsize=6.5, labelpad=0)
     inset.set_ylabel(r"$\bar\tau$", fontsize=6.5, labelpad=0)
     inset.tick_params(labelsize=5.5, length=2)
+
+
+def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:
+    """Legend: colours are tau_0, line styles the damping of the theory, pale lines the simulation."""
+    levels = np.sort(rows.loc[rows["role"] == "theory", "left"].unique())
+    ratios = np.sort(rows.loc[rows["role"] == "theory", "damping_ratio"].unique())
+    handles = [
+        Line2D([], [], color=colour, label=rf"$\bar\tau_0 = {level:g}$")
+        for colour, level in zip(COLOURS, levels, strict=False)
+    ]
+    handles += [
+        Line2D(
+            [],
+            [],
+            color="black",
+            linewidth=0.9,
+            linestyle=style,
+            label=rf"theory, $\bar\beta/\mathrm{{d}}\bar x = {ratio:g}$",
+        )
+        for style, ratio in zip(("-", "--", ":", "-."), ratios, strict=False)
+    ]
+    return [*handles, Line2D([], [], color="black", linewidth=3.0, alpha=0.35, label="simulation")]
+
+
+def stress_handles(rows: pd.DataFrame) -> list[Line2D]:
+    """Legend: one colour a profile, dashes the exact peak."""
+    runs = rows[rows["role"] == "simulation"].groupby("run").first()
+    handles = [
+        Line2D(
+            [],
+            [],
+            color=colour,
+            label=rf"$\bar\tau_{{0,l}} = {run.left:g}$, $\bar W_{{\bar\tau}} = {run.width:g}$",
+        )
+        for colour, run in zip(COLOURS, runs.itertuples(), strict=False)
+    ]
+    return [
+        *handles,
+        Line2D([], [], color="black", linewidth=0.9, label="exact far-field pulse"),
+        Line2D([], [], color="black", linewidth=0.8, linestyle=(0, (2, 1)), label="its largest velocity"),
+        Line2D([], [], color="black", linewidth=3.0, alpha=0.35, label="simulation"),
+    ]

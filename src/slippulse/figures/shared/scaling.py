@@ -23,6 +23,13 @@ PAPER_DEFINITION = {
     ("stress", "time"): "last_release_time",
 }
 SYMBOLS = {"length": r"\bar L_\mathrm{trans}", "time": r"\bar T_\mathrm{trans}"}
+# What the paper predicts, per panel.
+PREDICTIONS = {
+    "displacement_length": r"$2\pi/\sqrt{\bar\gamma(1-\bar\tau_0^2)}$",
+    "displacement_time": r"$\pi/\sqrt{\bar\gamma}$",
+    "stress_length": r"$2|\bar x_-|$",
+    "stress_time": r"$|\bar x_-|$",
+}
 # Face and rim of a marker: column, label, whether the scale is logarithmic.
 COLOURS = {
     "displacement": (("left", r"$\bar\tau_0$", False), ("gamma", r"$\bar\gamma$", True)),

@@ -1,0 +1,139 @@
+"""What each job made from what: digests of its files and of its part of the configuration, one record a job.
+
+Records tell which results were changed by hand, are missing, or are older than what they were made from.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from .store import write_whole
+
+FOLDER = "records"
+
+
+def digest_of(value: object) -> str:
+    """Short digest of builtins, whatever the order of their keys."""
+    text = json.dumps(value, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def file_digest(path: str | Path) -> str:
+    """SHA-256 of a file."""
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _paths(files: Mapping) -> list[str]:
+    return [str(path) for value in files.values() for path in ([value] if isinstance(value, str) else value)]
+
+
+def results_of(path: str | Path) -> Path:
+    """The folder ``results`` that a file is in."""
+    return next(parent for parent in Path(path).parents if parent.name == "results")
+
+
+def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Note what a job has made.
+
+    Parameters
+    ----------
+    step : its module
+    files, outputs : paths, or lists of paths, by name
+    settings : with ``configuration``, the digest of the configuration behind the outputs
+    """
+    made = _paths(outputs)
+    base = results_of(made[0])
+
+    def digests(paths: list[str]) -> dict[str, str]:
+        inside = [Path(path) for path in paths if "results" in Path(path).parts]
+        return {str(path.relative_to(base)): file_digest(path) for path in sorted(inside)}
+
+    record = {
+        "step": step,
+        "configuration": settings.get("configuration", ""),
+        "outputs": digests(made),
+        "inputs": digests(_paths(files)),
+    }
+    name = Path(made[0]).relative_to(base)
+    text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
+    write_whole(
+        base / FOLDER / name.with_name(name.name + ".json"),
+        lambda part: part.write_text(text, encoding="utf-8"),
+    )
+
+
+@dataclass(frozen=True)
+class Record:
+    """One job: where its record is, and what it made from what (paths below results/, digests)."""
+
+    path: Path
+    step: str
+    configuration: str
+    outputs: Mapping[str, str]
+    inputs: Mapping[str, str]
+
+
+def read_records(results: str | Path) -> list[Record]:
+    """Every record of a tree of results, without those whose outputs are all gone."""
+    results = Path(results)
+    found = []
+    for path in sorted((results / FOLDER).rglob("*.json")):
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            record = Record(
+                path, **{key: content[key] for key in ("step", "configuration", "outputs", "inputs")}
+            )
+        except (OSError, ValueError, KeyError, TypeError):
+            path.unlink(missing_ok=True)
+            continue
+        if any((results / name).exists() for name in record.outputs):
+            found.append(record)
+    return found
+
+
+def changed_since_made(results: str | Path, quick: bool = True) -> list[str]:
+    """Outputs, below results/, that are no longer what their job wrote.
+
+    Parameters
+    ----------
+    results : folder
+    quick : trust a file that is not newer than its record
+    """
+    results = Path(results)
+    changed = []
+    for record in read_records(results):
+        written = record.path.stat().st_mtime_ns
+        for name, digest in record.outputs.items():
+            path = results / name
+            if not path.exists() or (quick and path.stat().st_mtime_ns <= written):
+                continue
+            if file_digest(path) != digest:
+                changed.append(name)
+    return changed
+
+
+def outdated(results: str | Path) -> dict[str, str]:
+    """Outputs that were made from something else than what is there now, each with the first such input.
+
+    What is made from an outdated file is outdated too.
+    """
+    records = read_records(results)
+    now = {name: digest for record in records for name, digest in record.outputs.items()}
+    stale: dict[str, str] = {}
+    pending = True
+    while pending:
+        pending = False
+        for record in records:
+            if all(name in stale for name in record.outputs):
+                continue
+            for name, digest in record.inputs.items():
+                if name in stale or (name in now and now[name] != digest):
+                    stale |= dict.fromkeys(record.outputs, name)
+                    pending = True
+                    break
+    return stale

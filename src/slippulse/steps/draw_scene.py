@@ -1,0 +1,23 @@
+"""Write the numbers, the table, the figure and the page of one scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..comparison.scene_numbers import scene_numbers
+from ..data.points import point
+from ..data.store import load_dataset, load_table, save_table, write_text
+from ..figures import scene
+from ..figures.style import save_figure
+from ..pages.scene import scene_page
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Files: data, uncertainties. Outputs: numbers, csv, png, pdf, html. Settings: scene, title, share."""
+    name, title = settings["scene"], settings["title"]
+    found = point(load_dataset(files["data"]), 0)
+    numbers = scene_numbers(found.attrs, load_table(files["uncertainties"]), settings["share"])
+    save_table(numbers, outputs["numbers"])
+    save_table(scene.table(found, numbers, {"title": title}), outputs["csv"])
+    save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
+    write_text(scene_page(name, title, outputs["png"], numbers, found.attrs), outputs["html"])

@@ -1,0 +1,89 @@
+"""Which source files a step depends on, from its imports; and what a module declares, without loading it."""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parents[1]
+
+
+def declared(module: str, name: str, default=None):
+    """The value of a constant of a module of the package, which must be written out there.
+
+    Parameters
+    ----------
+    module : dotted, below slippulse
+    name : of the constant
+    default : where the module has none
+    """
+    for node in _tree(_file(module)).body:
+        if isinstance(node, ast.Assign) and any(getattr(target, "id", "") == name for target in node.targets):
+            return ast.literal_eval(node.value)
+    return default
+
+
+def sources(*modules: str) -> list[str]:
+    """Files that any of some modules reaches by its imports, at its top or inside, and the data files they name.
+
+    Parameters
+    ----------
+    modules : dotted, below slippulse
+
+    Returns
+    -------
+    paths relative to the project, sorted
+    """
+    reached: set[Path] = set()
+    pending = [_file(module) for module in modules]
+    while pending:
+        path = pending.pop()
+        if path not in reached:
+            reached.add(path)
+            pending += _imported(path)
+    for path in [*reached]:
+        module = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
+        for pattern in declared(module, "FILES", ()):
+            reached.update(PACKAGE.glob(pattern))
+    root = PACKAGE.parents[1]
+    return sorted(path.relative_to(root).as_posix() for path in reached)
+
+
+def _file(module: str) -> Path:
+    """The file of a module or package below slippulse; empty for slippulse itself."""
+    path = PACKAGE.joinpath(*module.split(".")) if module else PACKAGE
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+@cache
+def _tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_bytes())
+
+
+@cache
+def _imported(path: Path) -> tuple[Path, ...]:
+    """Files of the package that a file imports, with the packages that they are in."""
+    inside = path.relative_to(PACKAGE).parent.parts
+    found = []
+    for node in ast.walk(_tree(path)):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = [*inside[: len(inside) - node.level + 1], *(node.module.split(".") if node.module else [])]
+            found += _targets(base, [alias.name for alias in node.names])
+    packages = [_file(".".join(inside[:depth])) for depth in range(len(inside) + 1)]
+    return (*packages, *found)
+
+
+def _targets(base: list[str], names: list[str]) -> list[Path]:
+    """Files behind ``from base import names``."""
+    home = PACKAGE.joinpath(*base)
+    if not home.is_dir():
+        return [home.with_suffix(".py")]
+    found = [home / "__init__.py"]
+    for name in names:
+        if (home / name).is_dir():
+            # Which of its names are used cannot be seen from here.
+            found += (home / name).rglob("*.py")
+        elif (home / f"{name}.py").exists():
+            found.append(home / f"{name}.py")
+    return found

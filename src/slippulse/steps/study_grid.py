@@ -1,0 +1,42 @@
+"""Run and measure one simulation on coarser lattices, and write the numerical uncertainty of every number.
+
+The coarser data are not kept; their measured tables are, one below the other with their factor. The study of a chunk
+has every number that the whole simulation's may have.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+
+import pandas as pd
+
+from ..comparison.table import measured_table
+from ..configuration.expand import expand, promise_of
+from ..data.store import load_table, save_table
+from ..measure.promise import judged, summary
+from ..measure.table import PARAMETERS
+from ..measure.uncertainty import grid_tables
+from ..simulation.sweep import run_sweep
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Files: finest. Outputs: uncertainties, coarser. Settings: simulation, sweeps (by factor), measure, threads."""
+    name, sweeps, measure = settings["simulation"], settings["sweeps"], settings["measure"]
+    tables = {}
+    for factor in sorted(sweeps):
+        sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
+        scenes, samples = expand(sweeps[factor])
+        data = run_sweep(scenes, samples, sweeps[factor]["record"], settings["threads"])
+        tables[factor] = measured_table(data, measure)
+    # A column of fractions may happen to have none in a chunk.
+    part = any("chunk" in sweep for sweep in sweeps.values())
+    measured = load_table(files["finest"], whole=PARAMETERS if part else None)
+    study = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
+    promise = promise_of(next(iter(sweeps.values())))
+    if promise is not None:
+        study = judged(study, measured, promise, measure["share"])
+        sys.stderr.write(f"  {name}: {summary(study, promise)}\n")
+    save_table(study, outputs["uncertainties"])
+    coarser = [table.assign(factor=factor) for factor, table in tables.items()]
+    save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])

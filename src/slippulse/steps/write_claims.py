@@ -1,0 +1,42 @@
+"""Compute every claim's verdict and write the ledger, as JSON and as a page to read."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import pandas as pd
+
+from ..claims.all_claims import all_claims
+from ..claims.evidence import Evidence
+from ..data.store import load_table, write_text
+from ..pages.index import claims_page
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Files: measured, coarser, uncertainties. Outputs: json, html. Settings: claims, share, published."""
+    coarser = {name: _by_factor(table) for name, table in _tables(files["coarser"]).items()}
+    evidence = Evidence(
+        _tables(files["measured"]), coarser, _tables(files["uncertainties"]), settings["claims"]
+    )
+    found = all_claims(evidence, settings["share"], settings["published"])
+    claims = [_finite(claim.as_dict()) for claim in found]
+    write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
+    write_text(claims_page(claims), outputs["html"])
+
+
+def _tables(paths: list[str]) -> dict[str, pd.DataFrame]:
+    return {Path(path).stem: load_table(path) for path in paths}
+
+
+def _by_factor(table: pd.DataFrame) -> list[pd.DataFrame]:
+    return [part.reset_index(drop=True) for _, part in table.groupby("factor")]
+
+
+def _finite(entry: dict) -> dict:
+    """JSON has no NaN: what was not measured is null."""
+    return {
+        key: None if isinstance(value, float) and math.isnan(value) else value for key, value in entry.items()
+    }

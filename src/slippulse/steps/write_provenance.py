@@ -1,0 +1,23 @@
+"""Write what the results were made from, their checksums and their manifest."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+from ..data.provenance import checksums, manifest, provenance
+from ..data.store import write_text
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Files: results, captions. Outputs: provenance, checksums, manifest. Settings: config, shipped."""
+    base = Path(outputs["provenance"]).parent
+    facts = provenance(".", settings["config"], settings["shipped"], base / "benchmarks")
+    comments = {
+        Path(path).stem: " ".join(Path(path).read_text(encoding="utf-8").split(". ")[0].split())
+        for path in files["captions"]
+    }
+    write_text(checksums(files["results"], base), outputs["checksums"])
+    write_text(manifest(files["results"], base, comments), outputs["manifest"])
+    write_text(json.dumps(facts, indent=1, ensure_ascii=False) + "\n", outputs["provenance"])

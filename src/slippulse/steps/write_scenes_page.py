@@ -1,0 +1,13 @@
+"""Write the list of scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..data.store import write_text
+from ..pages.index import scenes_page
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Outputs: html. Settings: scenes (titles by name)."""
+    write_text(scenes_page(settings["scenes"]), outputs["html"])

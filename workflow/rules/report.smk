@@ -1,0 +1,43 @@
+# The replication report: text with expressions, executed over the ledger and rendered as one HTML file and a PDF.
+
+
+rule write_report:
+    input:
+        sources("steps.write_report"),
+        [
+            f"manuscript/{name}"
+            for name in (
+                "captions.yaml",
+                "errata.yaml",
+                "metadata.yaml",
+                "references.bib",
+                "shipped_verdicts.yaml",
+                "style.css",
+                "template.typ",
+            )
+        ],
+        LOCK,
+        source="manuscript/replication.md",
+        claims="results/claims.json",
+        measured=tables("measurements", REPORT_SIMULATIONS),
+        uncertainties=tables("uncertainties", REPORT_SIMULATIONS),
+        figures=[f"results/figures/{name}.pdf" for name in NEEDS],
+        pictures=[f"results/figures/{name}.png" for name in NEEDS],
+        shipped="config/config.yaml",
+    output:
+        html="results/manuscript/replication.html",
+        pdf="results/manuscript/replication.pdf",
+        verdicts="results/manuscript/verdicts.yaml",
+    log:
+        "results/logs/write_report.log",
+    benchmark:
+        "results/benchmarks/write_report.tsv"
+    params:
+        step="write_report",
+        figures=list(NEEDS),
+        config=plain(config),
+        configuration=digest_of(config),
+    message:
+        "Writing the replication report"
+    script:
+        "../scripts/step.py"
