@@ -7,7 +7,10 @@ _HOMES = {
     "ExactTransition": "rupture",
     "Fronts": "rupture",
     "Layer": "dimensional",
+    "SteadyFront": "front_motion",
     "SteadyPulse": "pulse",
+    "admissibility_table": "front_motion",
+    "continuum_front_speed": "front_law",
     "damage_zone_stress_drop": "dimensional",
     "exact_transition_displacement": "rupture",
     "front_speed": "front_law",
@@ -19,6 +22,7 @@ _HOMES = {
     "prestress_balance_position": "transition",
     "prestress_for_speed": "front_law",
     "slip_velocity": "rupture",
+    "steady_front": "front_motion",
     "steady_pulse": "pulse",
 }
 __all__ = list(_HOMES)

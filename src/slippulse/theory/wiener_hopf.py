@@ -1,0 +1,168 @@
+"""The Wiener-Hopf factor of a front on the lattice, leaf springs and damping included.
+
+In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2) the front has the symbol
+
+    M(k) = 1 - [S(k) (1 + i b w) + g] / w^2 = M_+(k) M_-(k),   M_+ analytic and free of zeros for Im k > 0.
+
+The symbol is an exact product of an algebraic function and two factors that decay on opposite sides of the axis,
+
+    M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),
+    r = sqrt(1 + i b w - (w^2 - g)/4),  q = (i/2) sqrt(w^2 - g),  rho = (r - q)/(r + q),
+
+with the branch points of r and q above the contour: those of q, w = +-sqrt(g), and the radiated waves behind the front
+lie there by causality, since damping moves them up. Then every factor but 1 - rho e^{ik} is analytic and free of zeros
+below the contour C, which passes below all of them, and closing C downwards leaves
+
+    ln M_+(k) = 1/(2 pi i) Int_C ln(1 - rho(z) e^{iz}) dz/(z - k).
+
+C is bent upwards at its ends, where e^{iz} decays and nothing oscillates: no tail is left, whatever b is. At b = 1,
+g = 0 the root is 1 + i w/2 and M_+(k) = (1 + i v k - e^{ik})/(i v k) in closed form, hence M_+(0) = 1 - 1/v; for g = 0
+only the ratio to it is integrated.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+# Gauss-Legendre nodes on each panel.
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(14)
+# The contour leaves 0 at this angle below the real axis, which keeps away from branch points and waves above it, ...
+ANGLE = 0.5
+# ... as far as beyond the farthest of them, |k| <= pi, and short of the zeros of M below the axis, Re k > pi ...
+REACH = 3.5
+# ... and goes up at 60 degrees to where e^{-Im z} is 1e-14.
+LEG_EDGES = np.array([0.0, 1.2, 3.0, 7.0, 14.0, 24.0, 38.0])
+LEG_DIRECTION = np.exp(1j * np.pi / 3.0)
+# Panels along the ray, in ln |z|.
+PANEL = 0.9
+# Below these sizes differences of nearly equal numbers are taken from their series.
+SMALL = 0.5
+
+
+def log_prestress(
+    excess: np.ndarray, ratio: np.ndarray, springs: float = 0.0, release: str = "total"
+) -> np.ndarray:
+    """ln tau_0 of steady fronts at speeds v = 1 + excess.
+
+    Parameters
+    ----------
+    excess : 1-d array, v - 1 in wave speeds; > 0, or >= 0 with springs; v >= sqrt(4 + springs)/pi
+    ratio : array of the same size, b = beta/dx >= 0
+    springs : g = gamma dx^2, >= 0
+    release : "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0
+
+    Source: module docstring. Both conditions hold with springs as without: ahead of the front a block has not
+    slipped, so its leaf spring pulls at nothing.
+    """
+    column = excess[:, None]
+    z, weight, bent, curved = nodes(float(np.min(_scale(excess, ratio, springs))))
+    f, origin = log_factor(z, bent, curved, column, ratio[:, None], springs)
+    out = (0.5 - ANGLE / np.pi) * origin + (f @ (weight / z)).imag / np.pi
+    if springs == 0.0:
+        out += np.log(excess / (1.0 + excess))
+    if release == "elastic" and np.any(ratio > 0.0):
+        # With b = 0 both rules are one: M_+(i infinity) = 1.
+        y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
+        at_pole = np.sum(f * (weight / (z - 1j * y[:, None])), axis=1).imag / np.pi
+        if springs == 0.0:
+            at_pole += np.log((excess * y + _exp_beyond(-y).real) / ((1.0 + excess) * y))
+        out -= np.where(ratio > 0.0, at_pole, 0.0)
+    return out
+
+
+def log_factor(
+    z: np.ndarray, bent: np.ndarray, curved: np.ndarray, excess: np.ndarray, ratio: np.ndarray, springs: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1, and its value at z = 0.
+
+    Parameters
+    ----------
+    z, bent, curved : nodes, e^{iz} - 1 and e^{iz} - 1 - iz
+    excess, ratio : columns
+    springs : g >= 0
+    """
+    iw = 1j * z * (1.0 + excess)
+    q, r = roots(iw, ratio, springs)
+    both = r + q
+    rho = (1.0 + ratio * iw) / both**2
+    factor = 2.0 * q / both - rho * bent
+    # Near 0 both parts cancel as v -> 1: there it is -expm1(i z + ln rho), ln rho = -2 artanh(q/r).
+    slope = q / r
+    close = (np.abs(slope) < SMALL) & (np.abs(z) < SMALL) & (excess < 1.0)
+    if np.any(close):
+        last = int(np.flatnonzero(close.any(axis=0))[-1]) + 1
+        part = np.s_[:, :last]
+        h, size = slope[part], -2j * q[part]
+        h = np.where(close[part], h, 0.0)
+        square = h * h
+        beyond = np.where(np.abs(h) < 0.1, h * square * _ARTANH(square), np.arctanh(h) - h)  # artanh h - h
+        shift = (ratio * iw[part] - 0.25 * size**2) / (r[part] + 1.0)
+        lag = -excess * z[:last] + size * shift / r[part]
+        if springs > 0.0:
+            lag = lag + springs / (-1j * iw[part] + size)
+        exponent = np.where(close[part], 1j * lag - 2.0 * beyond, 0.0)
+        factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
+    if springs > 0.0:
+        edge = 0.5 * np.sqrt(springs)
+        return np.log(factor), np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge)) + 0.0 * excess[:, 0]
+    reference = (1j * excess * z - curved) / (1.0 + iw)
+    return np.log(factor) - np.log(reference), 0.0 * excess[:, 0]
+
+
+def roots(iw: np.ndarray, ratio: np.ndarray, springs: float) -> tuple[np.ndarray, np.ndarray]:
+    """q and r (module docstring) with cuts that run straight up from their branch points."""
+    four = 4.0 + springs
+    under = 4.0 * ratio**2 - four
+    strong = under >= 0.0
+    root = np.sqrt(np.abs(under))
+    large = 2.0 * ratio + np.where(strong, root, 1j * root)
+    small = np.where(strong, four / np.where(strong, large.real, 1.0), np.conj(large))
+    r = 0.5 * np.sqrt(large + iw) * np.sqrt(small + iw)
+    if springs == 0.0:
+        return 0.5 * iw, r
+    side = 1j * np.sqrt(springs)
+    return 0.5 * np.sqrt(iw - side) * np.sqrt(iw + side), r
+
+
+def nodes(scale: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The right half of the contour for integrands that are smooth below |z| = scale: z, weights dz, e^{iz} - 1 and
+    e^{iz} - 1 - iz."""
+    return _nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)))
+
+
+@lru_cache(maxsize=32)
+def _nodes(panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
+    ray, ray_weight = _panels(edges)
+    inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
+    leg, leg_weight = _panels(LEG_EDGES)
+    turn = np.exp(-1j * ANGLE)
+    size = np.exp(ray)
+    z = np.concatenate([inner * turn, size * turn, REACH * turn + leg * LEG_DIRECTION])
+    weight = np.concatenate([inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION])
+    return z, weight, np.expm1(1j * z), _exp_beyond(1j * z)
+
+
+def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    half = 0.5 * np.diff(edges)[:, None]
+    return (edges[:-1, None] + half * (1.0 + NODES)).ravel(), (half * WEIGHTS).ravel()
+
+
+def _scale(excess, ratio, springs: float):
+    """A size below which no zero or branch point comes near 0, where the contour starts."""
+    nearest = np.sqrt(springs) if springs > 0.0 else np.minimum(excess, np.inf)
+    return np.minimum(nearest, 1.0) / ((1.0 + ratio) * (1.0 + excess))
+
+
+# artanh h - h = h^3 P(h^2) for |h| < 0.1, and e^x - 1 - x = x^2 P(x) for |x| < 0.5.
+_ARTANH = np.polynomial.Polynomial([1.0 / (2 * n + 3) for n in range(8)])
+_EXP = np.polynomial.Polynomial(1.0 / np.cumprod(np.arange(1.0, 17.0))[1:])
+
+
+def _exp_beyond(x: np.ndarray) -> np.ndarray:
+    """e^x - 1 - x without cancellation."""
+    x = np.asarray(x, dtype=complex)
+    series = np.where(np.abs(x) < SMALL, x, 0.0)
+    return np.where(np.abs(x) < SMALL, series**2 * _EXP(series), np.expm1(x) - x)
