@@ -48,3 +48,11 @@ rule everything:
 
 
 include: "workflow/rules/targets.smk"
+
+
+onsuccess:
+    report_outdated()
+
+
+onerror:
+    report_outdated()

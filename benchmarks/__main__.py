@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from slippulse.data.store import write_whole
+from slippulse.data.files import write_whole
 from slippulse.studies import requirements
 
 from . import measure

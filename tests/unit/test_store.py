@@ -10,7 +10,8 @@ import pytest
 import xarray as xr
 
 import slippulse as sp
-from slippulse.data.store import load_dataset, load_table, save_dataset, save_table, write_whole
+from slippulse.data.files import write_whole
+from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
 from slippulse.simulation.simulate import VARIABLES
 
 SCENES = [

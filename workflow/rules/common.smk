@@ -128,7 +128,9 @@ def scene_files(names):
 
 def simulations_of(names):
     """Simulations that figures are drawn from."""
-    return sorted({name for figure in names for kind in ("data", "measured") for name in NEEDS[figure].get(kind, [])})
+    return sorted(
+        {name for figure in names for kind in ("data", "measured") for name in NEEDS[figure].get(kind, [])}
+    )
 
 
 def tables(kind, names):

@@ -4,6 +4,7 @@ import sys
 
 from slippulse.configuration.expand import expand as expand_sweep
 from slippulse.configuration.refusals import check_affordable, check_folder, check_targets
+from slippulse.data.records import changed_since_made, mark_outdated, remove_changed
 
 
 def refuse_unknown_targets():
@@ -40,8 +41,29 @@ def refuse_dear_targets():
     check_affordable({f"simulations.{name}": expand_sweep(sweep_of(name)) for name in sorted(names)})
 
 
+def refuse_changed_files():
+    """Nothing is built on a file that was changed since its job wrote it: it is made anew, with a word."""
+    if not workflow.is_main_process or not Path("results").is_dir():
+        return
+    dry = any(argument in ("-n", "--dry-run", "--dryrun") for argument in sys.argv)
+    for name in changed_since_made("results") if dry else remove_changed("results"):
+        print(f"results/{name} was changed since it was made: it is made anew", file=sys.stderr)
+
+
+def report_outdated():
+    """Mark the pages that this run has left behind, and say which results are older than what they are made from."""
+    stale = mark_outdated("results") if Path("results").is_dir() else {}
+    if stale:
+        print(
+            f"{len(stale)} results are older than what they are made from, as {next(iter(stale))};"
+            " pages among them are marked. Renew all: make replicate TARGET=everything",
+            file=sys.stderr,
+        )
+
+
 try:
     refuse_unknown_targets()
     refuse_dear_targets()
+    refuse_changed_files()
 except ConfigError as error:
     raise WorkflowError(f"Refused:\n{error}") from None

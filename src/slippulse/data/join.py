@@ -113,7 +113,7 @@ def count_rows(paths: Sequence[str | Path]) -> int:
 
 def save_rows(rows: Iterable[Sequence[str]], path: str | Path) -> None:
     """Write rows of text as CSV, as `save_table` does, one after the other."""
-    from .store import write_whole
+    from .files import write_whole
 
     def write(part: Path) -> None:
         with open(part, "w", encoding="utf-8", newline="") as file:

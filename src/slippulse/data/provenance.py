@@ -13,6 +13,7 @@ from pathlib import Path
 
 import yaml
 
+from .alterations import changes
 from .records import file_digest
 from .versions import PACKAGES
 
@@ -36,28 +37,6 @@ def source_files(root: str | Path) -> list[Path]:
             if path.is_file() and "__pycache__" not in path.parts
         ]
     return found
-
-
-def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """What an overlay changed: one entry a value, with the shipped one beside it.
-
-    Parameters
-    ----------
-    shipped, config : the configuration without and with overlays
-    key : where in the configuration both stand
-
-    Returns
-    -------
-    list of dicts with key, shipped, here; None where one side has nothing
-    """
-    if isinstance(shipped, Mapping) and isinstance(config, Mapping):
-        names = [*shipped, *(name for name in config if name not in shipped)]
-        return [
-            change
-            for name in names
-            for change in changes(shipped.get(name), config.get(name), f"{key}.{name}".lstrip("."))
-        ]
-    return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
 
 
 def git_state(root: str | Path) -> dict | None:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .store import write_whole
+from .files import write_whole
 
 FOLDER = "records"
 
@@ -137,3 +139,54 @@ def outdated(results: str | Path) -> dict[str, str]:
                     pending = True
                     break
     return stale
+
+
+def remove_changed(results: str | Path) -> list[str]:
+    """Remove outputs that are no longer what their job wrote, so that they are made anew; returns their names."""
+    changed = changed_since_made(results)
+    for name in changed:
+        (Path(results) / name).unlink()
+    return changed
+
+
+# What an outdated page says at its top.
+NOTE = (
+    '<p role="alert" style="background:#ffd54f;color:#000;padding:.75rem;margin:0">Out of date: parts of these results'
+    " were made anew since this page was written. <code>make replicate TARGET=everything</code> renews it.</p>"
+)
+
+
+def mark_outdated(results: str | Path) -> dict[str, str]:
+    """Mark pages that are older than what they were made from, and remove documents that cannot be marked.
+
+    Returns
+    -------
+    outdated outputs, each with the first input that is newer (`outdated`)
+    """
+    results = Path(results)
+    stale = outdated(results)
+    for record in read_records(results):
+        for name in record.outputs:
+            path = results / name
+            if name not in stale or not path.exists():
+                continue
+            if path.suffix == ".html":
+                _mark(path, record)
+            elif path.parent.name == "manuscript" and path.suffix == ".pdf":
+                path.unlink()
+    return stale
+
+
+def _mark(page: Path, record: Record) -> None:
+    text = page.read_text(encoding="utf-8")
+    if NOTE in text:
+        return
+    # It stays older than its inputs, so that it is renewed when it is asked for.
+    times = page.stat()
+    marked = re.sub(r"(<body[^>]*>)", lambda match: match[1] + NOTE, text, count=1)
+    write_whole(page, lambda part: part.write_text(marked, encoding="utf-8"))
+    os.utime(page, ns=(times.st_atime_ns, times.st_mtime_ns))
+    content = json.loads(record.path.read_text(encoding="utf-8"))
+    content["outputs"][str(page.relative_to(results_of(page)))] = file_digest(page)
+    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+    write_whole(record.path, lambda part: part.write_text(text, encoding="utf-8"))

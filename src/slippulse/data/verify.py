@@ -1,7 +1,7 @@
 """Whether results are what they were, and whether two trees of results agree within their uncertainties.
 
-python -m slippulse.verify results                         against results/checksums.txt
-python -m slippulse.verify results --against other/results
+python -m slippulse.data.verify results                         against what its jobs noted
+python -m slippulse.data.verify results --against other/results
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .records import file_digest
+from .alterations import changes
+from .records import changed_since_made, file_digest, outdated
+from .store import load_table
 
 # What makes a run the same run in another tree, whatever its lattice.
 SAME = ("boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release")
@@ -26,8 +28,8 @@ DIGITS = 1e-8
 SHOWN = 10
 
 
-def changed_files(results: str | Path) -> list[str]:
-    """One line for each file that is missing or no longer what checksums.txt says.
+def problems_of(results: str | Path) -> list[str]:
+    """One line for each file that is missing, changed, or older than what it was made from.
 
     Raises
     ------
@@ -35,6 +37,19 @@ def changed_files(results: str | Path) -> list[str]:
         Without a readable checksums.txt.
     """
     results = Path(results)
+    problems = [*_unlike_checksums(results)]
+    listed = {line.split(": ")[0] for line in problems}
+    for name in changed_since_made(results, quick=False):
+        if str(results / name) not in listed:
+            problems.append(f"{results / name}: not what its job wrote")
+    problems += [
+        f"{results / name}: older than {cause}, which it is made from"
+        for name, cause in outdated(results).items()
+    ]
+    return problems
+
+
+def _unlike_checksums(results: Path) -> list[str]:
     listing = results / "checksums.txt"
     try:
         lines = listing.read_text(encoding="utf-8").splitlines()
@@ -52,7 +67,7 @@ def changed_files(results: str | Path) -> list[str]:
                 problems.append(f"{results / match[2]}: not what it was")
         except OSError as error:
             problems.append(f"{results / match[2]}: {error.strerror}")
-    return problems
+    return problems if lines else [f"{listing}: 0 files"]
 
 
 @dataclass(frozen=True)
@@ -61,11 +76,11 @@ class Comparison:
 
     Attributes
     ----------
-    compared, agree : how many numbers both have, and how many differ by no more than both uncertainties together
+    compared, agree : how many measured numbers both have, and how many differ by no more than both uncertainties
     unknown : how many differ, and have no uncertainty on either side
     apart : one line for each number that differs by more
     verdicts : one line for each claim with another verdict
-    only : simulations that one of them lacks, or has with other runs
+    other : what is not comparable: other configurations, other runs, tables in one tree only, outdated files
     """
 
     compared: int
@@ -73,39 +88,44 @@ class Comparison:
     unknown: int
     apart: tuple[str, ...]
     verdicts: tuple[str, ...]
-    only: tuple[str, ...]
+    other: tuple[str, ...]
 
 
 def compare(here: str | Path, there: str | Path) -> Comparison:
-    """Compare the measured numbers and verdicts of two trees.
+    """Compare the measured tables, the configurations and the verdicts of two trees.
 
     Raises
     ------
     ValueError
-        If one has no uncertainties to compare by.
+        If one has no measured tables.
     """
-    here, there = Path(here), Path(there)
-    names = {}
-    for tree in (here, there):
-        names[tree] = {path.name for path in (tree / "uncertainties").glob("*.csv")}
-        if not names[tree]:
-            raise ValueError(f"{tree}/uncertainties: no tables; allowed: a finished tree of results")
+    trees = [Path(here), Path(there)]
+    names = []
+    for tree in trees:
+        names.append({path.name for path in (tree / "measurements").glob("*.csv")})
+        if not names[-1]:
+            raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
+    other = [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])] + _configurations(*trees)
+    for tree in trees:
+        other += [f"{tree / name}: older than {cause}" for name, cause in outdated(tree).items()]
     compared = agree = unknown = 0
-    apart, only = [], [f"{name}: in one tree only" for name in sorted(names[here] ^ names[there])]
-    for name in sorted(names[here] & names[there]):
-        one, two = (pd.read_csv(tree / "uncertainties" / name) for tree in (here, there))
+    apart: list[str] = []
+    for name in sorted(names[0] & names[1]):
+        one, two = (_numbers(tree, name) for tree in trees)
         runs = [
             table.drop_duplicates("point")[["point", *SAME]].reset_index(drop=True) for table in (one, two)
         ]
         if not runs[0].equals(runs[1]):
-            only.append(f"{name}: other runs")
+            other.append(f"{name}: other runs")
             continue
-        both = one.merge(two, on=["point", "quantity"], suffixes=("", "_there"))
+        both = one.merge(
+            two[["point", "quantity", "value", "uncertainty"]],
+            on=["point", "quantity"],
+            suffixes=("", "_there"),
+        )
         both = both[np.isfinite(both["value"]) & np.isfinite(both["value_there"])]
-        difference = (both["value"] - both["value_there"]).abs()
         allowed = both["uncertainty"].fillna(0.0) + both["uncertainty_there"].fillna(0.0)
-        rounding = DIGITS * both["value"].abs()
-        within = difference <= allowed + rounding
+        within = (both["value"] - both["value_there"]).abs() <= allowed + DIGITS * both["value"].abs()
         uncertain = ~within & both["uncertainty"].isna() & both["uncertainty_there"].isna()
         compared, agree, unknown = (
             compared + len(both),
@@ -118,7 +138,38 @@ def compare(here: str | Path, there: str | Path) -> Comparison:
                 f"{name}: point {row['point']}, {row['quantity']}: {row['value']:.6g} against"
                 f" {row['value_there']:.6g}; allowed: a difference of {allowed.iloc[index]:.2g}"
             )
-    return Comparison(compared, agree, unknown, tuple(apart), tuple(_verdicts(here, there)), tuple(only))
+    return Comparison(compared, agree, unknown, tuple(apart), tuple(_verdicts(*trees)), tuple(other))
+
+
+def _numbers(tree: Path, name: str) -> pd.DataFrame:
+    """Every measured number of a table: point, what names the run, quantity, value, uncertainty (NaN: not known)."""
+    measured = load_table(tree / "measurements" / name)
+    measured = measured.assign(point=np.arange(len(measured)))
+    quantities = [column for column in measured if measured[column].dtype.kind == "f" and column not in SAME]
+    values = measured.melt(["point", *SAME], quantities, "quantity", "value")
+    try:
+        study = load_table(tree / "uncertainties" / name)[["point", "quantity", "value", "uncertainty"]]
+    except FileNotFoundError:
+        return values.assign(uncertainty=np.nan)
+    found = values.merge(study, on=["point", "quantity"], how="left", suffixes=("", "_studied"))
+    # A study of other values tells nothing of these.
+    stale = (found["value"] - found["value_studied"]).abs() > DIGITS * found["value"].abs()
+    return found.assign(uncertainty=found["uncertainty"].mask(stale)).drop(columns="value_studied")
+
+
+def _configurations(here: Path, there: Path) -> list[str]:
+    """Keys at which the configurations differ, but for the preset, whose lattices the uncertainties cover."""
+    found = []
+    for tree in (here, there):
+        path = tree / "provenance.json"
+        if not path.exists():
+            return [f"{path}: missing; configurations not compared"]
+        found.append(json.loads(path.read_text(encoding="utf-8"))["config"])
+    return [
+        f"configuration: {change['key']}: {change['here']!r} against {change['shipped']!r}"
+        for change in changes(found[1], found[0])
+        if change["key"] != "preset"
+    ]
 
 
 def _verdicts(here: Path, there: Path) -> list[str]:
@@ -127,9 +178,8 @@ def _verdicts(here: Path, there: Path) -> list[str]:
         path = tree / "claims.json"
         if not path.exists():
             return [f"{path}: missing; verdicts not compared"]
-        found.append(
-            {claim["id"]: claim["verdict"] for claim in json.loads(path.read_text(encoding="utf-8"))}
-        )
+        claims = json.loads(path.read_text(encoding="utf-8"))
+        found.append({claim["id"]: claim["verdict"] for claim in claims})
     one, two = found
     return [
         f"{name}: {one.get(name, 'no such claim')!r} against {two.get(name, 'no such claim')!r}"
@@ -140,16 +190,18 @@ def _verdicts(here: Path, there: Path) -> list[str]:
 
 def main(arguments: Sequence[str]) -> int:
     """Verify or compare; returns the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m slippulse.verify", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(
+        prog="python -m slippulse.data.verify", description=__doc__.splitlines()[0]
+    )
     parser.add_argument("results", type=Path)
     parser.add_argument("--against", type=Path, help="another tree of results, to compare numbers with")
     chosen = parser.parse_args(arguments)
     try:
         if chosen.against is None:
-            problems = changed_files(chosen.results)
+            problems = problems_of(chosen.results)
             count = len((chosen.results / "checksums.txt").read_text(encoding="utf-8").splitlines())
             print("\n".join(problems) or f"{count} files are what they were")
-            return 1 if problems or not count else 0
+            return 1 if problems else 0
         result = compare(chosen.results, chosen.against)
     except ValueError as error:
         print(error)
@@ -161,12 +213,12 @@ def main(arguments: Sequence[str]) -> int:
     for title, lines in (
         ("Apart", result.apart),
         ("Other verdicts", result.verdicts),
-        ("Not compared", result.only),
+        ("Not comparable", result.other),
     ):
         if lines:
             rest = [f"... and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []
             print("\n  ".join([f"{title}:", *lines[:SHOWN], *rest]))
-    return 0 if result.compared and not (result.apart or result.verdicts or result.only) else 1
+    return 0 if result.compared and not (result.apart or result.verdicts or result.other) else 1
 
 
 if __name__ == "__main__":

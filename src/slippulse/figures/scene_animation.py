@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation, PillowWriter
 
-from ..data.store import write_whole
+from ..data.files import write_whole
 from .shared.space_time import limits, thin
 from .style import BLUE, GREY, ORANGE, new_figure
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import matplotlib
 from matplotlib.figure import Figure
 
+from ..data.files import write_whole
 from ..data.origin import configuration
-from ..data.store import write_whole
 
 matplotlib.use("Agg")
 

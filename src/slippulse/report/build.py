@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from ..data.store import write_whole
+from ..data.files import write_whole
 from .execute import execute
 from .inputs import Inputs
 from .render import render_html, render_pdf

@@ -11,7 +11,7 @@ from pathlib import Path
 import pypandoc
 import typst
 
-from ..data.store import write_whole
+from ..data.files import write_whole
 
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..data.store import write_text
+from ..data.files import write_text
 from ..solver.compilation import compile_all
 from ..solver.jit import source_digest
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..comparison.scene_numbers import scene_numbers
+from ..data.files import write_text
 from ..data.points import point
-from ..data.store import load_dataset, load_table, save_table, write_text
+from ..data.store import load_dataset, load_table, save_table
 from ..figures import scene
 from ..figures.style import save_figure
 from ..pages.scene import scene_page

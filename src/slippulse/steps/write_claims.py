@@ -11,7 +11,8 @@ import pandas as pd
 
 from ..claims.all_claims import all_claims
 from ..claims.evidence import Evidence
-from ..data.store import load_table, write_text
+from ..data.files import write_text
+from ..data.store import load_table
 from ..pages.index import claims_page
 
 

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..data.store import write_text
+from ..data.files import write_text
 from ..pages.index import captions_from, index_page
 
 

@@ -6,8 +6,8 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..data.files import write_text
 from ..data.provenance import checksums, manifest, provenance
-from ..data.store import write_text
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
