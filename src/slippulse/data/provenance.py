@@ -13,7 +13,15 @@ from pathlib import Path
 
 import yaml
 
+from ..configuration.alterations import changes
 from .versions import PACKAGES
+
+PAPER = {
+    "title": "A minimal model for the onset of slip pulses in frictional rupture",
+    "authors": ["Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard"],
+    "journal": "Physical Review E 103, 052802 (2021)",
+    "doi": "https://doi.org/10.1103/PhysRevE.103.052802",
+}
 
 
 def file_digest(path: str | Path) -> str:
@@ -37,35 +45,11 @@ def source_files(root: str | Path) -> list[Path]:
     """Everything that a result may depend on besides the configuration: library, workflow, report."""
     root = Path(root)
     found = [root / "Snakefile"]
-    for folder, pattern in (("src", "*.py"), ("workflow", "*"), ("manuscript", "*")):
+    for folder in ("src", "workflow", "manuscript"):
         found += [
-            path
-            for path in (root / folder).rglob(pattern)
-            if path.is_file() and "__pycache__" not in path.parts
+            path for path in (root / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts
         ]
     return found
-
-
-def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """What an overlay changed: one entry a value, with the shipped one beside it.
-
-    Parameters
-    ----------
-    shipped, config : the configuration without and with overlays
-    key : where in the configuration both stand
-
-    Returns
-    -------
-    list of dicts with key, shipped, here; None where one side has nothing
-    """
-    if isinstance(shipped, Mapping) and isinstance(config, Mapping):
-        names = [*shipped, *(name for name in config if name not in shipped)]
-        return [
-            change
-            for name in names
-            for change in changes(shipped.get(name), config.get(name), f"{key}.{name}".lstrip("."))
-        ]
-    return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
 
 
 def git_state(root: str | Path) -> dict | None:
@@ -125,6 +109,7 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: 
     from importlib.metadata import version
 
     return {
+        "paper": PAPER,
         "overlay": changes(shipped, config),
         "config": dict(config),
         "source_digest": tree_digest(root, source_files(root)),
@@ -160,12 +145,9 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     content = {
         "version": "https://codecheck.org.uk/spec/config/1.0/",
         "paper": {
-            "title": "A minimal model for the onset of slip pulses in frictional rupture",
-            "authors": [
-                {"name": name}
-                for name in ("Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard")
-            ],
-            "reference": "https://doi.org/10.1103/PhysRevE.103.052802",
+            "title": PAPER["title"],
+            "authors": [{"name": name} for name in PAPER["authors"]],
+            "reference": PAPER["doi"],
         },
         "manifest": [{"file": name, "comment": comment(name)} for name in names],
     }
