@@ -11,7 +11,6 @@ rule write_claims:
         json="results/claims.json",
         html=report(
             "results/claims.html",
-            caption="../report/claims.rst",
             category="Claims",
             labels={"table": "claims"},
         ),

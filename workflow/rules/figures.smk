@@ -19,7 +19,6 @@ for figure, needs in (FIGURES | STUDIES).items():
         output:
             png=report(
                 f"results/figures/{figure}.png",
-                caption=f"../report/{figure}.rst",
                 category="Figures of the paper" if figure in FIGURES else "Studies",
                 labels={"figure": figure},
             ),

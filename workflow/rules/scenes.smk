@@ -80,7 +80,6 @@ rule draw_scene:
     output:
         png=report(
             "results/scenes/{scene}.png",
-            caption="../report/scene.rst",
             category="Scenes",
             labels={"scene": "{scene}"},
         ),

@@ -32,7 +32,6 @@ rule study_pipeline_time:
     output:
         png=report(
             "results/figures/study_pipeline_time.png",
-            caption="../report/study_pipeline_time.rst",
             category="Studies",
             labels={"figure": "study_pipeline_time"},
         ),
