@@ -324,16 +324,3 @@ def builtins_of(value):
     if isinstance(value, dict):
         return {key: builtins_of(entry) for key, entry in value.items()}
     return [builtins_of(entry) for entry in value] if isinstance(value, list) else value
-
-
-def captions_of(names):
-    """Path of each figure's caption."""
-    return {name: str(Path(workflow.basedir) / f"workflow/report/{name}.rst") for name in names}
-
-
-def captions_and_settings(names):
-    """What each figure's caption is made from."""
-    return {
-        name: {"caption": path, "settings": builtins_of(figure_settings(name))}
-        for name, path in captions_of(names).items()
-    }

@@ -24,8 +24,8 @@ RESULTS = sorted(
 rule write_provenance:
     input:
         sources("provenance.py"),
-        list(captions_of(FIGURES | STUDIES).values()),
         LOCK,
+        captions="manuscript/captions.yaml",
         files=RESULTS,
     output:
         provenance="results/provenance.json",
@@ -39,7 +39,6 @@ rule write_provenance:
         root=lambda wildcards: str(workflow.basedir),
         config=builtins_of(config),
         shipped=builtins_of(SHIPPED),
-        captions=captions_of(FIGURES | STUDIES),
     message:
         "Noting what the results were made from"
     script:
@@ -49,7 +48,8 @@ rule write_provenance:
 rule write_index:
     input:
         sources("index_page.py", "pages.py"),
-        list(captions_of(FIGURES | STUDIES).values()),
+        captions="manuscript/captions.yaml",
+        summary="manuscript/summary.yaml",
         pngs=[f"results/figures/{name}.png" for name in FIGURES | STUDIES],
         claims="results/claims.json",
         provenance="results/provenance.json",
@@ -61,8 +61,7 @@ rule write_index:
     benchmark:
         "results/benchmarks/write_index.tsv"
     params:
-        figures=captions_and_settings(FIGURES),
-        studies=captions_and_settings(STUDIES),
+        galleries={"Figures of the paper": list(FIGURES), "Studies beside the paper": list(STUDIES)},
         scenes={name: scene["title"] for name, scene in SCENES.items()},
     message:
         "Writing results/index.html, the page to open"

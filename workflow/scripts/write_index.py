@@ -4,9 +4,8 @@ from slippulse.steps.jobs import job, write_index
 
 with job(snakemake.log[0]):
     write_index(
-        snakemake.params.figures,
-        snakemake.params.studies,
+        {key: snakemake.input[key] for key in ("captions", "summary")},
+        snakemake.params.galleries,
         snakemake.params.scenes,
-        {key: snakemake.input[key] for key in ("claims", "provenance")},
         snakemake.output[0],
     )

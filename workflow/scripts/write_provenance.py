@@ -8,6 +8,6 @@ with job(snakemake.log[0]):
         snakemake.params.config,
         snakemake.params.shipped,
         snakemake.input.files,
-        snakemake.params.captions,
+        snakemake.input.captions,
         {key: snakemake.output[key] for key in ("provenance", "checksums", "manifest")},
     )

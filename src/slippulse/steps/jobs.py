@@ -217,9 +217,10 @@ def write_claims(
     """Compute every claim's verdict and write the ledger, as JSON and as a table to read."""
     import json
 
-    from ..claims import Evidence, all_claims
+    from ..claims.evidence import Evidence
+    from ..claims.paper import all_claims
     from ..data.store import load_table, write_whole
-    from ..pages.index import claims_page
+    from ..pages.claims import claims_page
 
     tables = {Path(path).stem: load_table(path) for path in measured}
     coarse: dict[str, list] = {}
@@ -228,7 +229,7 @@ def write_claims(
         coarse[Path(path).stem] = [part.reset_index(drop=True) for _, part in table.groupby("factor")]
     studies = {Path(path).stem: load_table(path) for path in uncertainties}
     claims = [
-        _finite(claim.as_dict())
+        claim.as_dict()
         for claim in all_claims(Evidence(tables, coarse, studies, tolerances), share, readings)
     ]
     texts = {
@@ -237,13 +238,6 @@ def write_claims(
     }
     for kind, text in texts.items():
         write_whole(outputs[kind], lambda part, text=text: part.write_text(text, encoding="utf-8"))
-
-
-def _finite(entry: dict) -> dict:
-    """JSON has no NaN: what was not measured is null."""
-    return {
-        key: None if isinstance(value, float) and value != value else value for key, value in entry.items()
-    }
 
 
 def run_study(study: str, settings: Mapping, output: str | Path) -> None:
@@ -344,7 +338,7 @@ def write_provenance(
     config: Mapping,
     shipped: Mapping,
     files: Sequence[str],
-    captions: Mapping[str, str],
+    captions: str,
     outputs: Mapping[str, str],
 ) -> None:
     """Write what the results were made from, their checksums and their manifest."""
@@ -352,13 +346,11 @@ def write_provenance(
 
     from ..data.provenance import checksums, manifest, provenance
     from ..data.store import write_whole
+    from ..texts.captions import read_captions
 
     base = Path(outputs["provenance"]).parent
     facts = provenance(root, config, shipped, base / "benchmarks")
-    comments = {
-        name: " ".join(Path(path).read_text(encoding="utf-8").split(". ")[0].split())
-        for name, path in captions.items()
-    }
+    comments = {name: caption.title for name, caption in read_captions(captions).items()}
     texts = {
         "checksums": checksums(files, base),
         "manifest": manifest(files, base, comments),
@@ -369,30 +361,19 @@ def write_provenance(
 
 
 def write_index(
-    figures: Mapping[str, str],
-    studies: Mapping[str, str],
-    scenes: Mapping[str, str],
-    inputs: Mapping[str, str],
-    output: str,
+    texts: Mapping[str, str], galleries: Mapping[str, Sequence[str]], scenes: Mapping[str, str], output: str
 ) -> None:
-    """Write the page that leads to all results."""
-    import json
-
+    """Write the page that leads to all results, beside claims.json and provenance.json."""
     from ..data.store import write_whole
-    from ..pages.index import captions_from, index_page
+    from ..pages.index import index_page
 
-    claims, facts = (
-        json.loads(Path(inputs[key]).read_text(encoding="utf-8")) for key in ("claims", "provenance")
-    )
-    text = index_page(
-        Path(output).parent, captions_from(figures), captions_from(studies), claims, facts, scenes
-    )
+    text = index_page(Path(output).parent, texts, galleries, scenes)
     write_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def write_scenes_page(scenes: Mapping[str, str], output: str) -> None:
     """Write the list of scenes."""
     from ..data.store import write_whole
-    from ..pages.index import scenes_page
+    from ..pages.scene import scenes_page
 
     write_whole(output, lambda part: part.write_text(scenes_page(scenes), encoding="utf-8"))
