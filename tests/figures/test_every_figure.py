@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from slippulse.figures.style import PAGE, save_figure
+from slippulse.texts.captions import read_captions
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
@@ -24,8 +25,8 @@ def test_no_figure_is_left_out(names):
 def test_it_fits_a_page_and_has_a_caption(draw, project, name):
     width, height = draw(name).figure.get_size_inches()
     assert width <= PAGE + 1e-9 and height <= 9.0
-    caption = (project / f"workflow/report/{name}.rst").read_text(encoding="utf-8")
-    assert len(caption.split()) > 20
+    caption = read_captions(project / "manuscript/captions.yaml")[name]
+    assert len(caption.caption.split()) > 20
 
 
 @pytest.mark.parametrize("name", sorted(set(NAMES) - SKETCHES))

@@ -113,8 +113,8 @@ def test_a_barrier_leaves_the_transition_without_theory(drawn):
 @pytest.mark.parametrize(
     ("number", "text"),
     [
-        ((1.23456, 0.0123, 1.25), "1.235 ± 0.012 (theory 1.250)"),
-        ((-2.0, np.nan, np.nan), "−2.0000 ± ?"),
+        ((1.23456, 0.0123, 1.25), "1.235(12) (theory 1.2500)"),
+        ((-2.0, np.nan, np.nan), "−2(?)"),
         ((3.5, 0.0, 3.5), "3.5000 (theory 3.5000)"),
     ],
 )

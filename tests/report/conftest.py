@@ -32,19 +32,26 @@ def invented_claims(config: dict, scale: float = 1.0) -> list[dict]:
         reading = config["published"].get(id.removeprefix("published_"))
         predicted = reading["value"] if reading else 1.0
         measured = scale * predicted * (1.0 + 0.00137 * (i + 1))
-        note = f"{i + 3} runs; extrapolated to dx = 0 it deviates from the exact theory by 1.{i}e-05 (median)"
         claims.append(
             {
                 "id": id,
                 "figure_or_section": "section III A",
-                "statement": f"statement of {id.replace('_', ' ')}: T_trans is pi/sqrt(gamma)",
+                "statement": rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$",
                 "predicted": predicted,
                 "measured": measured,
                 "uncertainty": 0.00021,
                 "tolerance": entry["tolerance"],
                 "verdict": judge(predicted, measured, 0.00021, entry["tolerance"]),
-                "note": note,
+                "note": r"measured at $\Delta x=0$",
                 "source": "invented",
+                "runs": i + 3,
+                "left_out": i % 2,
+                "median": 1e-3 * (i + 1),
+                "largest": 2e-3 * (i + 1),
+                "exact_median": 1e-5 * (i + 1),
+                "exact_largest": 2e-5 * (i + 1),
+                "further": {r"$\beta/\Delta x$": 0.1},
+                "figure": "fig05_scaling",
             }
         )
     return claims

@@ -26,7 +26,7 @@ REFERENCE = re.compile(
 EXPRESSION = re.compile(r"\{\{(.+?)\}\}", re.S)
 MATH = re.compile(r"\$\$.+?\$\$|\$[^$]+\$", re.S)
 CITATION = re.compile(r"\[[^\]]*@\w+[^\]]*\]|@\w+")
-FENCE = re.compile(r"^```python\n(.*?)^```$", re.S | re.M)
+FENCE = re.compile(r"^```python[^\n]*\n(.*?)^```$", re.S | re.M)
 HEADER = re.compile(r"\A---\n.*?\n---\n", re.S)
 
 

@@ -11,13 +11,16 @@ def test_the_report_has_no_typed_number(manuscript):
     assert typed_numbers((manuscript / "replication.md").read_text(encoding="utf-8")) == []
 
 
-def test_the_errata_and_the_captions_have_none(manuscript):
+def test_the_errata_the_captions_and_the_summary_have_none(manuscript):
     texts = [
         text
         for entry in yaml.safe_load((manuscript / "errata.yaml").read_text(encoding="utf-8"))
         for text in entry.values()
     ]
-    texts += yaml.safe_load((manuscript / "captions.yaml").read_text(encoding="utf-8")).values()
+    captions = yaml.safe_load((manuscript / "captions.yaml").read_text(encoding="utf-8"))
+    texts += [text for parts in captions.values() for text in parts.values()]
+    summary = yaml.safe_load((manuscript / "summary.yaml").read_text(encoding="utf-8"))
+    texts += [summary["accuracy"], *(line[key] for line in summary["verdict"] for key in ("topic", "text"))]
     assert [number for text in texts for number in typed_numbers_in_prose(text)] == []
 
 
@@ -32,8 +35,8 @@ def test_the_errata_and_the_captions_have_none(manuscript):
         "The speed is $v = 1.25$.",
         "After $T = 39$ it stops.",
         "It is `1.25` exactly.",
-        "The speed is {{ number(1.25) }}.",
-        "The speed is {{ number(claim.measured('x') + 12) }}.",
+        "The speed is {{ 1.25 | number }}.",
+        "The speed is {{ (claim.measured('x') + 12) | number }}.",
         "```python\nshow('the speed is 5')\n```\n",
         "```python\nspeed = 1.25\n```\n",
         "```python\nshow(f'{speed} is 5 more')\n```\n",
@@ -49,7 +52,7 @@ def test_a_typed_number_is_found(text):
     [
         r"By equations (B9), (B11) and (5) the damping $\beta=10^{-3}$ is $1/\sqrt{1-\tau_0^2}$.",
         "Known [@Amundsen2015] from figure 4 and section 3.",
-        "The claim `published_trailing_edge_5` is {{ number(claim('a_1').measured, 3) }}.",
+        "The claim `published_trailing_edge_5` is {{ claim('a_1').measured | number(3) }}.",
         "```python\nfigure('fig05_scaling')\nx = 2 * y\n```\n",
     ],
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import os
 import re
 from html.parser import HTMLParser
 
@@ -13,7 +12,7 @@ import yaml
 from pypdf import PdfReader
 
 from slippulse.report.execute import execute
-from slippulse.report.numerals import number, with_uncertainty
+from slippulse.texts.numerals import number, with_uncertainty
 
 
 class Resources(HTMLParser):
@@ -128,30 +127,32 @@ def test_a_scene_outside_the_theory_leaves_the_report_standing(make_inputs, ship
     assert "$T_\\mathrm{trans}$ = not measured" in text and r"$\tau_0$ = −0.3" in text
 
 
-def test_the_users_own_kernels_take_no_part(make_inputs, tmp_path, monkeypatch):
-    broken = tmp_path / "kernels/python3"
-    broken.mkdir(parents=True)
-    (broken / "kernel.json").write_text(
-        json.dumps({"argv": ["/nonexistent"], "display_name": "broken", "language": "python"}),
-        encoding="utf-8",
-    )
-    profile = tmp_path / "ipython/profile_default/startup"
-    profile.mkdir(parents=True)
-    (profile / "first.py").write_text("raise SystemExit('the user\\'s own start-up')", encoding="utf-8")
-    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path))
-    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
-    (tmp_path / "small.md").write_text(
-        "```python\nfrom slippulse.report.notebook import *\n```\n\nAll {{ claim.count() }}.\n"
-    )
-    inputs = make_inputs()
-    assert execute(tmp_path / "small.md", inputs) == f"All {len(inputs.claims)}.\n"
-    assert os.environ["IPYTHONDIR"] == str(tmp_path / "ipython")
-
-
 def test_a_failing_expression_is_one_line_that_names_it(make_inputs, tmp_path):
     (tmp_path / "small.md").write_text(
-        "```python\nfrom slippulse.report.notebook import *\n```\n\nIt is {{ claim('no_such').measured }}.\n"
+        "# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n", encoding="utf-8"
     )
     with pytest.raises(ValueError, match=r"small\.md: .*no_such") as caught:
         execute(tmp_path / "small.md", make_inputs())
     assert "\n" not in str(caught.value)
+
+
+def test_a_failing_cell_is_one_line_that_names_it(make_inputs, tmp_path):
+    (tmp_path / "small.md").write_text("```python\nwidth = 1 / 0\n```\n", encoding="utf-8")
+    with pytest.raises(
+        ValueError, match=r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)"
+    ) as caught:
+        execute(tmp_path / "small.md", make_inputs())
+    assert "\n" not in str(caught.value)
+
+
+def test_a_notebook_opened_by_hand_has_the_same_names(make_inputs, tmp_path, monkeypatch):
+    from slippulse.report import notebook
+
+    inputs, by_hand, here = make_inputs(), {}, {}
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config/config.yaml").write_text("{}", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(notebook.Inputs, "of_project", lambda project: inputs)
+    notebook.define_by_hand(by_hand)
+    notebook.define(here, inputs, print)
+    assert set(by_hand) == set(here)

@@ -9,6 +9,9 @@ import yaml
 
 from slippulse.report.errata import KEYS, check_errata
 from slippulse.report.figures import Gallery, placed_figures
+from slippulse.texts.captions import PARTS, Caption, read_captions
+
+EXPRESSION = re.compile(r"\{\{.+?\}\}", re.S)
 
 
 @pytest.fixture(scope="module")
@@ -51,9 +54,39 @@ def test_an_erratum_that_is_not_whole_is_refused(key):
 
 
 def test_every_figure_has_one_place_and_a_caption(source, manuscript):
-    captions = yaml.safe_load((manuscript / "captions.yaml").read_text(encoding="utf-8"))
+    captions = read_captions(manuscript / "captions.yaml")
     placed = placed_figures(source)
     assert sorted(placed) == sorted(captions)
+    titles = [caption.title for caption in captions.values()]
+    assert len(set(titles)) == len(titles)
+    for caption in captions.values():
+        # Plain text stands in headings and alternative texts; a finding is one sentence.
+        assert not set("$*_{") & set(caption.title + caption.alt)
+        assert caption.finding.endswith(".") and ". " not in EXPRESSION.sub(" ", caption.finding)
+
+
+@pytest.mark.parametrize("key", PARTS)
+def test_a_caption_that_is_not_whole_is_refused(key, tmp_path):
+    parts = {name: "text" for name in PARTS} | {key: " "}
+    (tmp_path / "captions.yaml").write_text(yaml.safe_dump({"one": parts}), encoding="utf-8")
+    with pytest.raises(ValueError, match=f"one: {key}: missing"):
+        read_captions(tmp_path / "captions.yaml")
+
+
+def test_a_caption_with_another_key_is_refused(tmp_path):
+    parts = {name: "text" for name in PARTS} | {"colour": "red"}
+    (tmp_path / "captions.yaml").write_text(yaml.safe_dump({"one": parts}), encoding="utf-8")
+    with pytest.raises(ValueError, match="one: colour: unknown key"):
+        read_captions(tmp_path / "captions.yaml")
+
+
+def test_the_summary_is_five_lines_about_claims_and_figures_that_there_are(manuscript, shipped):
+    summary = yaml.safe_load((manuscript / "summary.yaml").read_text(encoding="utf-8"))
+    assert len(summary["verdict"]) == 5
+    assert summary["picture"] in read_captions(manuscript / "captions.yaml")
+    for line in summary["verdict"]:
+        assert {*line["claims"], *mentioned(line["text"])} <= set(shipped["claims"])
+    assert mentioned(summary["accuracy"]) <= set(shipped["claims"])
 
 
 def test_the_shipped_verdicts_are_of_the_claims(manuscript, shipped):
@@ -69,21 +102,25 @@ def test_every_citation_is_in_the_bibliography_and_every_entry_is_cited(source, 
 
 
 def test_a_figure_that_the_text_does_not_place_comes_last():
-    gallery = Gallery(["new_one", "a"], ["a"], {"a": "text"}, "folder")
+    gallery = Gallery(["new_one", "a"], ["a"], {"a": caption("text")}, "folder")
     assert gallery.unplaced == ["new_one"]
-    assert "**Figure 2.** new one" in gallery.figure("new_one")
+    assert "**Figure 2. new one.**" in gallery.figure("new_one")
 
 
-def test_every_figure_of_the_workflow_has_a_caption_and_a_place(project, source, manuscript):
-    figures = {path.stem for path in (project / "workflow/report").glob("*_*.rst")}
-    # Drawn from clocks, so it would make two equal reports differ.
-    figures -= {"study_pipeline_time"}
+def test_every_figure_of_the_package_has_a_place(project, source):
+    modules = (project / "src/slippulse/figures").glob("*.py")
+    figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert len(figures) >= 17
     assert figures <= set(placed_figures(source))
 
 
 def test_figures_are_numbered_in_the_order_of_the_text():
-    gallery = Gallery(["c", "a"], ["a", "b", "c"], {"a": "x", "b": "y", "c": "z"}, "folder")
-    assert "**Figure 2.** z" in gallery.figure("c")
+    captions = {name: caption(name.upper()) for name in "abc"}
+    gallery = Gallery(["c", "a"], ["a", "b", "c"], captions, "folder")
+    assert gallery.figure("c").startswith("![**Figure 2. C.** finding what](folder/c){")
     assert gallery.see("c", " (figure ", ")") == " (figure 2)"
     assert gallery.figure("b") == gallery.see("b") == ""
+
+
+def caption(title: str) -> Caption:
+    return Caption(title, "alt", "finding", "what")

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import json
 import re
 from html.parser import HTMLParser
 from itertools import pairwise
 
 import pytest
+import yaml
 
 from slippulse.data.provenance import provenance
 from slippulse.figures.style import new_figure, save_figure
-from slippulse.pages.index import captions_from, claims_page, index_page, scenes_page
+from slippulse.pages.claims import claims_page
+from slippulse.pages.index import index_page
+from slippulse.pages.scene import scenes_page
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 CLAIM = {
-    "id": "speed", "figure_or_section": "III A", "statement": "fronts <outrun> the waves & keep going",
+    "id": "speed", "figure_or_section": "III A", "statement": r"fronts <outrun> the waves & keep $\gamma<1$",
     "predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "tolerance": 1e-3, "verdict": "reproduced",
-    "note": "", "source": "",
+    "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0, "median": 1e-5, "largest": 8e-5,
+    "exact_median": None, "exact_largest": None, "further": {}, "figure": "fig01_one",
 }  # fmt: skip
-FIGURES = {"fig01_one": "One figure <here>. With more to say.", "fig02_two": "Another & another."}
+FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "measured": 1.5, "figure": ""}
+NEVER = CLAIM | {
+    "id": "length", "verdict": "not testable", "predicted": None, "measured": None, "uncertainty": None, "runs": None,
+    "median": None, "largest": None, "note": "",
+}  # fmt: skip
+NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
 
 class Outline(HTMLParser):
@@ -46,37 +56,50 @@ class Outline(HTMLParser):
 
 @pytest.fixture
 def page(project, config, tmp_path) -> str:
-    for name in FIGURES:
+    """The page of a small run whose preset is not the shipped one."""
+    results = tmp_path / "results"
+    for folder in ("figures", "benchmarks", "scenes"):
+        (results / folder).mkdir(parents=True)
+    for name in NAMES:
         figure = new_figure(3.0, 2.0)
         figure.subplots().plot([0.0, 1.0])
-        (tmp_path / "figures").mkdir(exist_ok=True)
-        save_figure(figure, tmp_path / f"figures/{name}.png", tmp_path / f"figures/{name}.pdf")
-        (tmp_path / f"figures/{name}.csv").write_text("x\n0\n")
-    (tmp_path / "claims.json").write_text("[]")
-    (tmp_path / "benchmarks").mkdir()
-    (tmp_path / "benchmarks/one.tsv").write_text("s\th:m:s\n1.5\t0:00:01\n")
-    (tmp_path / "scenes").mkdir()
-    (tmp_path / "scenes/made.html").write_text("<p>")
-    changed = config | {"preset": "draft"}
-    facts = provenance(project, changed, config, tmp_path / "benchmarks")
-    claims = [
-        CLAIM,
-        CLAIM | {"verdict": "not testable", "predicted": None, "measured": None, "uncertainty": None},
-    ]
-    scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
+        save_figure(figure, results / f"figures/{name}.png", results / f"figures/{name}.pdf")
+        (results / f"figures/{name}.csv").write_text("x\n0\n")
+    claims = [CLAIM, FAILED, NEVER]
+    (results / "claims.json").write_text(json.dumps(claims), encoding="utf-8")
+    (results / "claims.html").write_text(claims_page(claims), encoding="utf-8")
+    (results / "benchmarks/one.tsv").write_text("s\th:m:s\n1.5\t0:00:01\n")
+    (results / "scenes/made.html").write_text("<p>")
+    facts = provenance(project, config | {"preset": "draft"}, config, results / "benchmarks")
+    (results / "provenance.json").write_text(json.dumps(facts), encoding="utf-8")
+
+    caption = {
+        "alt": "A line <up>",
+        "finding": "Found in {{ claim('speed').runs }} runs.",
+        "caption": "(a) $x$.",
+    }
+    captions = {name: caption | {"title": title} for name, title in NAMES.items()}
+    summary = {
+        "picture": "fig01_one",
+        "accuracy": "It took {{ facts['times']['seconds_of_jobs'].values() | sum | number }} s.",
+        "verdict": [{"topic": "Fronts", "claims": ["speed", "width"], "text": "Off by $x$."}],
+    }
+    texts = {}
+    for name, content in (("captions", captions), ("summary", summary)):
+        texts[name] = tmp_path / f"{name}.yaml"
+        texts[name].write_text(yaml.safe_dump(content), encoding="utf-8")
     return index_page(
-        tmp_path,
-        {"fig01_one": FIGURES["fig01_one"]},
-        {"fig02_two": FIGURES["fig02_two"]},
-        claims,
-        facts,
-        scenes,
+        results,
+        texts,
+        {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]},
+        {"made": "A scene <that> is there", "not_made": "A scene that is not"},
     )
 
 
-def test_it_is_one_page_in_order(page):
-    outline = Outline(page)
-    assert page.startswith("<!DOCTYPE html>")
+def check_accessible(text: str) -> Outline:
+    """What every page has to keep."""
+    outline = Outline(text)
+    assert text.startswith("<!DOCTYPE html>")
     assert outline.all("html") == [{"lang": "en"}]
     assert {"name": "viewport", "content": "width=device-width, initial-scale=1"} in outline.all("meta")
     for tag in ("title", "h1", "main", "header"):
@@ -85,77 +108,77 @@ def test_it_is_one_page_in_order(page):
     assert levels[0] == 1 and all(after - before <= 1 for before, after in pairwise(levels))
     identifiers = [attributes["id"] for _, attributes in outline.tags if "id" in attributes]
     assert len(identifiers) == len(set(identifiers))
-
-
-def test_it_can_be_read_without_eyes_or_mouse(page):
-    outline = Outline(page)
-    images = outline.all("img")
-    assert len(images) == 2 and all(image["alt"].strip() for image in images)
-    assert images[0]["alt"] == "One figure <here>"
-    assert images[0]["width"] == "900"
+    assert all(image["alt"].strip() for image in outline.all("img"))
     assert outline.all("a")[0] == {"class": "skip", "href": "#content"}
     labels = [attributes.get("aria-label") for attributes in outline.all("nav")]
     assert len(labels) == len(set(labels)) and all(labels)
     # What scrolls sideways can be reached by keyboard and has a name.
     for region in (attributes for attributes in outline.all("div") if attributes.get("class") == "scroll"):
         assert region["tabindex"] == "0" and region["role"] == "region" and region["aria-label"]
-    assert len(outline.all("caption")) == len(outline.all("table")) >= 3
+    assert len(outline.all("caption")) == len(outline.all("table"))
     assert all(attributes["scope"] == "col" for attributes in outline.all("th"))
     assert not any(attributes.get("tabindex", "0") not in ("0", "-1") for _, attributes in outline.tags)
+    assert not outline.all("script") and "@import" not in text and "url(" not in text
+    return outline
 
 
-def test_links_are_relative_and_lead_somewhere(page, tmp_path):
+def test_it_can_be_read_without_eyes_or_mouse(page):
+    outline = check_accessible(page)
+    assert len(outline.all("table")) >= 5
+    assert [image["alt"] for image in outline.all("img")] == ["A line <up>"] * 3
+    assert outline.all("img")[0]["width"] == "900"
+
+
+def test_links_lead_somewhere_and_only_the_paper_is_outside(page, tmp_path):
     outline = Outline(page)
     identifiers = {attributes["id"] for _, attributes in outline.tags if "id" in attributes}
     targets = [a["href"] for a in outline.all("a")] + [image["src"] for image in outline.all("img")]
-    assert len(targets) > 10
-    for target in targets:
-        if target.startswith("#"):
-            assert target[1:] in identifiers
-        else:
-            assert not re.match(r"[a-z]+:|/", target)
-            assert (tmp_path / target).exists(), target
-    assert not outline.all("script") and "@import" not in page and "url(" not in page
+    assert len(targets) > 20
+    outside = [target for target in targets if re.match(r"[a-z]+:|/", target)]
+    assert outside == ["https://doi.org/10.1103/PhysRevE.103.052802"]
+    claims = Outline((tmp_path / "results/claims.html").read_text(encoding="utf-8"))
+    anchors = {attributes["id"] for _, attributes in claims.tags if "id" in attributes}
+    for target in set(targets) - set(outside):
+        path, _, anchor = target.partition("#")
+        if path:
+            assert (tmp_path / "results" / path).exists(), target
+        if anchor:
+            assert anchor in (anchors if path == "claims.html" else identifiers), target
 
 
 def test_it_says_what_was_found_and_from_what(page):
-    assert "2 claims: 1 reproduced, 1 not testable" in page
-    assert "fronts &lt;outrun&gt; the waves &amp; keep going" in page
-    assert "A scene &lt;that&gt; is there" in page
+    assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable" in page
+    assert "fronts &lt;outrun&gt; the waves &amp; keep <math" in page
+    assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
+    assert "Found in 4 runs." in page and "It took 1.50 s." in page
     assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
+    assert page.index("values differ") < page.index('id="verdict"') < page.index("Figures of the paper</h2>")
     assert "results/scenes/not_made.html" in page
 
 
-def test_the_ledger_is_a_table_on_a_page_of_its_own():
-    text = claims_page([CLAIM, CLAIM | {"statement": "a < b", "uncertainty": None}])
-    assert "<details" not in text
-    assert text.count("<tr") == 3 and "a &lt; b" in text
-    assert f"2 claims: 2 {CLAIM['verdict']}." in text
+def test_a_line_has_the_worst_verdict_of_its_claims(page):
+    assert re.search(r'href="claims\.html#width">. not reproduced<', page)
 
 
-def test_the_list_of_scenes_is_a_page_too(tmp_path):
-    outline = Outline(scenes_page({"one": "A <scene>", "two": "Another"}))
-    assert [image["alt"] for image in outline.all("img")] == ["A <scene>", "Another"]
+def test_the_ledger_has_a_page_with_failures_first():
+    text = claims_page([CLAIM, FAILED, NEVER])
+    outline = check_accessible(text)
+    assert [row["id"] for row in outline.all("tr") if "id" in row] == ["width", "length", "speed"]
+    assert outline.all("a")[1] == {"href": "index.html"}
+    assert "20 %, tolerance 0.1 %" in text and 'aria-label="200 × tolerance"' in text
+    assert "1.25010(10)" in text and "not measured" in text
+    assert "\\gamma" not in re.sub("<annotation.*?</annotation>", "", text)
+    assert '<a href="figures/fig01_one.png">figure 1, one</a>' in text
 
 
-def test_captions_are_plain_text_with_their_settings(project, config):
-    settings = {"measure": config["measure"], "paper_damping_ratio": 0.1} | {
-        key: value for figure in config["figures"].values() for key, value in figure.items()
-    }
-    paths = [
-        *(project / "workflow/report").glob("fig*.rst"),
-        *(project / "workflow/report").glob("study_*.rst"),
-    ]
-    captions = captions_from({path.stem: {"caption": path, "settings": settings} for path in paths})
-    assert len(captions) >= 17
-    for name, caption in captions.items():
-        assert len(caption) > 40 and "\n" not in caption and "{" not in caption, name
-        # An alternative text is a sentence, not a page.
-        assert len(caption.split(". ")[0]) < 400, name
-    assert f"covered {config['measure']['share']} of" in captions["fig05_scaling"]
+def test_the_list_of_scenes_is_a_page_too():
+    outline = check_accessible(scenes_page({"one": "A <scene>", "two": "Another"}))
+    assert [image["src"] for image in outline.all("img")] == ["one.png", "two.png"]
+    assert outline.all("img")[0]["alt"].startswith("A <scene>")
 
 
-def test_a_caption_that_quotes_anything_else_is_refused(tmp_path):
-    (tmp_path / "a.rst").write_text("It is {{ snakemake.config }}.")
-    with pytest.raises(ValueError, match="quotes what is no setting"):
-        captions_from({"a": {"caption": tmp_path / "a.rst", "settings": {}}})
+def test_a_text_that_quotes_what_is_not_there_is_refused(page, tmp_path):
+    texts = {name: tmp_path / f"{name}.yaml" for name in ("captions", "summary")}
+    texts["captions"].write_text(texts["captions"].read_text().replace("speed", "no_such"))
+    with pytest.raises(ValueError, match="no_such"):
+        index_page(tmp_path / "results", texts, {"Figures": ["fig01_one"]}, {})

@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 import yaml
 
+from slippulse.data.alterations import changes
 from slippulse.data.provenance import (
-    changes,
     checksums,
     job_times,
     machine_class,
@@ -50,7 +50,7 @@ def test_sources_are_the_library_and_the_workflow(project):
     names = {str(path.relative_to(project)) for path in source_files(project)}
     assert {
         "Snakefile",
-        "src/slippulse/model.py",
+        "src/slippulse/model/scene.py",
         "workflow/rules/common.smk",
         "workflow/scripts/simulate.py",
     } <= names
@@ -65,7 +65,8 @@ def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
     facts = provenance(project, config | {"preset": "draft"}, config, tmp_path)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]
     assert set(facts) == {
-        "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine", "times",
+        "paper", "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine",
+        "times",
     }  # fmt: skip
     text = json.dumps(facts | {"config": None})
     host = socket.gethostname()

@@ -109,7 +109,6 @@ EDITS = {
     "src/slippulse/measure/fronts.py": MEASURED,
     "src/slippulse/claims/pulse.py": {},
     "requirements.lock": EVERY_DATA,
-    "workflow/report/scene.rst": {},
 }  # fmt: skip
 
 

@@ -47,7 +47,7 @@ FIGURES, STUDIES = (
 )
 NEEDS = {name: declared(f"figures.{name}", "NEEDS") for name in FIGURES + STUDIES}
 SOLVER_STUDIES = sorted(config["studies"])
-CLAIM_SIMULATIONS = declared("claims.all_claims", "SIMULATIONS")
+CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 REPORT_SIMULATIONS = declared("steps.write_report", "SIMULATIONS")
 
 # Sweeps that several jobs share. How many is in the name of each chunk: files left by another number are never taken.
@@ -181,14 +181,3 @@ def configuration_of_figure(name):
     return configuration(
         simulations_of([name]), values=settings_of_figure(name), studies=studies, measure=measure
     )
-
-
-def captions_and_settings(names):
-    """What each figure's caption is made from."""
-    return {
-        name: {
-            "caption": f"workflow/report/{name}.rst",
-            "settings": selected(["measure"], config["figures"].get(name, {})),
-        }
-        for name in names
-    }

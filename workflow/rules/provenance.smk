@@ -21,7 +21,7 @@ rule write_provenance:
         sources("steps.write_provenance"),
         LOCK,
         results=RESULTS,
-        captions=[f"workflow/report/{name}.rst" for name in NEEDS],
+        captions="manuscript/captions.yaml",
     output:
         provenance="results/provenance.json",
         checksums="results/checksums.txt",
@@ -44,7 +44,8 @@ rule write_provenance:
 rule write_index:
     input:
         sources("steps.write_index"),
-        [f"workflow/report/{name}.rst" for name in NEEDS],
+        captions="manuscript/captions.yaml",
+        summary="manuscript/summary.yaml",
         pictures=[f"results/figures/{name}.png" for name in NEEDS],
         claims="results/claims.json",
         provenance="results/provenance.json",
@@ -57,8 +58,7 @@ rule write_index:
         "results/benchmarks/write_index.tsv"
     params:
         step="write_index",
-        figures=captions_and_settings(FIGURES),
-        studies=captions_and_settings(STUDIES),
+        galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES},
         scenes={name: scene["title"] for name, scene in SCENES.items()},
         configuration=digest_of(config),
     message:

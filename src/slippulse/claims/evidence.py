@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
 from .ledger import Claim, judge
+
+NAN = float("nan")
+
+
+def compared(claim: Claim, values: Sequence[float], exact: Sequence[float]) -> Claim:
+    """The claim with the median and the largest relative deviation of its runs from the exact theory."""
+    deviation = np.abs(np.asarray(values, dtype=float) / np.asarray(exact, dtype=float) - 1.0)
+    deviation = deviation[np.isfinite(deviation)]
+    if deviation.size == 0:
+        return claim
+    return replace(claim, exact_median=float(np.median(deviation)), exact_largest=float(deviation.max()))
 
 
 @dataclass(frozen=True)
@@ -56,44 +67,23 @@ class Evidence:
         caveat: bool = False,
         note: str = "",
     ) -> Claim:
-        """A claim about every run of a sweep: the run that deviates most decides, the median is in the note."""
+        """A claim about every run of a sweep: the run that deviates most decides."""
         predicted = np.asarray(predicted, dtype=float)
         value, uncertainty = points["value"].to_numpy(float), points["uncertainty"].to_numpy(float)
         deviation = np.abs(value / predicted - 1.0)
         usable = np.isfinite(deviation) & np.isfinite(uncertainty)
         if not usable.any():
-            nan = float("nan")
-            return Claim(
-                id,
-                place,
-                statement,
-                nan,
-                nan,
-                nan,
-                self.tolerance(id),
-                judge(nan, nan, nan, 1.0),
-                note,
-                source,
-            )
+            return self.number(id, place, statement, NAN, NAN, NAN, source, note)
         worst = int(np.flatnonzero(usable)[np.argmax(deviation[usable])])
-        verdict = judge(predicted[worst], value[worst], uncertainty[worst], self.tolerance(id), caveat)
-        summary = (
-            f"{int(usable.sum())} runs; relative deviation: median {np.median(deviation[usable]):.2g}, largest"
-            f" {deviation[usable].max():.2g} (shown)"
+        claim = self.number(
+            id, place, statement, predicted[worst], value[worst], uncertainty[worst], source, note, caveat
         )
-        if (~usable).any():
-            summary += f"; {int((~usable).sum())} runs without a grid study left out"
-        return Claim(
-            id=id,
-            figure_or_section=place,
-            statement=statement,
-            predicted=float(predicted[worst]),
-            measured=float(value[worst]),
-            uncertainty=float(uncertainty[worst]),
-            tolerance=self.tolerance(id),
-            verdict=verdict,
-            note="; ".join(part for part in (summary, note) if part),
-            source=source,
+        return replace(
+            claim,
+            runs=int(usable.sum()),
+            left_out=int((~usable).sum()),
+            median=float(np.median(deviation[usable])),
+            largest=float(deviation[usable].max()),
         )
 
     def number(
@@ -144,15 +134,5 @@ class Evidence:
             chosen = table[where(table)]
             shares.append(float(np.mean(holds(chosen))) if len(chosen) else float("nan"))
         uncertainty = max(abs(shares[0] - other) for other in shares[1:])
-        count = f"share of {int(where(self.measured[simulation]).sum())} runs"
-        return self.number(
-            id,
-            place,
-            statement,
-            1.0,
-            shares[0],
-            uncertainty,
-            source,
-            "; ".join(filter(None, (count, note))),
-            caveat,
-        )
+        claim = self.number(id, place, statement, 1.0, shares[0], uncertainty, source, note, caveat)
+        return replace(claim, runs=int(where(self.measured[simulation]).sum()))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..theory.dimensional import Layer, damage_zone_stress_drop
@@ -12,6 +14,8 @@ from .ledger import Claim
 
 # How many random layers a formula is tried on; the seed makes the ledger repeatable.
 LAYERS, SEED = 200, 20210501
+# Of the host rock, in units of the damage zone's.
+THICKNESS = 10.0
 
 
 def random_layers() -> list[tuple[Layer, float]]:
@@ -51,22 +55,22 @@ def formula_claims(evidence: Evidence) -> list[Claim]:
         return 2.0 * np.pi / np.sqrt(layer.gamma * (1.0 - tau**2)) * layer.thickness
 
     ratios = np.geomspace(1.0, 1e-9, 10)
-    drops = damage_zone_stress_drop(1.0, 1.0, 1.0 / ratios, 1.0, 10.0)
+    drops = damage_zone_stress_drop(1.0, 1.0, 1.0 / ratios, 1.0, THICKNESS)
     return [
         evidence.number(
             "dimensional_peak_velocity",
             "section IV A",
-            "the dimensional peak slip velocity is (mu_s - mu_k) sigma_n / sqrt(2 G rho)",
+            r"the dimensional peak slip velocity is $(\mu_s-\mu_k)\sigma_n/\sqrt{2G\rho}$",
             1.0,
             ratio(lambda layer, _: layer.printed_peak_velocity(), lambda layer, _: layer.peak_velocity()),
             rounding,
             source,
-            "printed over derived from the paper's own U and T: a factor 2 is missing",
+            "printed over derived from the paper's own $U$ and $T$: a factor 2 is missing",
         ),
         evidence.number(
             "dimensional_transition_length",
             "section IV A",
-            "L_trans = 2 pi H sqrt((lambda + 2G)/2G) v_c/v_s",
+            r"$L_\mathrm{trans}=2\pi H\sqrt{(\lambda+2G)/2G}\,v_c/v_s$",
             1.0,
             ratio(lambda layer, tau: layer.transition_length(float(front_speed_undamped(tau))), length),
             rounding,
@@ -76,7 +80,7 @@ def formula_claims(evidence: Evidence) -> list[Claim]:
         evidence.number(
             "dimensional_width",
             "section IV A",
-            "W = pi tau_0 H sqrt((lambda + 2G)/2G) v_c/v_s",
+            r"$W=\pi\tau_0H\sqrt{(\lambda+2G)/2G}\,v_c/v_s$",
             1.0,
             ratio(
                 lambda layer, tau: layer.pulse_width(tau, float(front_speed_undamped(tau))),
@@ -86,14 +90,17 @@ def formula_claims(evidence: Evidence) -> list[Claim]:
             source,
             "printed over derived",
         ),
-        evidence.number(
-            "damage_zone_limit",
-            "section IV C 2, figure 7",
-            "a damage zone much softer than its host rock has the stress drop G delta/H",
-            1.0,
-            float(drops[-1]),
-            rounding,
-            "theory.damage_zone_stress_drop",
-            f"stress drop over G delta/H at G/G_r = {ratios[-1]:.0e}, H_r = 10 H",
+        replace(
+            evidence.number(
+                "damage_zone_limit",
+                "section IV C 2, figure 7",
+                r"a damage zone much softer than its host rock has the stress drop $G\delta/H$",
+                1.0,
+                float(drops[-1]),
+                rounding,
+                "theory.damage_zone_stress_drop",
+                r"stress drop over $G\delta/H$",
+            ),
+            further={"$G/G_r$": float(ratios[-1]), "$H_r/H$": THICKNESS},
         ),
     ]

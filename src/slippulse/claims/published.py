@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from .evidence import Evidence
 from .ledger import Claim
@@ -18,16 +19,14 @@ def published_claims(evidence: Evidence, readings: Mapping) -> list[Claim]:
     claims = []
     for name, reading in readings.items():
         point = evidence.points(reading["simulation"], reading["quantity"]).iloc[0]
-        claims.append(
-            evidence.number(
-                f"published_{name}",
-                "figure 4 as published",
-                reading["statement"],
-                reading["value"],
-                point["value"],
-                point["uncertainty"],
-                f"{reading['simulation']}: {reading['quantity']}",
-                f"read off with an error of about {reading['reading_error']:g}",
-            )
+        claim = evidence.number(
+            f"published_{name}",
+            "figure 4 as published",
+            reading["statement"],
+            reading["value"],
+            point["value"],
+            point["uncertainty"],
+            f"{reading['simulation']}: {reading['quantity']}",
         )
+        claims.append(replace(claim, further={"reading error": float(reading["reading_error"])}))
     return claims

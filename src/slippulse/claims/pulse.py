@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
 from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed
 from ..theory.pulse import paper_pulse, steady_pulse
-from .evidence import Evidence
+from .evidence import Evidence, compared
 from .ledger import Claim
 
 PLACE = "section III A, appendix C"
@@ -24,41 +26,43 @@ def at_paper_damping(table: pd.DataFrame) -> pd.Series:
     return ratios == ratios.iloc[np.argmin(np.abs(ratios - 0.1))]
 
 
+CASES = {"undamped": r"$\beta=0$", "paper_damping": "at the damping of the figures"}
+DAMPING_RATIO = r"$\beta/\Delta x$"
 # Quantity of the measured table, what the paper calls it, its formula, and the damped theory beside it.
 FORMULAS = {
     "front_speed": (
         "front_speed_right",
-        "the front runs at 1/sqrt(1 - tau_0^2)",
+        r"the front runs at $1/\sqrt{1-\tau_0^2}$",
         lambda row: float(front_speed_undamped(row.left)),
         lambda row: row_speed(row),
     ),
     "pulse_peak_velocity": (
         "pulse_peak_velocity",
-        "the largest slip velocity of the pulse is 1/sqrt(gamma)",
+        r"the largest slip velocity of the pulse is $1/\sqrt\gamma$",
         lambda row: paper_pulse(row.left, row.gamma).peak_velocity,
         lambda row: damped(row).peak_velocity,
     ),
     "pulse_width": (
         "pulse_width",
-        "the pulse is pi tau_0/sqrt(gamma (1 - tau_0^2)) wide",
+        r"the pulse is $\pi\tau_0/\sqrt{\gamma(1-\tau_0^2)}$ wide",
         lambda row: paper_pulse(row.left, row.gamma).width,
         lambda row: damped(row).width,
     ),
     "pulse_slip": (
         "pulse_slip",
-        "the pulse leaves a slip of 2 tau_0/gamma",
+        r"the pulse leaves a slip of $2\tau_0/\gamma$",
         lambda row: 2.0 * row.left / row.gamma,
         lambda row: damped(row).slip,
     ),
     "stress_drop": (
         "pulse_stress_drop",
-        "the stress drop is 2 tau_0",
+        r"the stress drop is $2\tau_0$",
         lambda row: 2.0 * row.left,
         lambda row: damped(row).stress_drop,
     ),
     "acceleration": (
         "pulse_acceleration",
-        "the slip acceleration is a sine of amplitude 1/tau_0",
+        r"the slip acceleration is a sine of amplitude $1/\tau_0$",
         lambda row: 1.0 / row.left,
         None,
     ),
@@ -82,22 +86,19 @@ def pulse_claims(evidence: Evidence) -> list[Claim]:
         for suffix, where in (("undamped", undamped), ("paper_damping", at_paper_damping)):
             points = evidence.points("steady_displacement", quantity, where)
             predicted = np.array([formula(row) for row in points.itertuples()])
-            note = "no damping" if suffix == "undamped" else f"beta/dx = {points['damping_ratio'].iloc[0]:g}"
-            if exact is not None and suffix == "paper_damping":
-                theory = np.array([exact(row) for row in points.itertuples()])
-                largest = float(np.nanmax(np.abs(points["value"].to_numpy() / theory - 1.0)))
-                note += f"; from the exact theory with damping the largest deviation is {largest:.2g}"
-            claims.append(
-                evidence.collapse(
-                    f"{name}_{suffix}",
-                    PLACE,
-                    f"{statement} ({'beta = 0' if suffix == 'undamped' else 'at the damping of the figures'})",
-                    points,
-                    predicted,
-                    f"steady_displacement: {quantity}",
-                    note=note,
-                )
+            claim = evidence.collapse(
+                f"{name}_{suffix}",
+                PLACE,
+                f"{statement} ({CASES[suffix]})",
+                points,
+                predicted,
+                f"steady_displacement: {quantity}",
             )
+            if suffix == "paper_damping":
+                claim = replace(claim, further={DAMPING_RATIO: float(points["damping_ratio"].iloc[0])})
+                if exact is not None:
+                    claim = compared(claim, points["value"], [exact(row) for row in points.itertuples()])
+            claims.append(claim)
     claims.append(
         evidence.share(
             "steady_for_any_prestress",
@@ -107,21 +108,24 @@ def pulse_claims(evidence: Evidence) -> list[Claim]:
             lambda table: (table["left"] > 0.0) & (table["left"] < 1.0),
             lambda table: (table["slip_variation"] < 1e-3) & (table["regime"] == "pulses, two-way"),
             "any_prestress: slip_variation, regime",
-            "a pulse on each side whose final slip varies by less than 1e-3 over the last third of its path",
+            "a pulse on each side whose final slip varies by less than a thousandth over the last third of its path",
         )
     )
     points = evidence.points("any_prestress", "pulse_width").sort_values("left")
     growth = np.diff(points["value"].to_numpy())
     claims.append(
-        evidence.number(
-            "pulses_widen_with_prestress",
-            "section IV A",
-            "the higher the pre-stress, the wider the pulse",
-            1.0,
-            float(np.mean(growth > 0.0)),
-            float(np.mean(np.abs(growth) <= points["uncertainty"].to_numpy()[1:])),
-            "any_prestress: pulse_width",
-            f"share of {growth.size} steps in tau_0 that widen the pulse; uncertainty: share within grid error",
+        replace(
+            evidence.number(
+                "pulses_widen_with_prestress",
+                "section IV A",
+                "the higher the pre-stress, the wider the pulse",
+                1.0,
+                float(np.mean(growth > 0.0)),
+                float(np.mean(np.abs(growth) <= points["uncertainty"].to_numpy()[1:])),
+                "any_prestress: pulse_width",
+                r"share of the steps in $\tau_0$ that widen the pulse; uncertainty: share within grid error",
+            ),
+            further={r"steps in $\tau_0$": float(growth.size)},
         )
     )
     claims.append(speed_at_small_gamma(evidence))
@@ -139,11 +143,11 @@ def speed_at_small_gamma(evidence: Evidence) -> Claim:
     return evidence.collapse(
         "front_speed_gamma_to_zero",
         "appendix C",
-        "v = 1/sqrt(1 - tau_0^2) is exact in the limit gamma -> 0",
+        r"$v=1/\sqrt{1-\tau_0^2}$ is exact in the limit $\gamma\to0$",
         points,
         front_speed_undamped(points["left"].to_numpy()),
         "speed_against_gamma: front_speed_right",
-        note="in the continuum limit without damping it is exact for every gamma (theory.lattice_front_speed)",
+        note=r"in the continuum limit without damping it is exact for every $\gamma$ (`theory.lattice_front_speed`)",
     )
 
 
@@ -154,14 +158,17 @@ def speed_at_unit_gamma(evidence: Evidence) -> Claim:
         "front_speed_right",
         lambda t: t["gamma"] == t["gamma"][t["gamma"] <= 1.0].max(),
     )
-    return evidence.collapse(
+    claim = evidence.collapse(
         "front_speed_gamma_to_one",
         "appendix C",
-        "v = 1/sqrt(1 - tau_0^2) is a good approximation up to gamma of about 1",
+        r"$v=1/\sqrt{1-\tau_0^2}$ is a good approximation up to $\gamma$ of about 1",
         points,
         front_speed_undamped(points["left"].to_numpy()),
         "speed_against_gamma: front_speed_right",
-        note=f"at gamma = {points['gamma'].iloc[0]:g} and dx = {points['dx'].iloc[0]:g}",
+    )
+    return replace(
+        claim,
+        further={r"$\gamma$": float(points["gamma"].iloc[0]), r"$\Delta x$": float(points["dx"].iloc[0])},
     )
 
 
@@ -172,11 +179,11 @@ def burridge_knopoff_speed(evidence: Evidence) -> Claim:
     return evidence.collapse(
         "burridge_knopoff_identity",
         "section II A, appendix B",
-        "at dx = 1 the discretised equation is the Burridge-Knopoff model",
+        r"at $\Delta x=1$ the discretised equation is the Burridge-Knopoff model",
         points,
         predicted,
         "burridge_knopoff_speed: front_speed_right; tests/verification: a separately written model",
-        note="front speed at dx = 1 against the exact speed of a chain of blocks with leaf springs",
+        note=r"front speed at $\Delta x=1$ against the exact speed of a chain of blocks with leaf springs",
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
@@ -20,7 +22,7 @@ def regime_claims(evidence: Evidence) -> list[Claim]:
             lambda t: (t["left"] > 0.0) & (t["duration"] > 1.5 * np.pi / np.sqrt(t["gamma"])),
             lambda t: t["regime"] == "pulses, two-way",
             "regimes_displacement: regime",
-            "runs that last half again as long as the predicted transition",
+            "of those that last half again as long as the predicted transition",
         ),
         evidence.share(
             "symmetric_stress_cracks",
@@ -101,7 +103,7 @@ def positive_velocities(evidence: Evidence) -> Claim:
     smallest = float(min(table["v"].min() for table in tables))
     runs = sum(len(table) for table in tables)
     coarse = float(min(t["min_velocity"].min() for many in evidence.coarser.values() for t in many))
-    return evidence.number(
+    claim = evidence.number(
         "only_positive_velocities",
         "section II A",
         "only positive velocities appear",
@@ -109,8 +111,9 @@ def positive_velocities(evidence: Evidence) -> Claim:
         smallest,
         abs(smallest - coarse),
         "every simulation: min_velocity",
-        f"smallest slip velocity of {runs} runs; rounding of the instant of sticking",
+        "smallest slip velocity of all runs; rounding of the instant of sticking",
     )
+    return replace(claim, runs=runs)
 
 
 def no_reverse_sliding(evidence: Evidence) -> Claim:
@@ -124,14 +127,15 @@ def no_reverse_sliding(evidence: Evidence) -> Claim:
         for other in evidence.coarser[name]:
             chosen = (other["boundary"] == "displacement") & (other["left"] > 0.0)
             coarse.append(float(other["friction_ratio_needed"][chosen].max()) if chosen.any() else 0.0)
-    return evidence.number(
+    claim = evidence.number(
         "threshold_as_printed",
         "section II A",
-        "a block at rest is released when |stress| reaches 1",
+        r"a block at rest is released when $\left|\text{stress}\right|$ reaches 1",
         0.0,
         lowest,
         max(abs(lowest - other) for other in coarse),
         "every simulation under a displacement boundary: min_stuck_stress",
-        f"largest mu_k/(mu_s - mu_k) that {runs} runs need so that nothing slides backwards; the printed threshold,"
-        " which is that of mu_k = 0, is passed at blocks beside the pulses",
+        r"largest $\mu_k/(\mu_s-\mu_k)$ that the runs need so that nothing slides backwards; the printed threshold,"
+        r" which is that of $\mu_k=0$, is passed at blocks beside the pulses",
     )
+    return replace(claim, runs=runs)

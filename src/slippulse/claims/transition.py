@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 
 from ..comparison.exact_transition import exact_transition
 from ..model.scene import prestress_from
 from ..theory.rupture import ArrestingCrack
-from .evidence import Evidence
+from .evidence import Evidence, compared
 from .ledger import Claim
 
+TEX = {"T_trans": r"$T_\mathrm{trans}$", "L_trans": r"$L_\mathrm{trans}$"}
+SHARE = r"share of $\left|x_-\right|$"
 PAPER = {
     "transition_time": ("T_trans", "paper_transition_time"),
     "transition_length": ("L_trans", "paper_transition_length"),
@@ -18,9 +22,9 @@ PAPER = {
 BOUNDARIES = {
     "displacement": (
         "section III B",
-        {"T_trans": "pi/sqrt(gamma)", "L_trans": "2 pi/sqrt(gamma (1 - tau_0^2))"},
+        {"T_trans": r"$\pi/\sqrt\gamma$", "L_trans": r"$2\pi/\sqrt{\gamma(1-\tau_0^2)}$"},
     ),
-    "stress": ("section III C", {"T_trans": "|x_minus|", "L_trans": "2 |x_minus|"}),
+    "stress": ("section III C", {"T_trans": r"$\left|x_-\right|$", "L_trans": r"$2\left|x_-\right|$"}),
 }
 
 
@@ -29,20 +33,19 @@ def transition_claims(evidence: Evidence, share: float) -> list[Claim]:
     claims = []
     for boundary, (place, formulas) in BOUNDARIES.items():
         simulation = f"scaling_{boundary}"
-        exact_note = exact_deviation(evidence, boundary, share)
         for quantity, (name, prediction) in PAPER.items():
             points = evidence.points(simulation, quantity)
-            claims.append(
-                evidence.collapse(
-                    f"{name}_{boundary}",
-                    place,
-                    f"{name} is {formulas[name]}, {boundary} boundary",
-                    points,
-                    points[prediction],
-                    f"{simulation}: {quantity}",
-                    note=definition(boundary, share) + "; " + exact_note[quantity],
-                )
+            claim = evidence.collapse(
+                f"{name}_{boundary}",
+                place,
+                f"{TEX[name]} is {formulas[name]}, {boundary} boundary",
+                points,
+                points[prediction],
+                f"{simulation}: {quantity}",
+                note=f"{definition(boundary)}; the exact theory beside the runs extrapolated to $\\Delta x=0$",
             )
+            claim = compared(claim, *extrapolated(evidence, simulation, quantity, share))
+            claims.append(with_share(claim, boundary, share))
             claims.append(slope(evidence, boundary, quantity, name, prediction))
     claims.append(small_gamma(evidence))
     claims.append(underestimate(evidence, share))
@@ -52,31 +55,27 @@ def transition_claims(evidence: Evidence, share: float) -> list[Claim]:
     return claims
 
 
-def definition(boundary: str, share: float) -> str:
+def definition(boundary: str) -> str:
     """How the transition was measured."""
     if boundary == "displacement":
         return "measured at the first stick"
-    return f"measured when the left front has covered {share:g} of |x_minus|"
+    return r"measured when the left front has covered the stated share of $\left|x_-\right|$"
 
 
-def exact_deviation(evidence: Evidence, boundary: str, share: float) -> dict[str, str]:
-    """Deviation of the extrapolated sweep from the exact theory, in words."""
-    out = {}
-    for quantity in PAPER:
-        study = evidence.uncertainties[f"scaling_{boundary}"]
-        study = study[study["quantity"] == quantity]
-        deviations = []
-        for row in study.itertuples():
-            found = exact_transition(row._asdict(), share)
-            value = found.time if quantity == "transition_time" else found.length
-            deviations.append(abs(row.extrapolated / value - 1.0))
-        deviations = np.array(deviations)
-        deviations = deviations[np.isfinite(deviations)]
-        out[quantity] = (
-            f"extrapolated to dx = 0 it deviates from the exact theory by {np.median(deviations):.2g} (median),"
-            f" {np.max(deviations):.2g} (largest)"
-        )
-    return out
+def with_share(claim: Claim, boundary: str, share: float) -> Claim:
+    """The claim with the share that defines it under a stress boundary."""
+    return replace(claim, further=claim.further | {SHARE: share}) if boundary == "stress" else claim
+
+
+def extrapolated(
+    evidence: Evidence, simulation: str, quantity: str, share: float
+) -> tuple[list[float], list[float]]:
+    """A quantity of each run of a sweep extrapolated to dx = 0, and what the exact theory has for it."""
+    study = evidence.uncertainties[simulation]
+    study = study[study["quantity"] == quantity]
+    exact = [exact_transition(row._asdict(), share) for row in study.itertuples()]
+    values = [found.time if quantity == "transition_time" else found.length for found in exact]
+    return study["extrapolated"].tolist(), values
 
 
 def slope(evidence: Evidence, boundary: str, quantity: str, name: str, prediction: str) -> Claim:
@@ -89,7 +88,7 @@ def slope(evidence: Evidence, boundary: str, quantity: str, name: str, predictio
     return evidence.number(
         f"{name}_{boundary}_slope",
         "figure 5",
-        f"{name} grows in proportion to its prediction, {boundary} boundary",
+        f"{TEX[name]} grows in proportion to its prediction, {boundary} boundary",
         1.0,
         slopes[0],
         max(abs(slopes[0] - other) for other in slopes[1:]),
@@ -111,12 +110,12 @@ def small_gamma(evidence: Evidence) -> Claim:
     return evidence.number(
         "T_trans_diverges",
         "section III A",
-        "T_trans and L_trans tend to infinity as gamma -> 0",
+        f"{TEX['T_trans']} and {TEX['L_trans']} tend to infinity as $\\gamma\\to0$",
         -0.5,
         exponents[0],
         max(abs(exponents[0] - other) for other in exponents[1:]),
         "scaling_displacement: transition_time",
-        "exponent of gamma in T_trans over the three smallest gamma, mean over tau_0",
+        r"exponent of $\gamma$ in $T_\mathrm{trans}$ over the three smallest $\gamma$, mean over $\tau_0$",
     )
 
 
@@ -127,17 +126,18 @@ def underestimate(evidence: Evidence, share: float) -> Claim:
     error = (points["uncertainty"] / points["paper_transition_time"]).to_numpy()
     good = np.isfinite(factor) & np.isfinite(error)
     middle = np.flatnonzero(good)[np.argsort(factor[good])[good.sum() // 2]]
-    return evidence.number(
+    claim = evidence.number(
         "T_trans_stress_underestimate",
         "section III C",
-        "taking the front speed as 1 underestimates T_trans slightly",
+        f"taking the front speed as 1 underestimates {TEX['T_trans']} slightly",
         1.0,
         float(factor[middle]),
         float(error[middle]),
         "scaling_stress: transition_time",
-        f"median factor over |x_minus|, {definition('stress', share)}; from {factor[good].min():.3g} to"
-        f" {factor[good].max():.3g}",
+        rf"median factor over $\left|x_-\right|$, {definition('stress')}",
     )
+    span = {"smallest factor": float(factor[good].min()), "largest factor": float(factor[good].max())}
+    return with_share(replace(claim, runs=int(good.sum()), further=span), "stress", share)
 
 
 def never_arrests(evidence: Evidence) -> Claim:
@@ -150,7 +150,7 @@ def never_arrests(evidence: Evidence) -> Claim:
     return evidence.number(
         "left_front_arrests",
         "section III C",
-        "under a stress boundary the left front arrests at x_minus after a finite time",
+        "under a stress boundary the left front arrests at $x_-$ after a finite time",
         0.0,
         float(np.nanmedian(ratio)),
         float(np.nanmedian(reference)),
@@ -164,14 +164,13 @@ def damping_effect(evidence: Evidence, boundary: str) -> Claim:
     """How much damping moves a collapse: the median deviation at the largest damping against none."""
     simulation = f"damping_{boundary}"
     shifts = []
-    notes = []
+    medians = []
     for table in (evidence.measured[simulation], *evidence.coarser[simulation]):
         ratio = table["transition_length"] / table["paper_transition_length"]
         by_damping = ratio.groupby(table["damping_ratio"]).median()
         shifts.append(float(by_damping.iloc[-1] / by_damping.iloc[0]))
-        notes.append(by_damping)
-    listed = ", ".join(f"{damping:g}: {value:.3f}" for damping, value in notes[0].items())
-    return evidence.number(
+        medians.append(by_damping)
+    claim = evidence.number(
         f"damping_effect_{boundary}",
         "appendix D",
         f"the collapse hardly depends on the damping, {boundary} boundary",
@@ -179,8 +178,10 @@ def damping_effect(evidence: Evidence, boundary: str) -> Claim:
         shifts[0],
         max(abs(shifts[0] - other) for other in shifts[1:]),
         f"{simulation}: transition_length",
-        f"median L_trans over its prediction at the largest beta/dx, relative to none; by beta/dx: {listed}",
+        r"median $L_\mathrm{trans}$ over its prediction at the largest $\beta/\Delta x$, relative to none",
     )
+    listed = {rf"at $\beta/\Delta x={damping:g}$": float(value) for damping, value in medians[0].items()}
+    return replace(claim, further=listed)
 
 
 def far_field_peak(evidence: Evidence) -> Claim:

@@ -17,6 +17,13 @@ from .alterations import changes
 from .records import file_digest
 from .versions import PACKAGES
 
+PAPER = {
+    "title": "A minimal model for the onset of slip pulses in frictional rupture",
+    "authors": ["Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard"],
+    "journal": "Physical Review E 103, 052802 (2021)",
+    "doi": "https://doi.org/10.1103/PhysRevE.103.052802",
+}
+
 
 def tree_digest(root: str | Path, paths: Iterable[str | Path]) -> str:
     """SHA-256 over names and contents of files, independent of their order."""
@@ -30,11 +37,9 @@ def source_files(root: str | Path) -> list[Path]:
     """Everything that a result may depend on besides the configuration: library, workflow, report."""
     root = Path(root)
     found = [root / "Snakefile"]
-    for folder, pattern in (("src", "*.py"), ("workflow", "*"), ("manuscript", "*")):
+    for folder in ("src", "workflow", "manuscript"):
         found += [
-            path
-            for path in (root / folder).rglob(pattern)
-            if path.is_file() and "__pycache__" not in path.parts
+            path for path in (root / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts
         ]
     return found
 
@@ -96,6 +101,7 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: 
     from importlib.metadata import version
 
     return {
+        "paper": PAPER,
         "overlay": changes(shipped, config),
         "config": dict(config),
         "source_digest": tree_digest(root, source_files(root)),
@@ -131,12 +137,9 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     content = {
         "version": "https://codecheck.org.uk/spec/config/1.0/",
         "paper": {
-            "title": "A minimal model for the onset of slip pulses in frictional rupture",
-            "authors": [
-                {"name": name}
-                for name in ("Kjetil Thøgersen", "Einat Aharonov", "Fabian Barras", "François Renard")
-            ],
-            "reference": "https://doi.org/10.1103/PhysRevE.103.052802",
+            "title": PAPER["title"],
+            "authors": [{"name": name} for name in PAPER["authors"]],
+            "reference": PAPER["doi"],
         },
         "manifest": [{"file": name, "comment": comment(name)} for name in names],
     }

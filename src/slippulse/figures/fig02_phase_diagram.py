@@ -15,6 +15,7 @@ from matplotlib.patches import Rectangle
 
 from ..data.points import point
 from ..measure.regime import REGIMES
+from ..texts.numerals import setting
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
@@ -244,7 +245,7 @@ def _draw_diagram(axes, rows: pd.DataFrame, letter: str) -> None:
         ("x", axes.set_xticks, axes.set_xlim),
         ("y", axes.set_yticks, axes.set_ylim),
     ):
-        labels = [f"{value:g}".replace("-", "\N{MINUS SIGN}") for value in levels[name]]
+        labels = [setting(value) for value in levels[name]]
         set_ticks(np.arange(levels[name].size), labels, **({"rotation": 90} if name == "x" else {}))
         set_limits(-0.5, levels[name].size - 0.5)
     axes.tick_params(length=0.0)
@@ -342,5 +343,5 @@ def _write_levels(axes, example: pd.Series) -> None:
     for level, x, side in ((left, 0.03, "left"), (right, 0.97, "right")):
         if side == "right" or left != right:
             offset, anchor = (-0.12, "top") if level < 0.0 else (0.1, "bottom")
-            label = f"{level:g}".replace("-", "\N{MINUS SIGN}")
+            label = setting(level)
             axes.text(x, level + offset, label, ha=side, va=anchor, **text)

@@ -11,6 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..comparison.scene_numbers import far_pulse
+from ..texts.numerals import MOST, number, with_uncertainty
 from .shared.space_time import draw_map, draw_profile, edges, limits, prestress_profile, thin, velocity_map
 from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
@@ -92,19 +93,9 @@ def _theory(run: xr.Dataset, numbers: pd.DataFrame) -> list[pd.DataFrame]:
 
 
 def number_text(value: float, uncertainty: float, theory: float) -> str:
-    """A number to two digits of its uncertainty, "?" where the grid study has none, and the theory's beside it."""
-    if not math.isfinite(uncertainty):
-        digits = 4
-        text = f"{value:.4f} \N{PLUS-MINUS SIGN} ?"
-    elif uncertainty > 0.0:
-        digits = min(8, max(0, 1 - math.floor(math.log10(uncertainty))))
-        text = f"{value:.{digits}f} \N{PLUS-MINUS SIGN} {uncertainty:.{digits}f}"
-    else:
-        digits = 4
-        text = f"{value:.4f}"
-    if math.isfinite(theory):
-        text += f" (theory {theory:.{max(digits, 3)}f})"
-    return text.replace("-", "\N{MINUS SIGN}")
+    """A number with its uncertainty, "?" where the grid study has none, and the theory's beside it."""
+    text = with_uncertainty(value, uncertainty, "(?)")
+    return f"{text} (theory {number(theory, MOST)})" if math.isfinite(theory) else text
 
 
 def plot(table: pd.DataFrame) -> Figure:

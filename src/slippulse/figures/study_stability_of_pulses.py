@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from ..data.points import point
 from ..measure.pulses import leading_pulse
 from ..model.scene import prestress_from
+from ..texts.numerals import setting
 from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse
 from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
@@ -134,7 +135,7 @@ def plot(table: pd.DataFrame) -> Figure:
         rows = shown[(shown["level"] == level) & (shown["y"] > 0.0)]
         velocity_axes.plot(
             rows["x"], rows["y"], color=colour, marker="o", markersize=2.0,
-            label=f"{level:g}".replace("-", "\N{MINUS SIGN}"), gid=f"velocity {level:g}",
+            label=setting(level), gid=f"velocity {level:g}",
         )  # fmt: skip
     place = shown["place"].iloc[0]
     velocity_axes.axvline(place, color=GREY, linewidth=0.6, linestyle=":")

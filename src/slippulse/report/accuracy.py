@@ -7,11 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
+from ..texts.numerals import number, percent, setting
 from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
-from .attempt import attempt
 from .markdown import table
-from .numerals import number, percent, setting
 
 # What the grid table shows: simulation, column, name.
 QUANTITIES = (
@@ -25,6 +24,16 @@ QUANTITIES = (
     ("scaling_stress", "transition_length", r"$L_\mathrm{trans}$, stress boundary"),
     ("scaling_stress", "last_release_time", "last release, stress boundary"),
 )
+
+
+def attempt(function: Callable, *arguments: object):
+    """``function(*arguments)``, or None where the theory says that it has no answer, or an argument has none."""
+    if any(argument is None for argument in arguments):
+        return None
+    try:
+        return function(*arguments)
+    except (ValueError, ArithmeticError):
+        return None
 
 
 def grid_studies(study: Callable[[str], pd.DataFrame]) -> str:
@@ -90,15 +99,16 @@ def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
             continue
         speed = attempt(front_speed, row.left, row.damping_ratio, row.release)
         pulse = attempt(steady_pulse, row.left, row.gamma, row.beta, speed)
+        undamped = attempt(front_speed_undamped, row.left)
         rows.append(
             [
                 setting(row.left),
                 setting(row.damping_ratio),
                 number(row.front_speed_right, 5),
-                number(float(speed), 5),
-                number(float(front_speed_undamped(row.left)), 5),
+                number(speed, 5),
+                number(undamped, 5),
                 number(row.pulse_peak_velocity, 4),
-                number(pulse.peak_velocity, 4),
+                number(pulse and pulse.peak_velocity, 4),
                 number(row.gamma**-0.5, 4),
             ]
         )

@@ -1,45 +1,17 @@
-"""What a run's configuration and verdicts have that the shipped ones have not."""
+"""The note at the top of a report whose run is not the shipped one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
-ABSENT = "absent"
-
-
-def altered_keys(config: Mapping, shipped: Mapping, prefix: str = "") -> list[tuple[str, object, object]]:
-    """Keys at which two configurations differ, dotted, with the run's value and the shipped one.
-
-    Parameters
-    ----------
-    config, shipped : nested mappings of builtins
-    prefix : key of these mappings in the whole
-    """
-    found = []
-    for key in sorted({*config, *shipped}, key=str):
-        name = f"{prefix}{key}"
-        ours, theirs = config.get(key, ABSENT), shipped.get(key, ABSENT)
-        if isinstance(ours, Mapping) and isinstance(theirs, Mapping):
-            found += altered_keys(ours, theirs, f"{name}.")
-        elif ours != theirs:
-            found.append((name, ours, theirs))
-    return found
-
-
-def altered_verdicts(claims: list[dict], shipped: Mapping[str, str]) -> list[tuple[str, str, str]]:
-    """Claims whose verdict differs from the shipped one: id, verdict, shipped verdict."""
-    found = []
-    for claim in claims:
-        before = shipped.get(claim["id"], ABSENT)
-        if claim["verdict"] != before:
-            found.append((claim["id"], claim["verdict"], before))
-    return found
+from ..data.alterations import changes
+from ..texts.numerals import short
 
 
 def alteration_note(
-    config: Mapping, shipped: Mapping, claims: list[dict], verdicts: Mapping[str, str]
+    config: Mapping, shipped: Mapping, claims: Iterable[Mapping], verdicts: Mapping[str, str]
 ) -> str:
-    """The note at the top of a report whose run is not the shipped one, as Markdown; empty if it is.
+    """What differs from the shipped run, as Markdown; empty if nothing does.
 
     Parameters
     ----------
@@ -47,24 +19,27 @@ def alteration_note(
     claims : the run's ledger
     verdicts : shipped verdict of each claim
     """
-    keys = altered_keys(config, shipped)
-    changed = altered_verdicts(claims, verdicts)
+    altered = [
+        f"`{change['key']}`: {_code(change['here'])} (shipped: {_code(change['shipped'])})"
+        for change in changes(shipped, config)
+    ]
+    judged = [
+        f"`{claim['id']}`: {claim['verdict']} (shipped: {verdicts.get(claim['id'], 'absent')})"
+        for claim in claims
+        if claim["verdict"] != verdicts.get(claim["id"])
+    ]
     lines = []
-    if keys:
-        listed = "; ".join(
-            f"`{key}`: `{_short(ours)}` (shipped: `{_short(theirs)}`)" for key, ours, theirs in keys
-        )
+    if altered:
         lines.append(
-            f"**Altered configuration.** This run differs from the shipped configuration in {listed}."
+            "**Altered configuration.** This run differs from the shipped configuration in "
+            f"{'; '.join(altered)}."
         )
-    if changed:
-        listed = "; ".join(f"`{id}`: {now} (shipped: {before})" for id, now, before in changed)
-        lines.append(f"**Verdicts that differ from the shipped report:** {listed}.")
-    elif keys:
+    if judged:
+        lines.append(f"**Verdicts that differ from the shipped report:** {'; '.join(judged)}.")
+    elif altered:
         lines.append("No verdict differs from the shipped report.")
-    return "\n".join(f"> {line}\n>" for line in lines).rstrip(">")
+    return "\n>\n".join(f"> {line}" for line in lines)
 
 
-def _short(value: object, longest: int = 80) -> str:
-    text = str(value).replace("`", "'")
-    return text if len(text) <= longest else text[: longest - 3] + "..."
+def _code(value: object) -> str:
+    return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"

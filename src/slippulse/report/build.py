@@ -11,16 +11,16 @@ import yaml
 from ..data.files import write_whole
 from .execute import execute
 from .inputs import Inputs
+from .notebook import SOURCE
 from .render import render_html, render_pdf
 
-SOURCE = "replication.md"
 HEAD = (
     "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"
 )
 
 
 def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
-    """Execute the manuscript and write it.
+    """Execute the manuscript and write it as HTML and PDF, with the verdicts beside.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
     """
     text = execute(Path(inputs.manuscript) / SOURCE, inputs)
     with ThreadPoolExecutor() as pool:
-        # Nothing else is left to do by now, and each is a process of its own.
+        # Both wait for processes of their own, so they overlap.
         renderings = [
             pool.submit(render, text, inputs.manuscript, outputs[kind])
             for kind, render in (("html", render_html), ("pdf", render_pdf))

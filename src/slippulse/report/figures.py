@@ -6,6 +6,8 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..texts.captions import Caption
+
 # How the text places a figure.
 PLACED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
 
@@ -22,14 +24,14 @@ class Gallery:
     ----------
     included : names of the figures whose files there are
     placed : names in the order of the text
-    captions : per name, Markdown
+    captions : per name, its texts
     folder : where NAME.pdf and NAME.png are
 
     An included figure that the text does not place comes after those that it does; one without a caption has its name.
     """
 
     def __init__(
-        self, included: list[str], placed: list[str], captions: Mapping[str, str], folder: str
+        self, included: list[str], placed: list[str], captions: Mapping[str, Caption], folder: str
     ) -> None:
         self.order = [name for name in placed if name in included]
         self.unplaced = [name for name in included if name not in placed]
@@ -41,12 +43,13 @@ class Gallery:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
         if name not in self.order:
             return ""
-        caption = " ".join(self.captions.get(name, name.replace("_", " ")).split())
         number = self.order.index(name) + 1
-        alternative = f"Figure {number}: {name.partition('_')[2].replace('_', ' ')}"
+        title = name.replace("_", " ")
+        caption = self.captions.get(name, Caption(title, title, "", ""))
+        text = f"**Figure {number}. {caption.title}.** {caption.finding} {caption.caption}".strip()
+        alternative = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         # No extension: the vector file for print, the picture for the browser.
-        picture = f"({self.folder / name}){{width=100% alt='{alternative}'}}"
-        return f"![**Figure {number}.** {caption}]{picture}"
+        return f"![{text}]({self.folder / name}){{width=100% alt='{alternative}'}}"
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
         """A reference to a figure between two texts; nothing at all if it is not included."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 # Wide enough that pandoc takes the dashes as relative widths.
@@ -33,3 +34,8 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], widths: Sequence[i
         marks.append({"l": f":{dashes}", "r": f"{dashes}:", "c": f":{dashes}:"}[side])
     lines = [head, marks, *rows]
     return "\n".join("| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines)
+
+
+def plain(text: str) -> str:
+    """Text that Markdown and its tables leave alone."""
+    return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)

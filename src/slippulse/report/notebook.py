@@ -1,96 +1,65 @@
-"""What the cells of the report use. `from slippulse.report.notebook import *` in its first cell opens the inputs."""
+"""The names that the cells and the prose of the report use."""
 
 from __future__ import annotations
 
-import inspect
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from IPython.display import Markdown, display
 
 from .. import theory
 from ..model.prestress import Prestress
-from .accuracy import grid_studies, presets, speeds
+from ..texts.captions import read_captions
+from ..texts.prose import FILTERS, fill
+from .accuracy import attempt, grid_studies, presets, speeds
 from .alterations import alteration_note
-from .attempt import attempt
 from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs
-from .ledger import Ledger
+from .ledger import LedgerTables
 from .markdown import CLOSE, SMALL, WIDE
-from .numerals import number, percent, setting
-from .prose import fill
 
-__all__ = [
-    "CLOSE",
-    "SMALL",
-    "WIDE",
-    "Prestress",
-    "alteration_note",
-    "attempt",
-    "claim",
-    "config",
-    "errata",
-    "figure",
-    "further",
-    "gallery",
-    "grid_studies",
-    "inputs",
-    "np",
-    "number",
-    "percent",
-    "presets",
-    "prose",
-    "see",
-    "setting",
-    "show",
-    "speeds",
-    "theory",
-]
-
-inputs = Inputs.current()
-config = inputs.config
-claim = Ledger(inputs.claims, config["claims"])
-gallery = Gallery(
-    inputs.figures,
-    placed_figures((Path(inputs.manuscript) / "replication.md").read_text(encoding="utf-8")),
-    inputs.captions,
-    inputs.figures_folder,
-)
-see = gallery.see
+SOURCE = "replication.md"
 
 
-def show(markdown: str) -> None:
-    """Put Markdown into the report."""
-    if markdown:
-        display(Markdown(markdown))
+def define(names: dict[str, object], inputs: Inputs, show: Callable[[str], None]) -> None:
+    """Define what the report is written with.
+
+    Parameters
+    ----------
+    names : where to; what the cells add later, the errata see too
+    inputs : what the report is written from
+    show : puts Markdown into the report
+    """
+    claim = LedgerTables(inputs.claims, inputs.config["claims"])
+    names |= FILTERS | {"claim": claim, "config": inputs.config, "inputs": inputs, "show": show}
+    names |= {"CLOSE": CLOSE, "SMALL": SMALL, "WIDE": WIDE, "np": np, "theory": theory}
+    for function in (Prestress, attempt, grid_studies, presets, speeds):
+        names[function.__name__] = function
+
+    captions = read_captions(Path(inputs.manuscript) / "captions.yaml", lambda text: fill(text, names))
+    placed = placed_figures(inputs.text(SOURCE))
+    gallery = Gallery(inputs.figures, placed, captions, inputs.figures_folder)
+
+    def further() -> None:
+        for name in gallery.unplaced:
+            show(gallery.figure(name))
+
+    names |= {
+        "alteration_note": lambda: alteration_note(
+            inputs.config, inputs.shipped, inputs.claims, inputs.shipped_verdicts
+        ),
+        "errata": lambda: errata_table(inputs.errata, lambda text: fill(text, names)),
+        "figure": lambda name: show(gallery.figure(name)),
+        "further": further,
+        "see": gallery.see,
+    }
 
 
-def prose(text: str) -> None:
-    """Put Markdown into the report, its expressions evaluated with the names of the cells."""
-    show(fill(text, _names()))
+def define_by_hand(names: dict[str, object]) -> None:
+    """The same for a notebook opened inside a project with finished results; what it shows stands below the cell."""
+    from IPython.display import Markdown, display
 
-
-def figure(name: str) -> None:
-    """Put a figure into the report, if this run has it."""
-    show(gallery.figure(name))
-
-
-def further() -> None:
-    """Put the included figures that the text does not place into the report."""
-    for name in gallery.unplaced:
-        figure(name)
-
-
-def errata() -> str:
-    """The errata as a table."""
-    names = _names()
-    return errata_table(inputs.errata, lambda text: fill(text, names))
-
-
-def _names() -> dict:
-    """What the cells have defined so far, seen from the caller outside this module."""
-    frame = inspect.currentframe()
-    while frame is not None and frame.f_globals.get("__name__") == __name__:
-        frame = frame.f_back
-    return dict(frame.f_globals) if frame is not None else {}
+    folder = Path.cwd()
+    project = next(path for path in (folder, *folder.parents) if (path / "config/config.yaml").exists())
+    define(names, Inputs.of_project(project), lambda markdown: display(Markdown(markdown)))

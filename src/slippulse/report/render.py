@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
-import pypandoc
 import typst
 
 from ..data.files import write_whole
+from ..texts.pandoc import pandoc
 
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0
@@ -78,21 +77,15 @@ def render_pdf(text: str, manuscript: str | Path, output: str | Path) -> None:
 
 
 def _pandoc(text: str, manuscript: Path, options: list[str]) -> str:
-    command = [
-        pypandoc.get_pandoc_path(),
+    common = [
         "--from=markdown",
         "--standalone",
         "--number-sections",
         "--citeproc",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",
-        "--fail-if-warnings",
-        *options,
     ]
-    done = subprocess.run(command, input=text, capture_output=True, text=True, encoding="utf-8", check=False)
-    if done.returncode != 0:
-        raise ValueError(f"pandoc: {done.stderr.strip()}")
-    return done.stdout
+    return pandoc(text, common + options)
 
 
 def _gather(source: str, root: Path) -> str:

@@ -12,6 +12,8 @@ from ..figures import scene
 from ..figures.style import save_figure
 from ..pages.scene import scene_page
 
+FILES = ("pages/templates/*",)
+
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     """Files: data, uncertainties. Outputs: numbers, csv, png, pdf, html. Settings: scene, title, share."""

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from pathlib import Path
 
 import pandas as pd
 
-from ..claims.all_claims import all_claims
 from ..claims.evidence import Evidence
+from ..claims.paper import all_claims
 from ..data.files import write_text
 from ..data.store import load_table
-from ..pages.index import claims_page
+from ..pages.claims import claims_page
+
+FILES = ("pages/templates/*",)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
@@ -23,7 +24,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
         _tables(files["measured"]), coarser, _tables(files["uncertainties"]), settings["claims"]
     )
     found = all_claims(evidence, settings["share"], settings["published"])
-    claims = [_finite(claim.as_dict()) for claim in found]
+    claims = [claim.as_dict() for claim in found]
     write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
     write_text(claims_page(claims), outputs["html"])
 
@@ -34,10 +35,3 @@ def _tables(paths: list[str]) -> dict[str, pd.DataFrame]:
 
 def _by_factor(table: pd.DataFrame) -> list[pd.DataFrame]:
     return [part.reset_index(drop=True) for _, part in table.groupby("factor")]
-
-
-def _finite(entry: dict) -> dict:
-    """JSON has no NaN: what was not measured is null."""
-    return {
-        key: None if isinstance(value, float) and math.isnan(value) else value for key, value in entry.items()
-    }

@@ -2,25 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 
 from ..data.files import write_text
-from ..pages.index import captions_from, index_page
+from ..pages.index import index_page
+
+FILES = ("pages/templates/*",)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: claims, provenance. Outputs: html. Settings: figures, studies (captions and settings), scenes."""
-    claims, facts = (
-        json.loads(Path(files[key]).read_text(encoding="utf-8")) for key in ("claims", "provenance")
-    )
-    text = index_page(
-        Path(outputs["html"]).parent,
-        captions_from(settings["figures"]),
-        captions_from(settings["studies"]),
-        claims,
-        facts,
-        settings["scenes"],
-    )
-    write_text(text, outputs["html"])
+    """Files: captions, summary, claims, provenance. Outputs: html. Settings: galleries (names by heading), scenes."""
+    texts = {key: files[key] for key in ("captions", "summary")}
+    page = index_page(Path(outputs["html"]).parent, texts, settings["galleries"], settings["scenes"])
+    write_text(page, outputs["html"])

@@ -8,16 +8,14 @@ from pathlib import Path
 
 from ..data.files import write_text
 from ..data.provenance import checksums, manifest, provenance
+from ..texts.captions import read_captions
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     """Files: results, captions. Outputs: provenance, checksums, manifest. Settings: config, shipped."""
     base = Path(outputs["provenance"]).parent
     facts = provenance(".", settings["config"], settings["shipped"], base / "benchmarks")
-    comments = {
-        Path(path).stem: " ".join(Path(path).read_text(encoding="utf-8").split(". ")[0].split())
-        for path in files["captions"]
-    }
+    comments = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, comments), outputs["manifest"])
     write_text(json.dumps(facts, indent=1, ensure_ascii=False) + "\n", outputs["provenance"])

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..data.files import write_text
-from ..pages.index import scenes_page
+from ..pages.scene import scenes_page
+
+FILES = ("pages/templates/*",)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ...texts.numerals import setting
 from ..style import BLACK, GREY, VELOCITY_MAP
 
 # Samples kept along each axis of a map, and blocks along each front.
@@ -90,7 +91,7 @@ def draw_profile(axes, rows: pd.DataFrame) -> None:
     axes.set_xlim(min(0.0, lower) - 0.15, upper + 0.15)
     # The levels far away and the peak.
     ticks = sorted({round(float(value), 2) for value in (*rows["value"].iloc[[0, -1]], upper)})
-    axes.set_xticks(ticks, [f"{value:g}".replace("-", "\N{MINUS SIGN}") for value in ticks])
+    axes.set_xticks(ticks, [setting(value) for value in ticks])
     axes.set_ylim(rows["position"].min(), rows["position"].max())
 
 

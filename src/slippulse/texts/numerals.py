@@ -1,0 +1,95 @@
+"""How a number is written, in the report, on the pages and in figures: plain text with Unicode signs."""
+
+from __future__ import annotations
+
+import math
+
+# Smaller or larger than this, a number is written with a power of ten.
+SMALL, LARGE = 1e-3, 1e5
+# Significant digits: at most so many without an uncertainty, and with one.
+MOST, MOST_WITH_UNCERTAINTY = 5, 6
+MISSING = "not measured"
+SUPERSCRIPT = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float | None, digits: int = 3) -> str:
+    """A number with a stated count of significant digits.
+
+    Parameters
+    ----------
+    value : None and NaN are written as not measured; a whole number keeps all its digits
+    digits : significant digits, at most `MOST`
+    """
+    if value is None or math.isnan(value):
+        return MISSING
+    if math.isinf(value):
+        return _minus("∞" if value > 0 else "-∞")
+    if value == 0.0:
+        return "0"
+    digits = min(digits, MOST)
+    if not SMALL <= abs(value) < LARGE:
+        return _power_of_ten(f"{value:.{digits - 1}e}")
+    if float(value).is_integer():
+        return _minus(f"{value:.0f}")
+    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return _minus(f"{value:.{places}f}")
+
+
+def setting(value: float) -> str:
+    """A number of the configuration, all its digits and no more."""
+    return _power_of_ten(f"{value:g}")
+
+
+def rounded(value: float | None, digits: int = 4) -> str:
+    """A number to some significant digits, without zeros at its end."""
+    return MISSING if value is None or math.isnan(value) else setting(float(f"{value:.{digits}g}"))
+
+
+def percent(value: float | None, digits: int = 2) -> str:
+    """A share as a percentage."""
+    if value is None or math.isnan(value):
+        return MISSING
+    return f"{number(100.0 * value, digits)} %"
+
+
+def with_uncertainty(value: float | None, uncertainty: float | None, unknown: str = "") -> str:
+    """A value with its uncertainty in the last digits, as in 1.476(13), rounded as the Particle Data Group does.
+
+    Parameters
+    ----------
+    value, uncertainty : without an uncertainty, or with 0, the value alone has at most `MOST` digits
+    unknown : what follows a value without an uncertainty
+
+    A value that is known to more than `MOST_WITH_UNCERTAINTY` digits is cut there, and its uncertainty rounded up.
+    """
+    if value is None or not math.isfinite(value) or uncertainty == 0.0:
+        return number(value, MOST)
+    if uncertainty is None or not math.isfinite(uncertainty):
+        return number(value, MOST) + unknown
+    from uncertainties import ufloat
+
+    if value != 0.0:
+        last = 10.0 ** (math.floor(math.log10(abs(value))) + 1 - MOST_WITH_UNCERTAINTY)
+        if abs(uncertainty) < last:
+            return _minus(f"{ufloat(value, last):.1uSP}")
+    return _minus(f"{ufloat(value, abs(uncertainty)):SP}")
+
+
+def short(value: object, longest: int = 80) -> str:
+    """Any value of the configuration as text of limited length; an absent one as a dash."""
+    text = "\N{EN DASH}" if value is None else str(value)
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def _power_of_ten(text: str) -> str:
+    """A number that Python may have written as 1.5e-05, with a true power of ten."""
+    mantissa, _, exponent = text.partition("e")
+    if not exponent:
+        return _minus(text)
+    power = "10" + str(int(exponent)).translate(SUPERSCRIPT)
+    return power if mantissa in ("1", "1.0") else _minus(f"{mantissa}×{power}")
+
+
+def _minus(text: str) -> str:
+    """A true minus sign."""
+    return text.replace("-", "\N{MINUS SIGN}")

@@ -1,0 +1,72 @@
+"""Markdown with expressions in double braces: jinja2 templates in which a number that is missing reads so."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from numbers import Real
+from traceback import extract_tb
+
+from jinja2 import Environment, StrictUndefined, TemplateError
+
+from .numerals import number, percent, setting, short, with_uncertainty
+
+FILTERS = {
+    "number": number,
+    "percent": percent,
+    "setting": setting,
+    "short": short,
+    "with_uncertainty": with_uncertainty,
+}
+
+
+class Prose(Environment):
+    """Where the expressions of a text are evaluated.
+
+    An unknown name is an error; what belongs to None, such as the width of a pulse where theory has none, is None. A
+    number without a filter has three significant digits.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(undefined=StrictUndefined, finalize=_text)
+        self.filters |= FILTERS
+
+    def getattr(self, obj: object, attribute: str) -> object:
+        """The attribute; None of None."""
+        return None if obj is None else super().getattr(obj, attribute)
+
+    def getitem(self, obj: object, argument: object) -> object:
+        """The item; None of None."""
+        return None if obj is None else super().getitem(obj, argument)
+
+
+def _text(value: object) -> object:
+    return number(value) if value is None or isinstance(value, Real) else value
+
+
+PROSE = Prose()
+
+
+def fill(text: str, names: Mapping[str, object]) -> str:
+    """Replace each ``{{ expression }}`` by its value.
+
+    Parameters
+    ----------
+    text : Markdown
+    names : what the expressions may use
+
+    Raises
+    ------
+    ValueError
+        If an expression fails, with the line it stands on and the reason.
+    """
+    try:
+        return PROSE.from_string(text).render(names)
+    except (TemplateError, ValueError, TypeError, ArithmeticError, LookupError) as error:
+        raise ValueError(f"{_line(text, error)}: {type(error).__name__}: {error}") from None
+
+
+def _line(text: str, error: Exception) -> str:
+    """The line of a template at which rendering failed."""
+    numbers = [entry.lineno for entry in extract_tb(error.__traceback__) if entry.filename == "<template>"]
+    number = numbers[-1] if numbers else getattr(error, "lineno", 1)
+    return " ".join(text.splitlines()[number - 1].split())[:100]

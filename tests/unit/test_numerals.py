@@ -1,0 +1,64 @@
+"""Numbers as texts, pages and figures write them."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from slippulse.texts.numerals import number, percent, rounded, setting, short, with_uncertainty
+from slippulse.texts.pandoc import html_of
+from slippulse.texts.prose import fill
+
+
+@pytest.mark.parametrize(
+    ("value", "uncertainty", "text"),
+    [
+        (1.9169812, 3.3e-6, "1.91698(1)"),
+        (1.47554, 0.01267, "1.476(13)"),
+        (0.0867, 0.00984, "0.087(10)"),
+        (116.57648, 0.05685, "116.58(6)"),
+        (-0.0087971, 0.0010633, "−0.0088(11)"),
+        (-6.0e-17, 1.6e-16, "−0.6(1.6)×10⁻¹⁶"),
+        (123456789.0, 1.0, "1.23457(1)×10⁸"),
+        (1.0, 0.5, "1.0(5)"),
+        (1.0, 0.0, "1"),
+        (0.123456789, 0.0, "0.12346"),
+        (0.123456789, math.nan, "0.12346"),
+        (None, None, "not measured"),
+    ],
+)
+def test_an_uncertainty_stands_in_the_last_digits(value, uncertainty, text):
+    assert with_uncertainty(value, uncertainty) == text
+
+
+def test_without_one_there_are_at_most_five_digits():
+    assert number(math.pi, 9) == "3.1416"
+    assert [number(value) for value in (0.0, 2, -0.5, 1e-7, math.inf, math.nan, None)] == [
+        "0", "2", "−0.500", "1.00×10⁻⁷", "∞", "not measured", "not measured",
+    ]  # fmt: skip
+    assert [percent(value) for value in (0.95, 0.0712, 1e-8, None)] == [
+        "95 %",
+        "7.1 %",
+        "10⁻⁶ %",
+        "not measured",
+    ]
+    assert [setting(value) for value in (0.01, -0.3, 1e-9, 12)] == ["0.01", "−0.3", "10⁻⁹", "12"]
+    assert [rounded(value) for value in (0.1, 1.23456, None)] == ["0.1", "1.235", "not measured"]
+    assert short([1] * 99, 10) == "[1, 1, ..." and short(None) == "–"
+
+
+def test_prose_says_what_is_missing_and_refuses_what_is_unknown():
+    names = {"pulse": None, "speed": 1.25, "estimate": None}
+    text = "{{ pulse.width | number(4) }}, {{ estimate[0] | percent }}, {{ speed }} of $\\frac{1}{2}$"
+    assert fill(text, names) == "not measured, not measured, 1.25 of $\\frac{1}{2}$"
+    with pytest.raises(ValueError, match=r"^It is \{\{ speeed \}\}\.: UndefinedError: 'speeed'"):
+        fill("First.\nIt is {{ speeed }}.", names)
+
+
+def test_texts_for_pages_are_one_paragraph_each_and_show_raw_html():
+    html = html_of(["a <b>x</b> & $\\tau_0$", "(a) two", ""])
+    assert html["a <b>x</b> & $\\tau_0$"].startswith("a &lt;b&gt;x&lt;/b&gt; &amp; <math")
+    assert html["(a) two"] == "(a) two" and html[""] == ""
+    with pytest.raises(ValueError, match="not one paragraph"):
+        html_of(["# a heading"])
