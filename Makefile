@@ -11,7 +11,7 @@ ALLOW_LARGE ?=
 AGAINST ?=
 KILLS ?= 24
 # Through the environment, so that no value is read as a command.
-export CORES PRESET OVERLAY TARGET AGAINST
+export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE
 VENV := .venv
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
@@ -19,6 +19,12 @@ PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-d
 # uv of the lock, or pip where there is no uv for this machine.
 INSTALL := sh -c '"$(BIN)/uv" --version >/dev/null 2>&1 && exec "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes "$$@" || exec "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes "$$@"' install
 PIP_EDITABLE := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+
+# What Snakemake would stop at late, or never: jobs find no interpreter below a folder with such a name.
+CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
+CHECK_OPTIONS = $(CHECK_PLACE); \
+    case "$$CORES" in ""|*[!0-9]*|0|0[0-9]*) echo "CORES: $$CORES; allowed: a whole number from 1 on, such as CORES=2" >&2; exit 1;; esac; \
+    case "$$ALLOW_LARGE" in ""|true|false) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
 .PHONY: help setup slurm lock replicate rulegraph verify faults test slurm-test benchmark check clean distclean
 
@@ -38,6 +44,7 @@ help:
 setup: $(READY)
 
 $(READY): requirements-build.lock requirements.lock pyproject.toml
+	@$(CHECK_PLACE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
 	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
@@ -64,15 +71,16 @@ lock:
 	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
 
 replicate: $(READY)
+	@$(CHECK_OPTIONS)
 	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.overlay "$$OVERLAY"
 	@"$(BIN)/python" workflow/unlock.py .
 	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
-	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large=true)) \
+	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large="$$ALLOW_LARGE")) \
 	    $(if $(OVERLAY),--configfile "$$OVERLAY") -- $$TARGET
 
 rulegraph: $(READY)
-	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --rulegraph mermaid-js -- \
-	    $${TARGET:-results/figures/fig05_scaling.png results/claims.json} 2>/dev/null
+	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --workflow-profile none --quiet all --rulegraph mermaid-js -- \
+	    $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
 
 verify: $(READY)
 	@"$(BIN)/python" -m slippulse.data.verify results $(if $(AGAINST),--against "$$AGAINST")

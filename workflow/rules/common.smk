@@ -1,9 +1,8 @@
 # What the rules share: the checked configuration, and what each result comes from.
 
+import sys
 from functools import cache
 from pathlib import Path
-
-from snakemake.exceptions import WorkflowError
 
 from slippulse.configuration.expand import ConfigError, accuracy_of, resolve, validate
 from slippulse.configuration.job_limits import joining_limits, sweep_limits
@@ -12,6 +11,13 @@ from slippulse.configuration.refusals import runs
 from slippulse.configuration.scenes import scene_block
 from slippulse.data.records import digest_of
 from slippulse.steps.reach import PACKAGE, declared, sources
+
+
+def refuse(reason):
+    """Stop before anything runs, with the reason and no more."""
+    sys.stderr.write(f"{reason}\n")
+    raise SystemExit(1)
+
 
 # Of a switch on the command line Snakemake reads True and False, and leaves true and false text.
 for key, value in config.items():
@@ -29,7 +35,7 @@ try:
         every_run=workflow.is_main_process,
     )
 except ConfigError as error:
-    raise WorkflowError(f"The configuration is refused:\n{error}") from None
+    refuse(f"The configuration is refused:\n{error}")
 
 ACCURACY = accuracy_of(config)
 LOCK = "requirements.lock"
@@ -40,6 +46,7 @@ SIMULATIONS = config["simulations"] | {
 }
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED["simulations"]]
+OWN_SCENE_NAMES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 # Each figure by name; what it draws stands in its module.
 FIGURES, STUDIES = (
@@ -75,7 +82,7 @@ def plain(value):
 def sweep_of(name, coarser=1.0):
     """All that the data of a simulation depend on."""
     if name not in SIMULATIONS:
-        raise WorkflowError(f"simulation: {name!r}; allowed: {', '.join(SIMULATIONS)}")
+        refuse(f"simulation: {name!r}; allowed: {', '.join(SIMULATIONS)}")
     return resolve(SIMULATIONS[name], config["model"], ACCURACY, coarser)
 
 

@@ -2,6 +2,8 @@
 
 DRAWN = simulations_of(NEEDS)
 STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
+OWN_SCENES = scene_files(OWN_SCENE_NAMES)
+OWN_SWEEPS = figure_files(f"sweep_{name}" for name in OWN_SIMULATIONS)
 RESULTS = [
     *figure_files(NEEDS),
     *(f"results/data/{name}.nc" for name in sorted({*DRAWN, *STUDIED})),
@@ -9,6 +11,7 @@ RESULTS = [
     *tables("uncertainties", STUDIED),
     *(f"results/studies/{name}.csv" for name in SOLVER_STUDIES),
     *scene_files(SCENES),
+    *OWN_SWEEPS,
     "results/claims.json",
     "results/claims.html",
     "results/manuscript/replication.html",
@@ -47,6 +50,8 @@ rule write_index:
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
         pictures=[f"results/figures/{name}.png" for name in NEEDS],
+        sweeps=OWN_SWEEPS,
+        scenes=scene_files(SCENES),
         claims="results/claims.json",
         provenance="results/provenance.json",
         report="results/manuscript/replication.html",
@@ -58,7 +63,8 @@ rule write_index:
         "results/benchmarks/write_index.tsv"
     params:
         step="write_index",
-        galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES},
+        galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES}
+        | ({"Sweeps of your own": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
         scenes={name: scene["title"] for name, scene in SCENES.items()},
         configuration=digest_of(config),
     message:

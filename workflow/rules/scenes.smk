@@ -1,4 +1,4 @@
-# Single scenes by name: a figure, a page that stands alone, an animation.
+# Single scenes by name: a figure, a page that stands alone, an animation; and sweeps that an overlay adds.
 
 
 rule scenes:
@@ -14,6 +14,7 @@ rule draw_scene:
     input:
         sources("steps.draw_scene"),
         data="results/data/{scene}.nc",
+        measured="results/measurements/{scene}.csv",
         uncertainties="results/uncertainties/{scene}.csv",
     output:
         png=report("results/scenes/{scene}.png", category="Scenes", labels={"scene": "{scene}"}),
@@ -76,5 +77,29 @@ rule write_scenes_page:
         scenes={name: scene["title"] for name, scene in SCENES.items()},
     message:
         "Writing the list of scenes"
+    script:
+        "../scripts/step.py"
+
+
+rule draw_sweep:
+    input:
+        sources("steps.draw_sweep"),
+        measured="results/measurements/{sweep}.csv",
+    output:
+        png=report("results/figures/sweep_{sweep}.png", category="Sweeps", labels={"sweep": "{sweep}"}),
+        pdf="results/figures/sweep_{sweep}.pdf",
+        csv="results/figures/sweep_{sweep}.csv",
+    log:
+        "results/logs/draw_sweep/{sweep}.log",
+    benchmark:
+        "results/benchmarks/draw_sweep/{sweep}.tsv"
+    wildcard_constraints:
+        sweep="|".join(config["simulations"]),
+    params:
+        step="draw_sweep",
+        share=config["measure"]["share"],
+        configuration=lambda wildcards: configuration_of_job(wildcards.sweep),
+    message:
+        "Drawing sweep {wildcards.sweep}"
     script:
         "../scripts/step.py"

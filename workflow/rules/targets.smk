@@ -1,7 +1,5 @@
 # Included last: what is asked for on the command line is something that a rule makes, and affordable.
 
-import sys
-
 from slippulse.configuration.expand import expand as expand_sweep
 from slippulse.configuration.refusals import check_affordable, check_folder, check_targets
 from slippulse.data.records import changed_since_made, mark_outdated, remove_changed
@@ -66,4 +64,4 @@ try:
     refuse_dear_targets()
     refuse_changed_files()
 except ConfigError as error:
-    raise WorkflowError(f"Refused:\n{error}") from None
+    refuse(str(error))

@@ -25,7 +25,9 @@ def far_pulse(attributes: Mapping, side: str = "right") -> SteadyPulse | None:
     return steady_pulse(tau, attributes["gamma"], attributes["beta"], speed)
 
 
-def scene_numbers(attributes: Mapping, study: pd.DataFrame, share: float) -> pd.DataFrame:
+def scene_numbers(
+    attributes: Mapping, study: pd.DataFrame, share: float, pulse_state: str = "steady"
+) -> pd.DataFrame:
     """Measured numbers of a scene with their uncertainty, beside exact theory where there is any.
 
     Parameters
@@ -33,6 +35,7 @@ def scene_numbers(attributes: Mapping, study: pd.DataFrame, share: float) -> pd.
     attributes : of the run's data
     study : grid study of the scene: quantity, value, uncertainty
     share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+    pulse_state : of the leading pulse (`pulse_state`); the theory of steady pulses applies to a steady one alone
 
     Returns
     -------
@@ -40,7 +43,9 @@ def scene_numbers(attributes: Mapping, study: pd.DataFrame, share: float) -> pd.
     promised: promised and kept, as in the study
     """
     study = study.set_index("quantity")
-    theory = {name: _or_nan(find) for name, find in _theories(attributes, share).items()}
+    theory = theories(attributes, share)
+    if pulse_state != "steady":
+        theory = {name: value for name, value in theory.items() if not name.startswith("pulse")}
     profile = prestress_from(attributes)
     rows = []
     for quantity, label in LABELS[attributes["boundary"]].items():
@@ -88,6 +93,17 @@ LABELS = {
         "largest_velocity": "largest velocity",
     },
 }
+
+
+def theories(attributes: Mapping, share: float) -> dict[str, float]:
+    """What exact theory has for a run, by quantity; NaN where it has an answer in principle but not here.
+
+    Parameters
+    ----------
+    attributes : of the run's data, or a row of a measured table
+    share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+    """
+    return {name: _or_nan(find) for name, find in _theories(attributes, share).items()}
 
 
 def _theories(attributes: Mapping, share: float) -> dict[str, Callable[[], float]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import yaml
@@ -76,7 +76,12 @@ def index_page(
     accuracy = fill(summary["accuracy"], names)
     lines = [line | {"text": fill(line["text"], names)} for line in summary["verdict"]]
 
-    shown = {name: captions[name] for listed in galleries.values() for name in listed}
+    shown = {
+        # A sweep of one's own has no caption but its name.
+        name: captions.get(name) or replace(captions["own_sweep"], title=name.removeprefix("sweep_"))
+        for listed in galleries.values()
+        for name in listed
+    }
     html = markup_of(
         [text for entry in shown.values() for text in (entry.finding, entry.caption)]
         + [line["text"] for line in lines]

@@ -8,6 +8,7 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from ..data.origin import configuration
 from ..texts.pandoc import html_of
 from ..texts.prose import FILTERS
 
@@ -29,7 +30,7 @@ def page(template: str, **data: object) -> str:
     template : file beside this module, in templates
     data : what it shows
     """
-    return PAGES.get_template(template).render(data) + "\n"
+    return PAGES.get_template(template).render(data, configuration=configuration()) + "\n"
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:

@@ -15,7 +15,7 @@ from .render import page
 SHOWN = (
     "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx",
     "duration", "release", "scheme", "max_step", "order", "steps", "block_updates", "energy_residual", "min_velocity",
-    "min_stuck_stress", "re_releases", "flags",
+    "min_stuck_stress", "re_releases", "pulse_state", "flags",
 )  # fmt: skip
 NONE = "\N{EN DASH}"
 
@@ -29,13 +29,14 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
     png : its figure
     numbers : measured, with uncertainty and theory, as `slippulse.comparison.scene_numbers.scene_numbers`; a promised
         accuracy, where there is one, is stated with whether it is kept
-    attributes : of the run's data
+    attributes : of the run's data, with the state of its leading pulse
     """
     return page(
         "scene.html",
         name=name,
         title=title,
         picture=base64.b64encode(Path(png).read_bytes()).decode("ascii"),
+        pulse_state=attributes.get("pulse_state", "none"),
         promised="promised" in numbers,
         numbers=[_number(row) for row in numbers.itertuples()],
         parameters={key.replace("_", " "): _value(attributes[key]) for key in SHOWN if key in attributes},

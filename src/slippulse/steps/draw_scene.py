@@ -16,11 +16,15 @@ FILES = ("pages/templates/*",)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: data, uncertainties. Outputs: numbers, csv, png, pdf, html. Settings: scene, title, share."""
+    """Files: data, measured, uncertainties. Outputs: numbers, csv, png, pdf, html. Settings: scene, title, share."""
     name, title = settings["scene"], settings["title"]
     found = point(load_dataset(files["data"]), 0)
-    numbers = scene_numbers(found.attrs, load_table(files["uncertainties"]), settings["share"])
+    state = load_table(files["measured"])["pulse_state"].iloc[0]
+    numbers = scene_numbers(found.attrs, load_table(files["uncertainties"]), settings["share"], state)
     save_table(numbers, outputs["numbers"])
     save_table(scene.table(found, numbers, {"title": title}), outputs["csv"])
     save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
-    write_text(scene_page(name, title, outputs["png"], numbers, found.attrs), outputs["html"])
+    write_text(
+        scene_page(name, title, outputs["png"], numbers, found.attrs | {"pulse_state": state}),
+        outputs["html"],
+    )

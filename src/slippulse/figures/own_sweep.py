@@ -1,0 +1,88 @@
+"""A sweep of one's own: its main numbers against what varies in it, with exact theory where there is any."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from ..comparison.scene_numbers import LABELS, theories
+from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
+
+# What may vary in a sweep, with its symbol.
+AXES = {
+    "left": r"$\bar\tau_{0,l}$",
+    "right": r"$\bar\tau_{0,r}$",
+    "gamma": r"$\bar\gamma$",
+    "damping_ratio": r"$\bar\beta/\mathrm{d}\bar x$",
+    "width": r"$\bar W_{\bar\tau}$",
+    "beyond": r"level beyond the step",
+    "release": "release rule",
+    "dx": r"$\mathrm{d}\bar x$",
+}
+PANELS, ROWS = 6, 2
+COLOURS = len(CYCLE)
+
+
+def table(measured: pd.DataFrame, share: float) -> pd.DataFrame:
+    """Every main number of every run.
+
+    Parameters
+    ----------
+    measured : measured numbers of the sweep, one row a run
+    share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+
+    Returns
+    -------
+    rows of quantity, label, value, theory (NaN where there is none), flags, and the axes that vary
+    """
+    varying = [name for name in AXES if measured[name].nunique() > 1] or ["left"]
+    # Many values make the axis of the drawing, few its colours.
+    varying.sort(key=lambda name: (measured[name].dtype.kind != "f", -measured[name].nunique()))
+    rows = []
+    for run in measured.to_dict("records"):
+        exact = theories(run, share)
+        for quantity, label in LABELS[run["boundary"]].items():
+            if np.isfinite(run.get(quantity, np.nan)):
+                rows.append(
+                    {"quantity": quantity, "label": label, "value": run[quantity], "flags": run["flags"]}
+                    | {"theory": exact.get(quantity, np.nan), "axis": varying[0], "x": run[varying[0]]}
+                    | {"colour": varying[-1] if len(varying) > 1 else "", "level": run[varying[-1]]}
+                )
+    columns = ["quantity", "label", "value", "theory", "flags", "axis", "x", "colour", "level"]
+    return pd.DataFrame(rows, columns=columns)
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """One panel a quantity; markers are runs (open: flagged), lines exact theory."""
+    quantities = list(dict.fromkeys(table["quantity"]))[:PANELS]
+    figure = new_figure(PAGE, 4.2)
+    grid = figure.subplots(ROWS, PANELS // ROWS).ravel()
+    for axes, letter, quantity in zip(grid, "abcdef", quantities, strict=False):
+        rows = table[table["quantity"] == quantity]
+        for colour, (level, group) in zip(_colours(rows), rows.groupby("level"), strict=False):
+            group = group.sort_values("x")
+            label = f"{AXES[group['colour'].iloc[0]]} = {level}" if group["colour"].iloc[0] else None
+            axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
+            for sound, face in ((True, colour), (False, "none")):
+                some = group[(group["flags"].isna() | (group["flags"] == "")) == sound]
+                axes.plot(
+                    some["x"],
+                    some["value"],
+                    "o",
+                    color=colour,
+                    markerfacecolor=face,
+                    label=label if sound else None,
+                )
+        axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=rows["label"].iloc[0])
+        panel_letter(axes, letter)
+    for axes in grid[len(quantities) :]:
+        axes.set_visible(False)
+    if quantities and grid[0].get_legend_handles_labels()[0]:
+        figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
+    return figure
+
+
+def _colours(rows: pd.DataFrame) -> list[str]:
+    count = rows["level"].nunique()
+    return list(CYCLE) if 1 < count <= COLOURS else [GREY] * count
