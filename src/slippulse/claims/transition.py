@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..prestress import Prestress
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
+from ..theory import ArrestingCrack, exact_transition_displacement
 from .evidence import Evidence
 from .ledger import Claim
 

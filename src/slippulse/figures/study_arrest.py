@@ -12,7 +12,7 @@ from matplotlib.ticker import NullFormatter
 
 from ..measure.fronts import arrival, path
 from ..points import point
-from ..theory.rupture import ArrestingCrack
+from ..theory import ArrestingCrack
 from .shared.pulses import profile_of
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 

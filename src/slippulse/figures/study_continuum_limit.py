@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ..prestress import Prestress
 from ..theory.front_speed import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
-from ..theory.rupture import exact_transition_displacement
+from ..theory import exact_transition_displacement
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 SERIES = {

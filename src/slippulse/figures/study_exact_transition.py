@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..prestress import Prestress
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
+from ..theory import ArrestingCrack, exact_transition_displacement
 from .shared.scaling import SYMBOLS
 from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
 

@@ -13,7 +13,7 @@ from ..prestress import Prestress
 from ..scenes import STRONGEST_DAMPING
 from ..theory.front_speed import front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
+from ..theory import ArrestingCrack, exact_transition_displacement
 
 
 def scene_profile(attributes: Mapping) -> Prestress:

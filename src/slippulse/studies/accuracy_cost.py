@@ -17,7 +17,7 @@ from ..simulation import simulate
 from ..theory.front_speed import front_speed as exact_speed
 from ..theory.front_speed import front_speed_undamped
 from ..theory.pulse import steady_pulse
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
+from ..theory import ArrestingCrack, exact_transition_displacement
 
 # Errors of the scenes, relative to exact theory, the largest over the damping ratios.
 QUANTITIES = (

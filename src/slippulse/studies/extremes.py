@@ -18,7 +18,7 @@ from ..simulation import simulate
 from ..theory.front_speed import front_speed as exact_speed
 from ..theory.front_speed import lattice_front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
-from ..theory.rupture import ArrestingCrack, Fronts, exact_transition_displacement
+from ..theory import ArrestingCrack, Fronts, exact_transition_displacement
 from .edges import NOT_OFFERED, Edge, Measured, flags_of, scene, speed
 from .single_precision import crack_velocity
 

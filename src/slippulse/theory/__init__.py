@@ -1,6 +1,15 @@
 """Closed forms and quadratures; no simulation. Knows nothing of the lattice code, so that agreement means something."""
 
+from .arrest import ArrestingCrack
+from .barrier import barrier_depth, barrier_depth_estimate
 from .dimensional import Layer, damage_zone_stress_drop
+from .exact_transition import (
+    ExactTransition,
+    Fronts,
+    exact_transition_displacement,
+    slip_velocity,
+    uniform_transition_time,
+)
 from .front_speed import (
     front_speed,
     front_speed_undamped,
@@ -8,13 +17,7 @@ from .front_speed import (
     prestress_for_speed,
 )
 from .pulse import SteadyPulse, paper_pulse, steady_pulse
-from .rupture import (
-    ArrestingCrack,
-    ExactTransition,
-    Fronts,
-    exact_transition_displacement,
-    slip_velocity,
-)
+from .rupture import FrontEnd, Limit, Rupture
 from .transition import (
     paper_transition_displacement,
     paper_transition_stress,
@@ -24,9 +27,14 @@ from .transition import (
 __all__ = [
     "ArrestingCrack",
     "ExactTransition",
+    "FrontEnd",
     "Fronts",
     "Layer",
+    "Limit",
+    "Rupture",
     "SteadyPulse",
+    "barrier_depth",
+    "barrier_depth_estimate",
     "damage_zone_stress_drop",
     "exact_transition_displacement",
     "front_speed",
@@ -39,4 +47,5 @@ __all__ = [
     "prestress_for_speed",
     "slip_velocity",
     "steady_pulse",
+    "uniform_transition_time",
 ]

@@ -14,7 +14,7 @@ from ...points import point
 from ...prestress import Prestress
 from ...theory.front_speed import front_speed
 from ...theory.pulse import paper_pulse, steady_pulse
-from ...theory.rupture import ArrestingCrack
+from ...theory import ArrestingCrack
 from ..style import BLUE, GREEN, ORANGE, PURPLE, SKY
 
 FIELDS = {

@@ -1,0 +1,173 @@
+"""The trailing edge: the first zero in time of du/dt, as long as it runs faster than the waves.
+
+Then the past of a sliding point holds no stuck one, and Riemann's formula holds up to sticking. That is so where du/dt
+falls along both characteristics, d/d(t - y) < 0 and d/d(t + y) < 0. The stress of a block that has stuck is then
+d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just before, so that no block is ever released again.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..roots import roots_between
+from .curve import Curve
+from .riemann import Cones
+
+# Times looked at together, and their distance: a share of 1/sqrt(gamma), or of the duration without leaf springs.
+BATCH = 8
+SCAN = 0.2
+SCAN_WITHOUT_SPRINGS = 1.0 / 64.0
+# How far apart positions are whose stick times the others are found from: a share of the whole.
+GRID = 192
+
+
+class TrailingEdge:
+    """Where and when the blocks behind one connected curve stick.
+
+    Parameters
+    ----------
+    curve : of the fronts
+    gamma : elasticity ratio, or 0
+    until : time up to which stick times are wanted
+    marks : positions where the curve has kinks
+    refinement : how many times as many positions and times are looked at
+    one_side : whether x >= 0 tells all
+
+    Attributes
+    ----------
+    x, stick : a grid of positions, and the times of sticking there, NaN where not before ``until``
+    by_xi, by_eta : derivatives of du/dt by t - x and t + x at sticking
+    """
+
+    def __init__(
+        self, curve: Curve, gamma: float, until: float, marks: np.ndarray, refinement: int = 1, one_side: bool = False
+    ) -> None:
+        self.curve, self.gamma, self.until, self.refinement = curve, gamma, until, refinement
+        left, right = curve.edges[0], curve.edges[-1]
+        if one_side:
+            left = max(left, 0.0)
+        inside = marks[(marks >= left) & (marks <= right)]
+        self.x = np.unique(np.concatenate([np.linspace(left, right, GRID * refinement // (2 if one_side else 1) + 1), inside]))
+        self.x = self.x[curve.arrival(self.x) < until]
+        self.stick = self.scan(self.x)
+        self.by_xi, self.by_eta = np.full((2, self.x.size), np.nan)
+        stuck = np.flatnonzero(np.isfinite(self.stick))
+        if stuck.size:
+            cones = Cones(curve, gamma, self.x[stuck], self.stick[stuck])
+            self.by_xi[stuck], self.by_eta[stuck] = cones.velocity_slopes()
+
+    def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        return Cones(self.curve, self.gamma, x, time).slip_velocity()
+
+    def scan(self, x: np.ndarray) -> np.ndarray:
+        """Stick times at positions, found without help from others."""
+        out = np.full(x.shape, np.nan)
+        release = self.curve.arrival(x)
+        step = SCAN / np.sqrt(self.gamma) if self.gamma > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
+        step = step / self.refinement
+        alive = np.flatnonzero(release < self.until)
+        before = release.copy()
+        value = np.zeros(x.shape)
+        while alive.size:
+            times = np.minimum(before[alive][:, None] + step * np.arange(1, BATCH + 1), self.until)
+            velocity = self.velocity(np.repeat(x[alive], BATCH), times.ravel()).reshape(times.shape)
+            stuck = (velocity <= 0.0).any(axis=1)
+            first = np.argmax(velocity <= 0.0, axis=1)
+            here, rows, k = alive[stuck], np.flatnonzero(stuck), first[stuck]
+            low = np.where(k > 0, times[rows, k - 1], before[here])
+            at_low = np.where(k > 0, velocity[rows, k - 1], value[here])
+            out[here] = self._between(x[here], low, times[rows, k], at_low, velocity[rows, k])
+            before[alive], value[alive] = times[:, -1], velocity[:, -1]
+            alive = alive[~stuck & (times[:, -1] < self.until)]
+        return out
+
+    def _between(self, x, low, high, at_low, at_high) -> np.ndarray:
+        """Zeros of du/dt in time; where it starts at 0, at release, from where it has risen."""
+        out = np.full(x.shape, np.nan)
+        low, at_low = low.copy(), at_low.copy()
+        todo = np.flatnonzero(at_low <= 0.0)
+        for _ in range(40):
+            if not todo.size:
+                break
+            # A slow front that is about to stop: du/dt rises for a short while only.
+            middle = 0.5 * (low[todo] + high[todo])
+            velocity = self.velocity(x[todo], middle)
+            risen = velocity > 0.0
+            low[todo[risen]], at_low[todo[risen]] = middle[risen], velocity[risen]
+            high[todo[~risen]], at_high[todo[~risen]] = middle[~risen], velocity[~risen]
+            todo = todo[~risen]
+        out[todo] = high[todo]
+        good = np.flatnonzero(at_low > 0.0)
+        out[good] = roots_between(
+            lambda n, time: self.velocity(x[good][n], time), low[good], high[good], at_low[good], at_high[good]
+        )
+        return out
+
+    def stick_time(self, x: np.ndarray) -> np.ndarray:
+        """Stick times at positions in order, NaN where not before ``until``."""
+        out = np.full(x.shape, np.nan)
+        if self.x.size < 2:
+            return self.scan(x)
+        k = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.x.size - 2)
+        rate = self.by_xi + self.by_eta
+        pace = (self.by_xi - self.by_eta) / rate
+        near = np.isfinite(self.stick[k]) & np.isfinite(self.stick[k + 1]) & (x >= self.x[0]) & (x <= self.x[-1])
+        near &= np.maximum(np.abs(pace[k]), np.abs(pace[k + 1])) < 1.0
+        # From the stick times on both sides and their slopes, by Hermite's cubic.
+        span = self.x[k + 1] - self.x[k]
+        s = (x - self.x[k]) / span
+        a, b = self.stick[k], self.stick[k + 1]
+        guess = a + s**2 * (3.0 - 2.0 * s) * (b - a) + s * (1.0 - s) * span * ((1.0 - s) * pace[k] - s * pace[k + 1])
+        rate = rate[k] * (1.0 - s) + rate[k + 1] * s
+        todo = np.flatnonzero(near)
+        time = guess
+        for _ in range(12):
+            if not todo.size:
+                break
+            step = self.velocity(x[todo], time[todo]) / rate[todo]
+            time[todo] -= step
+            # What strays is looked for from the start.
+            strayed = np.abs(time[todo] - guess[todo]) > 0.05 * span[todo]
+            done = np.abs(step) < 1e-11
+            near[todo[strayed]] = False
+            out[todo[done & ~strayed]] = time[todo[done & ~strayed]]
+            todo = todo[~done & ~strayed]
+        near[todo] = False
+        far = np.flatnonzero(~near)
+        out[far] = self.scan(x[far])
+        return np.where(out <= self.until, out, np.nan)
+
+    def violations(self) -> list[tuple[float, float]]:
+        """Positions and times of sticking where the trailing edge does not outrun the waves."""
+        stuck = np.flatnonzero(np.isfinite(self.stick))
+        slow = self._slow(self.x[stuck], self.stick[stuck], self.by_xi[stuck], self.by_eta[stuck])
+        out = [(float(self.x[k]), float(self.stick[k])) for k in stuck[slow]]
+        for a, b in zip(stuck[:-1], stuck[1:], strict=True):
+            pair = slow[np.searchsorted(stuck, [a, b])]
+            jump = abs(self.stick[b] - self.stick[a]) >= (self.x[b] - self.x[a]) * (1.0 + 1e-9)
+            if b == a + 1 and not pair.all() and (jump or pair.any()):
+                earlier = bool(pair[1]) if pair.any() else bool(self.stick[b] > self.stick[a])
+                out.append(self._last_fast(*((a, b) if earlier else (b, a))))
+        return out
+
+    def _slow(self, x, stick, by_xi, by_eta) -> np.ndarray:
+        slow = (by_xi >= 0.0) | (by_eta >= 0.0)
+        # Beside the point where a slow front has stopped, sliding lasts too short a time to tell.
+        brief = 1e-3 / (np.sqrt(self.gamma) if self.gamma > 0.0 else 1.0)
+        return slow & (stick - self.curve.arrival(x) > brief)
+
+    def _last_fast(self, a: int, b: int) -> tuple[float, float]:
+        """The end of the part of the edge that runs faster than the waves at grid point a, towards b."""
+        fast, fast_time, other = self.x[a], self.stick[a], self.x[b]
+        for _ in range(24):
+            middle = 0.5 * (fast + other)
+            time = self.scan(np.array([middle]))
+            good = np.isfinite(time[0]) and abs(time[0] - fast_time) < abs(middle - fast)
+            if good:
+                slopes = Cones(self.curve, self.gamma, np.array([middle]), time).velocity_slopes()
+                good = not self._slow(np.array([middle]), time, *slopes)[0]
+            if good:
+                fast, fast_time = middle, time[0]
+            else:
+                other = middle
+        return float(fast), float(fast_time)
