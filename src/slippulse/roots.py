@@ -98,6 +98,8 @@ def roots_between(function, lower, upper, at_lower, at_upper, xtol: float = 1e-1
         with np.errstate(divide="ignore", invalid="ignore"):
             inverse = fa[going] / (fb[going] - fa[going]) * fc[going] / (fb[going] - fc[going]) + (
                 c[going] - a[going]
-            ) / (b[going] - a[going]) * fa[going] / (fc[going] - fa[going]) * fb[going] / (fc[going] - fb[going])
+            ) / (b[going] - a[going]) * fa[going] / (fc[going] - fa[going]) * fb[going] / (
+                fc[going] - fb[going]
+            )
         share[going] = np.clip(np.where(safe, inverse, 0.5), nearest, 1.0 - nearest)
     return out

@@ -66,10 +66,7 @@ class ArrestingCrack:
         """Distance between the fronts then."""
         time = self.share_time(share)
         last, last_time = float(self.fronts.curve.edges[-1]), float(self.fronts.curve.edge_times[-1])
-        if time >= last_time:
-            right = last + time - last_time
-        else:
-            right = self.fronts.reached(time, 1.0)
+        right = last + time - last_time if time >= last_time else self.fronts.reached(time, 1.0)
         return right - share * self.balance_position
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def barrier_depth(
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     # T rises to the right, as behind a pulse that comes from far away.
-    panels = [_incoming(a, b, 1.0 / speed, tau0) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    panels = [_incoming(a, b, 1.0 / speed, tau0) for a, b in pairwise(edges.tolist())]
     level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
     stop = None
     while stop is None:
@@ -86,4 +87,6 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
 def _incoming(left: float, right: float, rate: float, tau: float):
     """A panel of a front that comes from the left and is at x = 0 at t = 0."""
     panel = straight_panel(-right, -left, rate, tau)
-    return type(panel)(-panel.x[::-1], -panel.time[::-1], panel.source, (left, right), (rate * left, rate * right))
+    return type(panel)(
+        -panel.x[::-1], -panel.time[::-1], panel.source, (left, right), (rate * left, rate * right)
+    )

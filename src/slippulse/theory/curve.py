@@ -24,7 +24,9 @@ CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
 SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
 # From values at the nodes to coefficients by powers, which are quicker to evaluate.
-TO_POWERS = np.stack([legendre.leg2poly(np.eye(COUNT)[k]).tolist() + [0.0] * (COUNT - 1 - k) for k in range(COUNT)]).T
+TO_POWERS = np.stack(
+    [legendre.leg2poly(np.eye(COUNT)[k]).tolist() + [0.0] * (COUNT - 1 - k) for k in range(COUNT)]
+).T
 TO_POWERS = TO_POWERS @ TO_SERIES
 
 
@@ -56,7 +58,9 @@ class Panel:
         x, time = resample @ self.x, resample @ self.time
         ends = [(self.x_ends, x), (self.time_ends, time)]
         ends = [(e[0] if left == -1.0 else f[-2], e[1] if right == 1.0 else f[-1]) for e, f in ends]
-        return Panel(x[:-2], time[:-2], half * (resample @ self.source)[:-2], *(tuple(map(float, e)) for e in ends))
+        return Panel(
+            x[:-2], time[:-2], half * (resample @ self.source)[:-2], *(tuple(map(float, e)) for e in ends)
+        )
 
 
 @dataclass(frozen=True)
@@ -98,7 +102,13 @@ class Curve:
     @cached_property
     def powers(self) -> dict[str, np.ndarray]:
         """Coefficients by powers of the parameter: [power, panel]."""
-        fields = {"x": self.x, "time": self.time, "late": self.late, "early": self.early, "source": self.source}
+        fields = {
+            "x": self.x,
+            "time": self.time,
+            "late": self.late,
+            "early": self.early,
+            "source": self.source,
+        }
         return {name: np.ascontiguousarray((values @ TO_POWERS.T).T) for name, values in fields.items()}
 
     @cached_property

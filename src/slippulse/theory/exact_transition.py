@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -158,6 +159,6 @@ def uniform_transition_time(
     rate = 1.0 / float(front_speed(tau0, damping_ratio, release))
     reach = 12.0 / (1.0 - rate**2)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
-    curve = Curve([straight_panel(a, b, rate, tau0) for a, b in zip(edges[:-1], edges[1:], strict=True)])
+    curve = Curve([straight_panel(a, b, rate, tau0) for a, b in pairwise(edges.tolist())])
     edge = TrailingEdge(curve, 1.0, 10.0, np.array([0.0]), one_side=True)
     return float(edge.stick_time(np.array([0.0]))[0]) / float(np.sqrt(gamma))

@@ -34,7 +34,9 @@ class FrontLaw:
 
     def mirrored(self) -> FrontLaw:
         """The same at -x."""
-        return FrontLaw(mirrored(self.prestress), self.gamma, self.damping_ratio, self.release, self.refinement)
+        return FrontLaw(
+            mirrored(self.prestress), self.gamma, self.damping_ratio, self.release, self.refinement
+        )
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
         return slowness(tau, self.damping_ratio, self.release)
@@ -46,10 +48,16 @@ class FrontLaw:
         """The longest panel: the leaf springs' phase changes by LONGEST along it."""
         if self.gamma == 0.0:
             return LONGEST_WITHOUT_SPRINGS / self.refinement
-        proper = float(np.sqrt(1.0 - self.slowness(np.array(np.clip(level, 0.0, 1.0))) ** 2)) if level > 0.0 else 1.0
+        proper = (
+            float(np.sqrt(1.0 - self.slowness(np.array(np.clip(level, 0.0, 1.0))) ** 2))
+            if level > 0.0
+            else 1.0
+        )
         return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / np.sqrt(self.gamma) / self.refinement
 
-    def rightwards(self, start: float, time: float, stop: float, until: float) -> tuple[list[Panel], float, float]:
+    def rightwards(
+        self, start: float, time: float, stop: float, until: float
+    ) -> tuple[list[Panel], float, float]:
         """Panels from start towards stop, while tau >= 0 and T < until; and where and when they end."""
         panels: list[Panel] = []
         while start < stop and time < until:
@@ -80,7 +88,10 @@ class FrontLaw:
         rough = np.concatenate([[start], inner, [end]])
         edges = np.unique(
             np.concatenate(
-                [np.linspace(a, b, int(np.ceil((b - a) / longest)) * self.refinement + 1) for a, b in pairwise(rough)]
+                [
+                    np.linspace(a, b, int(np.ceil((b - a) / longest)) * self.refinement + 1)
+                    for a, b in pairwise(rough)
+                ]
             )
         )
         edges[0], edges[-1] = start, end
@@ -101,7 +112,11 @@ class FrontLaw:
         within = (half * rate) @ CUMULATIVE.T
         return [
             Panel(
-                x[k], starts[k] + within[k], tau[k] * half[k], (edges[k], edges[k + 1]), (starts[k], starts[k + 1])
+                x[k],
+                starts[k] + within[k],
+                tau[k] * half[k],
+                (edges[k], edges[k + 1]),
+                (starts[k], starts[k + 1]),
             )
             for k in range(len(x))
         ]

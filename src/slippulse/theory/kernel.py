@@ -1,4 +1,4 @@
-"""Riemann's function J0(sqrt z) and its derivatives, entire in z: positive inside the cone, negative just outside it."""
+"""Riemann's function J0(sqrt z) and its derivatives, entire in z: z > 0 inside the cone, z < 0 just outside it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ def _value(z: np.ndarray, bounds: tuple[float, float], order: int) -> np.ndarray
     if max(-lower, upper) > LARGEST:
         return _bessel(np.clip(z, lower, upper), order)
     # Few polynomials serve all ranges.
-    lower, upper = (math.copysign(2.0 ** max(0, math.ceil(math.log2(max(abs(e), 1.0)))), e) for e in (lower, upper))
+    lower, upper = (
+        math.copysign(2.0 ** max(0, math.ceil(math.log2(max(abs(e), 1.0)))), e) for e in (lower, upper)
+    )
     if lower > 0.0:
         lower = 0.0
     centre, half = 0.5 * (lower + upper), 0.5 * (upper - lower)

@@ -57,32 +57,24 @@ def mirrored(prestress: Prestress) -> Prestress:
 
 def edges_of_features(prestress: Prestress) -> np.ndarray:
     """Positions that an edge of a panel stands at, so that no feature falls between two nodes."""
-    features = [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
-    return np.unique(np.concatenate([centre + width * FEATURES for centre, width in features]))
+    return np.unique(np.concatenate([centre + width * FEATURES for centre, width in _gaussians(prestress)]))
 
 
 def pieces(prestress: Prestress) -> list[Piece]:
     """The pieces from left to right."""
-    features = [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
-    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
-    grid = np.unique(np.concatenate([centre + width * fine for centre, width in features]))
-    jumps = sorted({0.0, *(position for position, _ in prestress.steps)})
     out = []
-    for left, right in pairwise([-np.inf, *jumps, np.inf]):
-        # Far outside everything a side has its last level.
-        inside = grid[(grid > left) & (grid < right)]
-        ends = [e for e in (left, right) if np.isfinite(e)]
-        x = np.unique(np.concatenate([inside, ends, [e + s for e, s in ((left, 1.0), (right, -1.0)) if np.isfinite(e) and not inside.size and left < e + s < right]]))
-        probe = 0.5 * (left + right) if np.isfinite(left) and np.isfinite(right) else (left + 1e-9 * max(1.0, abs(left)) if np.isfinite(left) else right - 1e-9 * max(1.0, abs(right)))
-        level = float(prestress.level(np.asarray(probe)))
+    for left, right, level in _between_jumps(prestress):
+        x = _samples(prestress, left, right)
         tau = smooth(prestress, level, x)
         positive = tau > -ROUNDING
-        marks = [
-            float(root_between(lambda z, lv=level: float(smooth(prestress, lv, np.asarray(z))), x[k], x[k + 1], xtol=1e-14))
-            if tau[k] * tau[k + 1] < 0.0
-            else float(x[k] if not positive[k] else x[k + 1])
-            for k in np.flatnonzero(positive[1:] != positive[:-1])
-        ]
+
+        def value(z: float, level=level) -> float:
+            return float(smooth(prestress, level, np.asarray(z)))
+
+        marks = []
+        for k in np.flatnonzero(positive[1:] != positive[:-1]):
+            crossing = tau[k] * tau[k + 1] < 0.0
+            marks.append(root_between(value, x[k], x[k + 1], xtol=1e-14) if crossing else float(x[k + 1]))
         sign = bool(positive[0])
         for a, b in pairwise([left, *marks, right]):
             if b > a:
@@ -92,39 +84,56 @@ def pieces(prestress: Prestress) -> list[Piece]:
 
 
 def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
-    """The intervals (points, where they are tangent) with tau >= 1, from left to right."""
+    """The intervals (points, where tau only touches 1) with tau >= 1, from left to right."""
     found = []
-    for piece in pieces(prestress):
-        if not piece.supersonic:
-            continue
+    for left, right, level in _between_jumps(prestress):
+        x = _samples(prestress, left, right)
+        excess = smooth(prestress, level, x) - 1.0
+        over = excess >= 0.0
 
-        def excess(x, level=piece.level):
-            return smooth(prestress, level, np.asarray(x)) - 1.0
+        def above(z: float, level=level) -> float:
+            return float(smooth(prestress, level, np.asarray(z))) - 1.0
 
-        features = [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
-        fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
-        grid = np.concatenate([centre + width * fine for centre, width in features])
-        ends = [e for e in (piece.left, piece.right) if np.isfinite(e)]
-        x = np.unique(np.concatenate([grid[(grid > piece.left) & (grid < piece.right)], ends]))
-        if not x.size:
-            continue
-        over = excess(x) >= 0.0
-        changes = np.flatnonzero(over[1:] != over[:-1])
-        marks = [x[0]] if over[0] else []
-        for k in changes:
-            at_zero = x[k] if excess(x[k]) == 0.0 else x[k + 1] if excess(x[k + 1]) == 0.0 else None
-            marks.append(
-                float(at_zero) if at_zero is not None
-                else float(root_between(lambda z: float(excess(z)), x[k], x[k + 1], xtol=1e-14))
-            )
+        marks = [float(x[0])] if over[0] else []
+        for k in np.flatnonzero(over[1:] != over[:-1]):
+            touching = [float(x[n]) for n in (k, k + 1) if excess[n] == 0.0]
+            marks.append(touching[0] if touching else root_between(above, x[k], x[k + 1], xtol=1e-14))
         if over[-1]:
-            marks.append(x[-1])
-        found += list(zip(marks[::2], marks[1::2], strict=True))
-    found.sort()
+            marks.append(float(x[-1]))
+        found += zip(marks[::2], marks[1::2], strict=True)
     merged: list[tuple[float, float]] = []
-    for a, b in found:
+    for a, b in sorted(found):
         if merged and a <= merged[-1][1]:
             merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
         else:
-            merged.append((float(a), float(b)))
+            merged.append((a, b))
     return merged
+
+
+def _gaussians(prestress: Prestress) -> list[tuple[float, float]]:
+    """Centre and width of the peak and of each bump."""
+    return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
+
+
+def _between_jumps(prestress: Prestress) -> list[tuple[float, float, float]]:
+    """Intervals of one side level: left, right, level."""
+    jumps = sorted({0.0, *(position for position, _ in prestress.steps)})
+    inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
+    levels = prestress.level(np.array(inside))
+    return [
+        (left, right, float(level))
+        for (left, right), level in zip(pairwise([-np.inf, *jumps, np.inf]), levels, strict=True)
+    ]
+
+
+def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
+    """Positions that show each change of sign within an interval, its finite ends among them."""
+    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+    x = np.concatenate([centre + width * fine for centre, width in _gaussians(prestress)])
+    # Far outside everything a side has its last level.
+    far = [float(x.min()) - 1.0, float(x.max()) + 1.0]
+    ends = [
+        left if np.isfinite(left) else min(far[0], right - 1.0),
+        right if np.isfinite(right) else max(far[1], left + 1.0),
+    ]
+    return np.unique(np.concatenate([x[(x > left) & (x < right)], ends]))

@@ -15,12 +15,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import legendre
 
-from .curve import COUNT, INTEGRATE, WEIGHTS, Crossing, Curve
+from .curve import COUNT, INTEGRATE, WEIGHTS, Curve
 from .kernel import riemann, riemann_bend, riemann_slope
 from .stationary import Stationary
 
 # Points whose cones are computed together: their arrays stay in the cache.
-CHUNK = 192
+CHUNK = 256
 
 
 class Cones:
@@ -30,7 +30,7 @@ class Cones:
     ----------
     curve : of the fronts
     gamma : elasticity ratio, or 0
-    y, time : the points, flat arrays, best ordered by y
+    y, time : the points, flat arrays
     """
 
     def __init__(self, curve: Curve, gamma: float, y: np.ndarray, time: np.ndarray) -> None:
@@ -40,7 +40,7 @@ class Cones:
 
     def slip_velocity(self) -> np.ndarray:
         """du/dt."""
-        curve, weight = self.curve, self.curve.source
+        weight = self.curve.source
 
         def kernel(behind, beside, z, bounds, panels):
             return riemann(z, bounds) * weight[panels].ravel()
@@ -105,8 +105,10 @@ class Cones:
         """Integral of a kernel, given per unit of the panels' parameter, between the ends of each cone."""
         curve, gamma = self.curve, self.gamma
         out = np.empty(self.xi.shape)
+        # Cones of about the same panels together.
+        order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, out.size, CHUNK):
-            part = slice(start, start + CHUNK)
+            part = order[start : start + CHUNK]
             low, high = self.left.panel[part], self.right.panel[part]
             first, last = int(low.min()), int(high.max()) + 1
             panels = slice(first, last)

@@ -17,10 +17,8 @@ from ..prestress import Prestress
 from ..roots import root_between
 from .front_speed import RELEASES
 from .fronts import FrontLaw
-from .riemann import Cones
-from .spreading import Stretch, spread
-from .stationary import Stationary
-from .trailing import TrailingEdge
+from .part import Part
+from .spreading import spread
 
 FIELDS = ("slip_velocity", "slip", "strain")
 
@@ -85,7 +83,7 @@ class Rupture:
         self.law = FrontLaw(prestress, self.gamma, self.damping_ratio, release, self.refinement)
         self.stretches, stopped = spread(self.law, self.duration)
         self._stopped = [Limit(*point) for point in stopped]
-        self._parts = [_Part(self, stretch) for stretch in self.stretches if stretch.panels]
+        self._parts = [Part(self.law, stretch, self.duration) for stretch in self.stretches if stretch.panels]
 
     # Fronts
 
@@ -95,7 +93,9 @@ class Rupture:
         names = {"dead": "stops"}
         return [
             tuple(
-                FrontEnd(*map(float, stretch.ends[side]), names.get(stretch.stopped[side], stretch.stopped[side]))
+                FrontEnd(
+                    *map(float, stretch.ends[side]), names.get(stretch.stopped[side], stretch.stopped[side])
+                )
                 for side in (-1.0, 1.0)
             )
             for stretch in self.stretches
@@ -191,7 +191,7 @@ class Rupture:
     @cached_property
     def largest_velocity(self) -> float:
         """Largest slip velocity until ``duration``, where the construction holds."""
-        return max(part.largest_velocity() for part in self._parts)
+        return max(part.largest_velocity(self.horizon) for part in self._parts)
 
     # Fields
 
@@ -232,14 +232,11 @@ class Rupture:
             stick[number] = np.where(np.isfinite(found), found, np.inf)
             sliding = (time > release[column]) & (time < stick[column])
             stuck = (time >= stick[column]) & np.isfinite(release[column])
-            # In order of position, and what has stuck once for each.
-            order = np.argsort(column[sliding], kind="stable")
-            y, t = places[column[sliding]][order], time[sliding][order]
+            y, t = places[column[sliding]], time[sliding]
+            # What has stuck is computed once for each position.
             ended = np.unique(column[stuck])
             for name in fields:
-                values = np.empty(y.size)
-                values[order] = part.field(name, y, t)
-                out[name][sliding] = values
+                out[name][sliding] = part.field(name, y, t)
                 if name != "slip_velocity" and ended.size:
                     last = np.zeros(places.size)
                     last[ended] = part.field(name, places[ended], stick[ended])
@@ -252,7 +249,7 @@ class Rupture:
     def _side(self, x: np.ndarray) -> np.ndarray:
         return np.abs(x) if self.prestress.symmetric else x
 
-    def _part_at(self, x: float) -> _Part | None:
+    def _part_at(self, x: float) -> Part | None:
         return next((part for part in self._parts if part.inside(np.array(x))), None)
 
     # Where it ends
@@ -278,92 +275,3 @@ class Rupture:
             ends = np.array([(end.x, end.time) for end in self._ends])
             out = np.min(ends[:, 1] + np.abs(x[..., None] - ends[:, 0]), axis=-1)
         return out
-
-
-class _Part:
-    """A connected part of the rupture with all that is computed from its curve."""
-
-    def __init__(self, rupture: Rupture, stretch: Stretch) -> None:
-        self.rupture, self.stretch = rupture, stretch
-        self.curve = stretch.curve()
-
-    @cached_property
-    def rest(self) -> Stationary:
-        return Stationary(self.curve, self.rupture.gamma)
-
-    @cached_property
-    def edge(self) -> TrailingEdge:
-        law = self.rupture.law
-        marks = np.array([0.0, *(piece.right for piece in law.pieces if np.isfinite(piece.right)), *self.stretch.joins])
-        one_side = self.rupture.prestress.symmetric
-        return TrailingEdge(
-            self.curve, law.gamma, self.rupture.duration, marks, self.rupture.refinement, one_side=one_side
-        )
-
-    def inside(self, x: np.ndarray) -> np.ndarray:
-        return (x >= self.curve.edges[0]) & (x <= self.curve.edges[-1])
-
-    def field(self, name: str, y: np.ndarray, time: np.ndarray) -> np.ndarray:
-        cones = Cones(self.curve, self.rupture.gamma, y, time)
-        return cones.slip_velocity() if name == "slip_velocity" else getattr(cones, name)(self.rest)
-
-    def front_at(self, time: float, x: float, side: float) -> float:
-        """Where the front going to one side from around x is at a time: the nearest place released then."""
-        edges, times = self.curve.edges, self.curve.edge_times
-        beyond = np.flatnonzero((side * edges > side * x) & (times > time))
-        if not beyond.size:
-            return float(edges[-1 if side > 0.0 else 0])
-        k = beyond[0] if side > 0.0 else beyond[-1]
-        inner = edges[k - 1] if side > 0.0 else edges[k + 1]
-        inner = max(inner, x) if side > 0.0 else min(inner, x)
-
-        def late(place: float) -> float:
-            return float(self.curve.arrival(np.array(place))) - time
-
-        return root_between(late, float(inner), float(edges[k]), xtol=1e-13)
-
-    def first_stick(self) -> tuple[float, float] | None:
-        edge = self.edge
-        if not np.isfinite(edge.stick).any():
-            return None
-        # Where several are first, the one nearest to x = 0.
-        first = np.flatnonzero(edge.stick <= np.nanmin(edge.stick) + 1e-10)
-        k = int(first[np.argmin(np.abs(edge.x[first]))])
-        centre, time = float(edge.x[k]), float(edge.stick[k])
-        reach = max(edge.x[min(k + 1, edge.x.size - 1)] - centre, centre - edge.x[max(k - 1, 0)])
-        for _ in range(8):
-            x = centre + reach * np.linspace(-1.0, 1.0, 9)
-            x = x[(x >= edge.x[0]) & (x <= edge.x[-1])]
-            stick = edge.stick_time(x)
-            if not np.isfinite(stick).any():
-                break
-            best = int(np.nanargmin(stick))
-            if stick[best] < time - 1e-12:
-                centre, time = float(x[best]), float(stick[best])
-            reach *= 0.25
-        return time, centre
-
-    def largest_velocity(self) -> float:
-        edge, rupture = self.edge, self.rupture
-        x = edge.x
-        release = self.curve.arrival(x)
-        stick = np.where(np.isfinite(edge.stick), edge.stick, rupture.duration)
-        stick = np.minimum(stick, rupture.horizon(x))
-        best, centre, share = 0.0, None, 0.5
-        shares = np.linspace(0.0, 1.0, 33)
-        grid_x, grid_share = np.meshgrid(x, shares, indexing="ij")
-        reach_x, reach_share = np.max(np.diff(x), initial=1e-3), shares[1]
-        for _ in range(6):
-            low = np.interp(grid_x, x, release)
-            time = low + (np.interp(grid_x, x, stick) - low) * grid_share
-            order = np.argsort(grid_x.ravel(), kind="stable")
-            keep = order[time.ravel()[order] > self.curve.arrival(grid_x.ravel()[order])]
-            values = self.field("slip_velocity", grid_x.ravel()[keep], time.ravel()[keep])
-            n = int(np.argmax(values))
-            if values[n] > best:
-                best, centre, share = float(values[n]), grid_x.ravel()[keep][n], grid_share.ravel()[keep][n]
-            near_x = np.clip(centre + reach_x * np.linspace(-1.0, 1.0, 7), x[0], x[-1])
-            near_share = np.clip(share + reach_share * np.linspace(-1.0, 1.0, 7), 0.0, 1.0)
-            grid_x, grid_share = np.meshgrid(near_x, near_share, indexing="ij")
-            reach_x, reach_share = 0.4 * reach_x, 0.4 * reach_share
-        return best

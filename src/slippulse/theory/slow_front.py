@@ -71,7 +71,7 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
             return Advance(front.panel(k, start, stop, x, slope), None)
         place, event = found
         # The chunk is made again to end there: beyond it the solution may mean nothing.
-        if corrections and (abs(place - 1.0) < 1e-9 or corrections > 5 and abs(place - 1.0) < 1e-6):
+        if corrections and (abs(place - 1.0) < 1e-9 or (corrections > 5 and abs(place - 1.0) < 1e-6)):
             return Advance(
                 front.panel(k, start, stop, x, slope, end=mark if event == "mark" else None), event
             )
@@ -199,14 +199,14 @@ class _Chunk:
         early = self.curve.at("early", np.full(COUNT, k), places)
         last = float(AT_ENDS[1] @ x) if end is None else end
         last_early = float(self.curve.at("early", np.array([k]), np.array([stop]))[0])
-        return Panel(
-            x, early + x, self.tau(x) * slope, (self.x0, last), (self.t0, last_early + last)
-        )
+        return Panel(x, early + x, self.tau(x) * slope, (self.x0, last), (self.t0, last_early + last))
 
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0: too short to be resolved, at the speed of the waves."""
         if not np.isfinite(mark) or mark - self.x0 > 1e-3:
-            raise ArithmeticError(f"the slow front does not settle near x = {self.x0!r}, gamma = {self.gamma!r}")
+            raise ArithmeticError(
+                f"the slow front does not settle near x = {self.x0!r}, gamma = {self.gamma!r}"
+            )
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
         time = self.t0 + x - self.x0

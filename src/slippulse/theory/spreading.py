@@ -109,7 +109,9 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
         _step(laws[side], stretch, side, limits[id(stretch), side], until)
         stretches = _joined(stretches, limits)
     reason = "what decides on a slow front comes from another part of the rupture"
-    ends = [(*s.ends[side], reason) for s in stretches for side in (-1.0, 1.0) if s.stopped[side] == "unknown"]
+    ends = [
+        (*s.ends[side], reason) for s in stretches for side in (-1.0, 1.0) if s.stopped[side] == "unknown"
+    ]
     return stretches, ends + _overrun(stretches)
 
 

@@ -28,11 +28,15 @@ class Stationary:
         else:
             k = float(np.sqrt(gamma))
             right = _decaying(k, curve.x, curve.source, curve.edges)
-            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])[::-1, ::-1]
+            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])[
+                ::-1, ::-1
+            ]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         self.p, self.bend = p, slope
         # Derivatives by the panels' parameter.
-        self.time, self.early, self.late = (values @ SLOPE.T for values in (curve.time, curve.early, curve.late))
+        self.time, self.early, self.late = (
+            values @ SLOPE.T for values in (curve.time, curve.early, curve.late)
+        )
         self._powers = [np.ascontiguousarray((values @ TO_POWERS.T).T) for values in (p, slope)]
 
     def along(self, panels: slice) -> tuple[np.ndarray, ...]:
@@ -63,7 +67,9 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
     first = float(source[0, 0] / (SLOPE[0] @ x[0]))
     gains = np.exp(-k * lengths) * ((source * within) @ WEIGHTS)
     steps = list(zip(np.exp(-k * lengths).tolist(), gains.tolist(), strict=True))
-    starts = np.array(list(accumulate(steps, lambda value, step: value * step[0] + step[1], initial=first / k))[:-1])
+    starts = np.array(
+        list(accumulate(steps, lambda value, step: value * step[0] + step[1], initial=first / k))[:-1]
+    )
     return (starts[:, None] + (source * within) @ CUMULATIVE.T) / within
 
 

@@ -40,14 +40,24 @@ class TrailingEdge:
     """
 
     def __init__(
-        self, curve: Curve, gamma: float, until: float, marks: np.ndarray, refinement: int = 1, one_side: bool = False
+        self,
+        curve: Curve,
+        gamma: float,
+        until: float,
+        marks: np.ndarray,
+        refinement: int = 1,
+        one_side: bool = False,
     ) -> None:
         self.curve, self.gamma, self.until, self.refinement = curve, gamma, until, refinement
         left, right = curve.edges[0], curve.edges[-1]
         if one_side:
             left = max(left, 0.0)
         inside = marks[(marks >= left) & (marks <= right)]
-        self.x = np.unique(np.concatenate([np.linspace(left, right, GRID * refinement // (2 if one_side else 1) + 1), inside]))
+        self.x = np.unique(
+            np.concatenate(
+                [np.linspace(left, right, GRID * refinement // (2 if one_side else 1) + 1), inside]
+            )
+        )
         self.x = self.x[curve.arrival(self.x) < until]
         self.stick = self.scan(self.x)
         self.by_xi, self.by_eta = np.full((2, self.x.size), np.nan)
@@ -99,7 +109,11 @@ class TrailingEdge:
         out[todo] = high[todo]
         good = np.flatnonzero(at_low > 0.0)
         out[good] = roots_between(
-            lambda n, time: self.velocity(x[good][n], time), low[good], high[good], at_low[good], at_high[good]
+            lambda n, time: self.velocity(x[good][n], time),
+            low[good],
+            high[good],
+            at_low[good],
+            at_high[good],
         )
         return out
 
@@ -111,13 +125,19 @@ class TrailingEdge:
         k = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.x.size - 2)
         rate = self.by_xi + self.by_eta
         pace = (self.by_xi - self.by_eta) / rate
-        near = np.isfinite(self.stick[k]) & np.isfinite(self.stick[k + 1]) & (x >= self.x[0]) & (x <= self.x[-1])
+        near = (
+            np.isfinite(self.stick[k]) & np.isfinite(self.stick[k + 1]) & (x >= self.x[0]) & (x <= self.x[-1])
+        )
         near &= np.maximum(np.abs(pace[k]), np.abs(pace[k + 1])) < 1.0
         # From the stick times on both sides and their slopes, by Hermite's cubic.
         span = self.x[k + 1] - self.x[k]
         s = (x - self.x[k]) / span
         a, b = self.stick[k], self.stick[k + 1]
-        guess = a + s**2 * (3.0 - 2.0 * s) * (b - a) + s * (1.0 - s) * span * ((1.0 - s) * pace[k] - s * pace[k + 1])
+        guess = (
+            a
+            + s**2 * (3.0 - 2.0 * s) * (b - a)
+            + s * (1.0 - s) * span * ((1.0 - s) * pace[k] - s * pace[k + 1])
+        )
         rate = rate[k] * (1.0 - s) + rate[k + 1] * s
         todo = np.flatnonzero(near)
         time = guess
@@ -139,15 +159,20 @@ class TrailingEdge:
 
     def violations(self) -> list[tuple[float, float]]:
         """Positions and times of sticking where the trailing edge does not outrun the waves."""
-        stuck = np.flatnonzero(np.isfinite(self.stick))
-        slow = self._slow(self.x[stuck], self.stick[stuck], self.by_xi[stuck], self.by_eta[stuck])
-        out = [(float(self.x[k]), float(self.stick[k])) for k in stuck[slow]]
-        for a, b in zip(stuck[:-1], stuck[1:], strict=True):
-            pair = slow[np.searchsorted(stuck, [a, b])]
-            jump = abs(self.stick[b] - self.stick[a]) >= (self.x[b] - self.x[a]) * (1.0 + 1e-9)
-            if b == a + 1 and not pair.all() and (jump or pair.any()):
-                earlier = bool(pair[1]) if pair.any() else bool(self.stick[b] > self.stick[a])
-                out.append(self._last_fast(*((a, b) if earlier else (b, a))))
+        # What does not stick until then may stick right after.
+        stick = np.where(np.isfinite(self.stick), self.stick, self.until)
+        stuck = np.isfinite(self.stick)
+        slow = np.zeros(stick.shape, dtype=bool)
+        slow[stuck] = self._slow(self.x[stuck], stick[stuck], self.by_xi[stuck], self.by_eta[stuck])
+        out = list(zip(self.x[slow].tolist(), stick[slow].tolist(), strict=True))
+        jump = np.abs(np.diff(stick)) >= np.diff(self.x) * (1.0 + 1e-9)
+        for k in np.flatnonzero(
+            (jump | (slow[1:] != slow[:-1])) & (stuck[1:] | stuck[:-1]) & ~(slow[1:] & slow[:-1])
+        ):
+            ahead = slow[k] or (not slow[k + 1] and stick[k] >= stick[k + 1])
+            fast = k + 1 if ahead else k
+            if stuck[fast]:
+                out.append(self._last_fast(fast, 2 * k + 1 - fast))
         return out
 
     def _slow(self, x, stick, by_xi, by_eta) -> np.ndarray:
