@@ -20,7 +20,7 @@ from .kernel import riemann, riemann_bend, riemann_slope
 from .stationary import Stationary
 
 # Points whose cones are computed together: their arrays stay in the cache.
-CHUNK = 256
+CHUNK = 192
 
 
 class Cones:

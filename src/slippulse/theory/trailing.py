@@ -14,8 +14,10 @@ from .curve import Curve
 from .riemann import Cones
 
 # Times looked at together, and their distance: a share of 1/sqrt(gamma), or of the duration without leaf springs.
+# Around a minimum of du/dt two such steps are cut into FINE parts, twice.
 BATCH = 8
 SCAN = 0.2
+FINE = 24
 SCAN_WITHOUT_SPRINGS = 1.0 / 64.0
 # How far apart positions are whose stick times the others are found from: a share of the whole.
 GRID = 192
@@ -76,19 +78,52 @@ class TrailingEdge:
         step = SCAN / np.sqrt(self.gamma) if self.gamma > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
         step = step / self.refinement
         alive = np.flatnonzero(release < self.until)
-        before = release.copy()
-        value = np.zeros(x.shape)
+        # The last two times and velocities of each: a velocity that turns may have been below 0 in between.
+        times, velocity = (
+            np.stack([release, release], axis=1),
+            np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], 1),
+        )
         while alive.size:
-            times = np.minimum(before[alive][:, None] + step * np.arange(1, BATCH + 1), self.until)
-            velocity = self.velocity(np.repeat(x[alive], BATCH), times.ravel()).reshape(times.shape)
-            stuck = (velocity <= 0.0).any(axis=1)
-            first = np.argmax(velocity <= 0.0, axis=1)
-            here, rows, k = alive[stuck], np.flatnonzero(stuck), first[stuck]
-            low = np.where(k > 0, times[rows, k - 1], before[here])
-            at_low = np.where(k > 0, velocity[rows, k - 1], value[here])
-            out[here] = self._between(x[here], low, times[rows, k], at_low, velocity[rows, k])
-            before[alive], value[alive] = times[:, -1], velocity[:, -1]
-            alive = alive[~stuck & (times[:, -1] < self.until)]
+            new = np.minimum(times[alive, 1:] + step * np.arange(1, BATCH + 1), self.until)
+            found = self.velocity(np.repeat(x[alive], BATCH), new.ravel()).reshape(new.shape)
+            t, v = (
+                np.concatenate([times[alive], new], axis=1),
+                np.concatenate([velocity[alive], found], axis=1),
+            )
+            below = v[:, 2:] <= 0.0
+            first = np.where(below.any(axis=1), 2 + np.argmax(below, axis=1), t.shape[1])
+            dip = self._dips(x[alive], t, v, first)
+            stuck = below.any(axis=1)
+            rows, k = np.flatnonzero(stuck & ~np.isfinite(dip)), first[stuck & ~np.isfinite(dip)]
+            low, high = (t[rows, k - 1], v[rows, k - 1]), (t[rows, k], v[rows, k])
+            out[alive[rows]] = self._between(x[alive[rows]], low[0], high[0], low[1], high[1])
+            rows = np.flatnonzero(np.isfinite(dip))
+            out[alive[rows]] = dip[rows]
+            times[alive], velocity[alive] = t[:, -2:], v[:, -2:]
+            alive = alive[~stuck & ~np.isfinite(dip) & (t[:, -1] < self.until)]
+        return out
+
+    def _dips(self, x, t, v, first) -> np.ndarray:
+        """Zeros between samples around a minimum above 0 before the first sample below it; NaN where there is none."""
+        out = np.full(x.shape, np.nan)
+        inner = v[:, 1:-1]
+        turns = (inner < v[:, :-2]) & (inner <= v[:, 2:]) & (np.arange(1, v.shape[1] - 1) < first[:, None])
+        rows, k = np.nonzero(turns & (t[:, 2:] > t[:, 1:-1]))
+        low, high = t[rows, k], t[rows, k + 2]
+        for _ in range(2):
+            if not rows.size:
+                break
+            fine = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, FINE + 1)
+            value = self.velocity(np.repeat(x[rows], FINE + 1), fine.ravel()).reshape(fine.shape)
+            below = (value <= 0.0).any(axis=1)
+            n, m = np.flatnonzero(below), np.argmax(value <= 0.0, axis=1)[below]
+            good = m > 0
+            n, m = n[good], m[good]
+            zero = self._between(x[rows[n]], fine[n, m - 1], fine[n, m], value[n, m - 1], value[n, m])
+            out[rows[n]] = np.fmin(out[rows[n]], zero)
+            best = np.clip(np.argmin(value, axis=1), 1, FINE - 1)
+            rest = np.flatnonzero(~below)
+            rows, low, high = rows[rest], fine[rest, best[rest] - 1], fine[rest, best[rest] + 1]
         return out
 
     def _between(self, x, low, high, at_low, at_high) -> np.ndarray:
