@@ -17,6 +17,7 @@ PUBLISHED = (sp.Prestress(0.25, 0.25), 0.55, 0.1)
 X = np.array([0.0, 1.0, 2.0, 3.2, 4.5, 6.0, 8.0, 9.6])
 STICK = np.array([3.931228, 4.047665, 4.377168, 4.987691, 5.826132, 6.934555, 8.549606, 9.908655])
 SLIP = np.array([1.941664, 1.779533, 1.472257, 1.194463, 1.027645, 0.926688, 0.863650, 0.842801])
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
 SCENES = {
     "symmetric": (sp.Prestress(0.4, 0.4), 0.65, 0.1),
     "asymmetric": (sp.Prestress(-0.5, 0.5), 0.65, 0.1),
@@ -79,14 +80,11 @@ def test_slip_and_strain_belong_to_the_velocity(name):
     h = 1e-4
     for x, time in ((0.7, 3.0), (-1.1, 2.6), (2.5, 3.4)):
         release = float(rupture.release_time(x))
-        total = quad(
-            lambda t, x=x: float(rupture.slip_velocity(x, t)),
-            release,
-            time,
-            epsabs=1e-7,
-            epsrel=1e-7,
-            limit=40,
-        )[0]
+        # Many panels: du/dt has kinks where characteristics from the nucleation and the step pass.
+        edges = np.linspace(release, time, 161)
+        half = 0.5 * np.diff(edges)[:, None]
+        velocity = rupture.slip_velocity(x, edges[:-1, None] + half * (1.0 + NODES))
+        total = np.sum(half * WEIGHTS * velocity)
         assert float(rupture.slip(x, time)) == pytest.approx(total, abs=1e-7)
         difference = np.diff(rupture.slip(np.array([x - h, x + h]), time))[0] / (2.0 * h)
         assert float(rupture.strain(x, time)) == pytest.approx(difference, abs=1e-6)
