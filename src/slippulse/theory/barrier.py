@@ -58,7 +58,9 @@ def barrier_depth(
             panels.append(step.panel)
         stop = step.stop
     if stop != "dead":
-        raise ArithmeticError(f"the barrier remembers further back than {memory:g} at tau0 = {tau0!r}")
+        raise ArithmeticError(
+            f"the front in the barrier is {stop} at tau0 = {tau0!r}, tau_barrier = {tau_barrier!r}"
+        )
     return panels[-1].x_ends[1] / math.sqrt(gamma)
 
 

@@ -109,7 +109,8 @@ class Cones:
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, out.size, CHUNK):
             part = order[start : start + CHUNK]
-            low, high = self.left.panel[part], self.right.panel[part]
+            high = self.right.panel[part]
+            low = np.minimum(self.left.panel[part], high)
             first, last = int(low.min()), int(high.max()) + 1
             panels = slice(first, last)
             behind = self.xi[part, None] - curve.early[panels].ravel()
@@ -124,7 +125,8 @@ class Cones:
             for sign, end, cross in zip((-1.0, 1.0), ends, (self.left, self.right), strict=True):
                 total += sign * np.sum(boxes[rows, end] * partial_weights(cross.place[part]), axis=1)
             out[part] = total
-        return out
+        # A point on the curve, at the end of a panel: its cone is empty.
+        return np.where(self.left.panel > self.right.panel, 0.0, out)
 
 
 def partial_weights(place: np.ndarray) -> np.ndarray:

@@ -23,12 +23,14 @@ from .riemann import partial_weights
 
 RESOLVED = 1e-11
 # The shortest share of a panel of entries.
-SHORTEST = 1e-7
+SHORTEST = 1e-11
+# How far from a mark a front that speeds up to the waves is taken on at their speed.
+NEAR_MARK = 1e-4
 
 
 @dataclass(frozen=True)
 class Advance:
-    """The next panel of a slow front, and why it is the last one: "mark", "dead", "unknown" or None."""
+    """The next panel of a slow front, and why it is the last one: see `advance`."""
 
     panel: Panel | None
     stop: str | None
@@ -47,7 +49,7 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
     Returns
     -------
     The new panel; stop is "mark" where it ends at the mark, "dead" where the front stops for good, and "unknown"
-    where its characteristic comes from beyond the curve's left end.
+    where its characteristic comes from beyond the curve's left end; "unresolved" where no panel is short enough.
 
     Source: the free boundary (module docstring).
     """
@@ -60,7 +62,7 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
     corrections = 0
     for _ in range(60):
         if start - stop < SHORTEST and not corrections:
-            return front.straight(mark)
+            return Advance(None, "dead") if front.stalled() else front.straight(mark)
         solved = front.solve(k, start, stop)
         if solved is None:
             stop, corrections = 0.5 * (start + stop), 0
@@ -77,7 +79,7 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
             )
         stop = start + 0.5 * (stop - start) * (1.0 + place)
         corrections += 1
-    raise ArithmeticError(f"the slow front does not settle near x = {curve.edges[-1]!r}, gamma = {gamma!r}")
+    return Advance(None, "unresolved")
 
 
 def _first_event(x: np.ndarray, slope: np.ndarray, mark: float, limit: float) -> tuple[float, str] | None:
@@ -194,6 +196,12 @@ class _Chunk:
         place, panel = np.array([start]), np.array([k])
         return self.curve.at("source", panel, place)[0] / self.curve.slope("x", panel, place)[0]
 
+    def stalled(self) -> bool:
+        """Whether the front has just come to rest, at the end of the last panel of entries."""
+        last = np.array([len(self.curve.panels) - 1])
+        at_end = self.curve.slope("x", last, np.array([1.0]))[0]
+        return bool(at_end < 1e-3 * (self.curve.edges[-1] - self.curve.edges[-2]))
+
     def panel(self, k, start, stop, x, slope, end: float | None = None) -> Panel:
         places = start + 0.5 * (stop - start) * (1.0 + NODES)
         early = self.curve.at("early", np.full(COUNT, k), places)
@@ -203,10 +211,8 @@ class _Chunk:
 
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0: too short to be resolved, at the speed of the waves."""
-        if not np.isfinite(mark) or mark - self.x0 > 1e-3:
-            raise ArithmeticError(
-                f"the slow front does not settle near x = {self.x0!r}, gamma = {self.gamma!r}"
-            )
+        if not np.isfinite(mark) or mark - self.x0 > NEAR_MARK:
+            return Advance(None, "unresolved")
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
         time = self.t0 + x - self.x0

@@ -12,6 +12,12 @@ from .fronts import FrontLaw
 from .profile import nucleations
 from .slow_front import advance
 
+# Why a slow front cannot be followed further.
+UNKNOWN = {
+    "unknown": "what decides on a slow front comes from another part of the rupture",
+    "unresolved": "the motion of a slow front is not resolved",
+}
+
 
 class Stretch:
     """A connected part of the rupture and its two fronts, side -1 (left) and +1 (right).
@@ -108,9 +114,11 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
         stretch = stretches[n]
         _step(laws[side], stretch, side, limits[id(stretch), side], until)
         stretches = _joined(stretches, limits)
-    reason = "what decides on a slow front comes from another part of the rupture"
     ends = [
-        (*s.ends[side], reason) for s in stretches for side in (-1.0, 1.0) if s.stopped[side] == "unknown"
+        (*s.ends[side], UNKNOWN[s.stopped[side]])
+        for s in stretches
+        for side in (-1.0, 1.0)
+        if s.stopped[side] in UNKNOWN
     ]
     return stretches, ends + _overrun(stretches)
 
@@ -124,7 +132,7 @@ def _overrun(stretches: list[Stretch]) -> list[tuple[float, float, str]]:
             x = near.ends[-side][0]
             if far.panels and side * far.ends[side][0] > side * x:
                 far.cut(side, x)
-                far.stopped[side] = "unknown"
+                far.stopped[side] = "met"
                 out.append((*far.ends[side], "a front comes to where another one has stopped"))
     return out
 
@@ -150,7 +158,7 @@ def _step(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: flo
     step = advance(curve, law.prestress, piece.level, law.gamma, mark)
     if step.panel is not None:
         stretch.add(side, [step.panel], step.panel.x_ends[1], step.panel.time_ends[1])
-    if step.stop in ("dead", "unknown"):
+    if step.stop in ("dead", *UNKNOWN):
         stretch.stopped[side] = step.stop
     elif stretch.ends[side][1] >= until:
         stretch.stopped[side] = "duration"
