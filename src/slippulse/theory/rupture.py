@@ -138,7 +138,10 @@ class Rupture:
         return out[back].reshape(x.shape)
 
     def final_slip(self, x) -> np.ndarray:
-        """Slip at x after sticking; 0 where nothing has slipped, NaN where it has not stuck until ``duration``."""
+        """Slip at x after sticking; 0 where nothing has slipped, NaN where it has not stuck until ``duration``.
+
+        Final as long as `limit` is None: in the future of that point blocks may slip again.
+        """
         x = np.asarray(x, dtype=float)
         stick = self.stick_time(x)
         slid = np.isfinite(self.release_time(x))
