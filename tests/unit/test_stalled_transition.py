@@ -9,7 +9,7 @@ import xarray as xr
 import slippulse as sp
 from slippulse.measure.fronts import longest_wait
 from slippulse.measure.transition import STALL, transition_stress
-from slippulse.theory.rupture import ArrestingCrack
+from slippulse.theory import ArrestingCrack
 
 
 def test_the_longest_wait_on_the_way():

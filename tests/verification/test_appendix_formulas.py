@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import j0
 
 import slippulse as sp
-from slippulse.theory.rupture import Fronts, slip_velocity
+from slippulse.theory import Fronts, slip_velocity
 
 
 def symbol(k: complex, v: float, b: float) -> complex:

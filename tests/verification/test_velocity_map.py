@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.theory.rupture import Fronts, slip_velocity
+from slippulse.theory import Fronts, slip_velocity
 
 SCENES = {
     "displacement": (sp.Prestress(0.4, 0.4), 0.65, np.array([0.5, 1.5, 2.5]), np.array([0.0, 0.7, 1.6])),

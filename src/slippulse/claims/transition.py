@@ -9,7 +9,7 @@ import pandas as pd
 
 from ..comparison.exact_transition import exact_transition
 from ..model.scene import prestress_from
-from ..theory.rupture import ArrestingCrack
+from ..theory.arrest import ArrestingCrack
 from .evidence import Evidence, compared
 from .ledger import Claim
 

@@ -7,7 +7,8 @@ from functools import lru_cache
 
 from ..model.prestress import Prestress
 from ..model.scene import prestress_from
-from ..theory.rupture import ArrestingCrack, ExactTransition, exact_transition_displacement
+from ..theory.arrest import ArrestingCrack
+from ..theory.exact_transition import ExactTransition, exact_transition_displacement
 
 
 def exact_transition(attributes: Mapping, share: float) -> ExactTransition:

@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 from ..model.scene import prestress_from
+from ..theory.arrest import ArrestingCrack
+from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import STRONGEST_DAMPING, front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
 
 
 def far_pulse(attributes: Mapping, side: str = "right") -> SteadyPulse | None:

@@ -13,7 +13,7 @@ from matplotlib.ticker import NullFormatter
 from ..data.points import point
 from ..measure.fronts import arrival, path
 from ..model.scene import prestress_from
-from ..theory.rupture import ArrestingCrack
+from ..theory.arrest import ArrestingCrack
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.

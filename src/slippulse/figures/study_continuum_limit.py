@@ -10,9 +10,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..model.scene import prestress_from
+from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
-from ..theory.rupture import exact_transition_displacement
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.

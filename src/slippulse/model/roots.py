@@ -57,3 +57,49 @@ def root_between(
         if height**2 < place and (1.0 - height) ** 2 < 1.0 - place:
             share = fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
         share = min(1.0 - nearest, max(nearest, share))
+
+
+def roots_between(function, lower, upper, at_lower, at_upper, xtol: float = 1e-12):
+    """Roots of many functions at once, each between its own ends, by Chandrupatla's method.
+
+    Parameters
+    ----------
+    function : takes the numbers of the functions that are still wanted and one argument for each
+    lower, upper : arrays of ends
+    at_lower, at_upper : the values there, of different signs
+    xtol : each root is within this
+
+    Source: as `root_between`.
+    """
+    import numpy as np
+
+    a, b, fa, fb = (np.array(values, dtype=float) for values in (upper, lower, at_upper, at_lower))
+    out = np.where(np.abs(fa) < np.abs(fb), a, b)
+    c, fc = b.copy(), fb.copy()
+    share = np.full(a.shape, 0.5)
+    going = np.flatnonzero((np.abs(b - a) > xtol) & (fa != 0.0) & (fb != 0.0))
+    while going.size:
+        x = a[going] + share[going] * (b[going] - a[going])
+        fx = function(going, x)
+        same = np.sign(fx) == np.sign(fa[going])
+        same_side, other = going[same], going[~same]
+        c[same_side], fc[same_side] = a[same_side], fa[same_side]
+        c[other], fc[other] = b[other], fb[other]
+        b[other], fb[other] = a[other], fa[other]
+        a[going], fa[going] = x, fx
+        out[going] = np.where(np.abs(fa[going]) < np.abs(fb[going]), a[going], b[going])
+        wide = np.abs(b[going] - a[going])
+        nearest = xtol / np.maximum(wide, 1e-300)
+        done = (nearest > 0.5) | (fx == 0.0)
+        going, nearest = going[~done], nearest[~done]
+        place = (a[going] - b[going]) / (c[going] - b[going])
+        height = (fa[going] - fb[going]) / (fc[going] - fb[going])
+        safe = (height**2 < place) & ((1.0 - height) ** 2 < 1.0 - place)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            inverse = fa[going] / (fb[going] - fa[going]) * fc[going] / (fb[going] - fc[going]) + (
+                c[going] - a[going]
+            ) / (b[going] - a[going]) * fa[going] / (fc[going] - fa[going]) * fb[going] / (
+                fc[going] - fb[going]
+            )
+        share[going] = np.clip(np.where(safe, inverse, 0.5), nearest, 1.0 - nearest)
+    return out

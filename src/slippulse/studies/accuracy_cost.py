@@ -14,10 +14,11 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import simulate
+from ..theory.arrest import ArrestingCrack
+from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed as exact_speed
 from ..theory.front_law import front_speed_undamped
 from ..theory.pulse import steady_pulse
-from ..theory.rupture import ArrestingCrack, exact_transition_displacement
 
 # Keys of the configuration that it reads besides studies.accuracy_cost.
 SETTINGS = ("measure.front_window", "presets")

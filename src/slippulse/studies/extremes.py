@@ -15,10 +15,11 @@ from ..measure.transition import STALL, transition_stress
 from ..model.prestress import Prestress
 from ..simulation.simulate import simulate
 from ..solver.lattice import run_scene
+from ..theory.arrest import ArrestingCrack
+from ..theory.exact_transition import Fronts, exact_transition_displacement
 from ..theory.front_law import front_speed as exact_speed
 from ..theory.front_law import lattice_front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
-from ..theory.rupture import ArrestingCrack, Fronts, exact_transition_displacement
 from .edges import Edge, Measured, flags_of, scene, speed
 from .outcomes import NOT_OFFERED
 from .single_precision import crack_velocity

@@ -3,16 +3,21 @@
 from ..lazy import lazy_names
 
 _HOMES = {
-    "ArrestingCrack": "rupture",
-    "ExactTransition": "rupture",
-    "Fronts": "rupture",
+    "ArrestingCrack": "arrest",
+    "ExactTransition": "exact_transition",
+    "FrontEnd": "rupture",
+    "Fronts": "exact_transition",
     "Layer": "dimensional",
+    "Limit": "rupture",
+    "Rupture": "rupture",
     "SteadyFront": "front_motion",
     "SteadyPulse": "pulse",
     "admissibility_table": "front_motion",
+    "barrier_depth": "barrier",
+    "barrier_depth_estimate": "barrier",
     "continuum_front_speed": "front_law",
     "damage_zone_stress_drop": "dimensional",
-    "exact_transition_displacement": "rupture",
+    "exact_transition_displacement": "exact_transition",
     "front_speed": "front_law",
     "front_speed_undamped": "front_law",
     "lattice_front_speed": "front_law",
@@ -21,9 +26,10 @@ _HOMES = {
     "paper_transition_stress": "transition",
     "prestress_balance_position": "transition",
     "prestress_for_speed": "front_law",
-    "slip_velocity": "rupture",
+    "slip_velocity": "exact_transition",
     "steady_front": "front_motion",
     "steady_pulse": "pulse",
+    "uniform_transition_time": "exact_transition",
 }
 __all__ = list(_HOMES)
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -12,9 +12,9 @@ from matplotlib.lines import Line2D
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
 from ...model.scene import prestress_from
+from ...theory.arrest import ArrestingCrack
 from ...theory.front_law import front_speed
 from ...theory.pulse import paper_pulse, steady_pulse
-from ...theory.rupture import ArrestingCrack
 from ..style import BLUE, GREEN, ORANGE, PURPLE, SKY
 
 FIELDS = {

@@ -1,0 +1,89 @@
+"""A crack under a stress boundary whose left front runs into negative pre-stress, in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..model.balance import prestress_balance_position
+from ..model.checks import check_number
+from ..model.prestress import Prestress
+from ..model.roots import root_between
+from .exact_transition import Fronts
+
+
+class ArrestingCrack:
+    """Gamma = 0, tau = 0 far to the right and negative far to the left: the crack whose left front slows for ever.
+
+    du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const, both from 0 where a
+    front outruns the waves. Where tau < 0 the left front is slower than the waves and, with no fracture energy, slip,
+    slip velocity and strain vanish there. So a characteristic that entered at e ends on the left front at X with
+
+        Int_X^e tau dx = 0,   t = e + T(e) - X,
+
+    and X -> x_minus only as e -> infinity: the left front never arrives, and the arrest time is infinite.
+
+    Parameters
+    ----------
+    prestress : a profile, tau(0) = 1, level 0 far to the right and negative far to the left
+    damping_ratio : beta/dx, >= 0
+    release : "total" or "elastic"
+
+    Raises
+    ------
+    ValueError
+        If the levels are otherwise.
+    """
+
+    def __init__(self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total") -> None:
+        self.balance_position = prestress_balance_position(prestress)
+        self.prestress = prestress
+        # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
+        self.far = 12.0 * prestress.width
+        self.fronts = Fronts(prestress, damping_ratio, release, 4.0 * self.far)
+        self.zero = -float(self.fronts.ends[-1.0])
+
+    def entry_for(self, position: float) -> float:
+        """Entry point e of the characteristic that ends on the slow left front at a position between x_minus and x*."""
+        return float(
+            root_between(
+                lambda e: self.prestress.integral(position, e), self.zero, 4.0 * self.far - 1e-9, xtol=1e-13
+            )
+        )
+
+    def time_at(self, position: float) -> float:
+        """When the left front reaches a position in (x_minus, 0]."""
+        if position >= self.zero:
+            return float(self.fronts.arrival(position))
+        entry = self.entry_for(position)
+        return entry + float(self.fronts.arrival(entry)) - position
+
+    def share_time(self, share: float) -> float:
+        """When the left front has covered a share of |x_minus|, in (0, 1)."""
+        check_number("share", share, above=0.0, below=1.0)
+        return self.time_at(share * self.balance_position)
+
+    def share_length(self, share: float) -> float:
+        """Distance between the fronts then."""
+        time = self.share_time(share)
+        last, last_time = float(self.fronts.curve.edges[-1]), float(self.fronts.curve.edge_times[-1])
+        right = last + time - last_time if time >= last_time else self.fronts.reached(time, 1.0)
+        return right - share * self.balance_position
+
+    @property
+    def peak_velocity(self) -> float:
+        """Largest slip velocity of the far-field pulse: half the integral of tau to the right of its zero x*."""
+        return 0.5 * self.prestress.integral(self.zero, 4.0 * self.far)
+
+    def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
+        """The pulse far to the right: x - t of each characteristic and du/dt on it, from the front backwards."""
+        right = np.linspace(4.0 * self.far * 0.5, 0.0, count)
+        left = np.linspace(0.0, self.zero, count)[1:]
+        entries = np.concatenate([right, left])
+        delay = entries - self.fronts.arrival(entries)
+        # Crowded towards x_minus, which takes for ever.
+        share = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
+        slow = self.zero + (self.balance_position - self.zero) * share
+        slow_delay = np.array([x - self.time_at(x) for x in slow])
+        positions = np.concatenate([entries, slow])
+        velocity = np.array([0.5 * self.prestress.integral(x, 4.0 * self.far) for x in positions])
+        return np.concatenate([delay, slow_delay]), velocity

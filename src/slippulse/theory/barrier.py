@@ -1,0 +1,94 @@
+"""How deep a steady pulse enters a barrier: a level of negative pre-stress under leaf springs."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from ..model.checks import check_number
+from ..model.prestress import Prestress
+from .curve import Curve
+from .front_law import front_speed
+from .fronts import straight_panel
+from .pulse import steady_pulse
+from .slow_front import advance
+
+# Panels behind the barrier, each so long in units of 1/sqrt(gamma), as far as the barrier remembers.
+LONGEST = 2.0
+MEMORY = 1.5
+
+
+def barrier_depth(
+    tau0: float, tau_barrier: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
+) -> float:
+    """Distance from the edge of a barrier at which a steady pulse dies; a shorter barrier is passed.
+
+    Parameters
+    ----------
+    tau0 : pre-stress in which the pulse is steady, in (0, 1)
+    tau_barrier : pre-stress of the barrier, < 0
+    gamma : elasticity ratio, > 0
+    damping_ratio : beta/dx, >= 0
+    release : "total" or "elastic"
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, naming the value and the range.
+
+    Source: the free boundary (`slow_front`) behind a front at constant speed, in the continuum limit.
+    """
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_number("tau_barrier", tau_barrier, below=0.0)
+    check_number("gamma", gamma, above=0.0)
+    speed = float(front_speed(tau0, damping_ratio, release))
+    # The depth scales like 1/sqrt(gamma). Its characteristics entered no further back than the pulse remembers.
+    memory = MEMORY * steady_pulse(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
+    # T rises to the right, as behind a pulse that comes from far away.
+    panels = [_incoming(a, b, 1.0 / speed, tau0) for a, b in pairwise(edges.tolist())]
+    level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
+    stop = None
+    while stop is None:
+        step = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
+        if step.panel is not None:
+            panels.append(step.panel)
+        stop = step.stop
+    if stop != "dead":
+        raise ArithmeticError(
+            f"the front in the barrier is {stop} at tau0 = {tau0!r}, tau_barrier = {tau_barrier!r}"
+        )
+    return panels[-1].x_ends[1] / math.sqrt(gamma)
+
+
+def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
+    """The later estimate of the depth, (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
+
+    Parameters
+    ----------
+    tau0 : pre-stress before the barrier, > 0
+    tau_barrier : pre-stress of the barrier, < 0
+    gamma : elasticity ratio, > 0
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, naming the value and the range.
+
+    Source: the authors' public code of later work.
+    """
+    check_number("tau0", tau0, above=0.0)
+    check_number("tau_barrier", tau_barrier, below=0.0)
+    check_number("gamma", gamma, above=0.0)
+    return 2.0 / gamma * math.log((tau_barrier - tau0) / tau_barrier)
+
+
+def _incoming(left: float, right: float, rate: float, tau: float):
+    """A panel of a front that comes from the left and is at x = 0 at t = 0."""
+    panel = straight_panel(-right, -left, rate, tau)
+    return type(panel)(
+        -panel.x[::-1], -panel.time[::-1], panel.source, (left, right), (rate * left, rate * right)
+    )

@@ -1,0 +1,165 @@
+"""The crack-pulse transition under leaf springs, and what it needs: the fronts of one nucleation point at x = 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ..model.checks import check_choice, check_number
+from ..model.prestress import Prestress
+from ..model.roots import root_between
+from ..model.scene import RELEASES
+from .curve import Curve
+from .front_law import front_speed
+from .fronts import FrontLaw, straight_panel
+from .profile import nucleations
+from .riemann import Cones
+from .rupture import Rupture
+from .trailing import TrailingEdge
+
+
+class Fronts:
+    """Arrival times T(x) of the fronts that outrun the waves, on both sides of one nucleation point at x = 0.
+
+    Parameters
+    ----------
+    prestress : a profile with tau(0) = 1 and one nucleation point
+    damping_ratio : beta/dx, >= 0
+    release : "total" or "elastic"
+    reach : how far from x = 0 times are wanted (units of H)
+
+    Attributes
+    ----------
+    ends : by side, -1 or 1, the distance at which tau turns negative and the front slow; infinite beyond ``reach``
+
+    Raises
+    ------
+    ValueError
+        If the profile does not nucleate at x = 0, or nucleates elsewhere too.
+    """
+
+    def __init__(self, prestress: Prestress, damping_ratio: float, release: str, reach: float) -> None:
+        check_number("damping_ratio", damping_ratio, at_least=0.0)
+        check_choice("release", release, RELEASES)
+        check_number("reach", reach, above=0.0)
+        check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
+        places = nucleations(prestress)
+        if len(places) > 1 or places[0][0] != places[0][1]:
+            raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
+        self.prestress = prestress
+        law = FrontLaw(prestress, 0.0, damping_ratio, release)
+        right, end, _ = law.rightwards(0.0, 0.0, reach, np.inf)
+        left, start, _ = law.mirrored().rightwards(0.0, 0.0, reach, np.inf)
+        self.ends = {-1.0: start if start < reach else np.inf, 1.0: end if end < reach else np.inf}
+        self.curve = Curve([panel.mirrored() for panel in left[::-1]] + right)
+
+    def arrival(self, x) -> np.ndarray:
+        """T(x): when the front reaches x; NaN beyond where it outruns the waves."""
+        return self.curve.arrival(x)
+
+    def reached(self, time: float, sign: float) -> float:
+        """How far from x = 0 the front on one side (+1 right, -1 left) is at a time."""
+        last = 0 if sign < 0.0 else -1
+        if time >= self.curve.edge_times[last]:
+            raise ValueError(
+                f"time: {time!r}; allowed: < {self.curve.edge_times[last]:g}, when the fronts were asked for"
+            )
+        distance = abs(float(self.curve.edges[last]))
+        return float(root_between(lambda x: float(self.arrival(sign * x)) - time, 0.0, distance, xtol=1e-13))
+
+
+def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
+    """du/dt at one point behind the fronts and before anything sticks.
+
+    Parameters
+    ----------
+    fronts : the fronts of the scene
+    gamma : elasticity ratio; 0 under a stress boundary
+    y, time : the point; 0 where no front has been
+
+    Raises
+    ------
+    ValueError
+        If the point's past leaves the part of the fronts that outruns the waves.
+
+    Source: Riemann's solution (`riemann`).
+    """
+    if not float(fronts.arrival(y)) < time:
+        return 0.0
+    cones = Cones(fronts.curve, gamma, np.array([float(y)]), np.array([float(time)]))
+    if not (cones.left.known[0] and cones.right.known[0]):
+        raise ValueError(f"time: {time!r}; allowed: earlier, the cone leaves the part that outruns the waves")
+    return float(cones.slip_velocity()[0])
+
+
+@dataclass(frozen=True)
+class ExactTransition:
+    """When the first block sticks (Gamma = 1) and how far apart the fronts are then."""
+
+    time: float
+    length: float
+
+
+def exact_transition_displacement(
+    prestress: Prestress, gamma: float, damping_ratio: float = 0.0, release: str = "total"
+) -> ExactTransition:
+    """T_trans and L_trans of a symmetric scene under a displacement boundary, in the continuum limit.
+
+    Parameters
+    ----------
+    prestress : a symmetric profile, tau(0) = 1, positive everywhere
+    gamma : elasticity ratio, > 0
+    damping_ratio : beta/dx, >= 0
+    release : "total" or "elastic"
+
+    Raises
+    ------
+    ValueError
+        If the profile is not symmetric and positive, or nucleates elsewhere too.
+
+    Source: the first zero of du/dt at x = 0; symmetric scenes stick there first. For others, `Rupture`.
+    """
+    check_number("gamma", gamma, above=0.0)
+    if not prestress.symmetric or float(prestress.level(np.asarray(1e300))) <= 0.0:
+        raise ValueError("prestress: not symmetric and positive; allowed: equal levels > 0 on both sides")
+    return _first_stick_at_centre(prestress, gamma, damping_ratio, release)
+
+
+def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTransition:
+    until = 2.5 * np.pi / np.sqrt(gamma)
+    rupture = Rupture(prestress, gamma, damping_ratio, release, until)
+    time = float(rupture.stick_time(0.0))
+    left, right = rupture.fronts_at(time)
+    return ExactTransition(time, right - left)
+
+
+def uniform_transition_time(
+    tau0: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
+) -> float:
+    """T_trans in uniform pre-stress, nucleated at one point: what is left of the paper's pi/sqrt(gamma) without a peak.
+
+    Parameters
+    ----------
+    tau0 : pre-stress, in (0, 1)
+    gamma : elasticity ratio, > 0
+    damping_ratio : beta/dx, >= 0
+    release : "total" or "elastic"
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, naming the value and the range.
+
+    Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v: with q = sqrt(gamma) t/(1 + 1/v) it is
+    that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, w = 1/v, and depends on v alone.
+    """
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_number("gamma", gamma, above=0.0)
+    rate = 1.0 / float(front_speed(tau0, damping_ratio, release))
+    reach = 12.0 / (1.0 - rate**2)
+    edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
+    curve = Curve([straight_panel(a, b, rate, tau0) for a, b in pairwise(edges.tolist())])
+    edge = TrailingEdge(curve, 1.0, 10.0, np.array([0.0]), one_side=True)
+    return float(edge.stick_time(np.array([0.0]))[0]) / float(np.sqrt(gamma))

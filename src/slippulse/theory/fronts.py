@@ -1,0 +1,130 @@
+"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)), in panels that resolve it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from ..model.prestress import Prestress
+from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel
+from .profile import Piece, edges_of_features, mirrored, pieces, smooth
+from .slowness import slowness
+
+# Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
+RESOLVED = 1e-10
+NARROWEST = 1e-9
+# A panel is at most so long in units of 1/sqrt(gamma): in proper length, for waves, and in x, for the state at rest.
+LONGEST = 2.0
+LONGEST_AT_REST = 4.0
+LONGEST_WITHOUT_SPRINGS = 8.0
+MOST_PANELS = 20_000
+
+
+class FrontLaw:
+    """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma."""
+
+    def __init__(
+        self, prestress: Prestress, gamma: float, damping_ratio: float, release: str, refinement: int = 1
+    ) -> None:
+        self.prestress, self.gamma = prestress, gamma
+        self.damping_ratio, self.release, self.refinement = damping_ratio, release, refinement
+        self.pieces = pieces(prestress)
+        self.features = edges_of_features(prestress)
+
+    def mirrored(self) -> FrontLaw:
+        """The same at -x."""
+        return FrontLaw(
+            mirrored(self.prestress), self.gamma, self.damping_ratio, self.release, self.refinement
+        )
+
+    def slowness(self, tau: np.ndarray) -> np.ndarray:
+        return slowness(tau, self.damping_ratio, self.release)
+
+    def piece_right_of(self, x: float) -> Piece:
+        return next(piece for piece in self.pieces if piece.right > x)
+
+    def longest(self, level: float) -> float:
+        """The longest panel: the leaf springs' phase changes by LONGEST along it."""
+        if self.gamma == 0.0:
+            return LONGEST_WITHOUT_SPRINGS / self.refinement
+        proper = (
+            float(np.sqrt(1.0 - self.slowness(np.array(np.clip(level, 0.0, 1.0))) ** 2))
+            if level > 0.0
+            else 1.0
+        )
+        return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / np.sqrt(self.gamma) / self.refinement
+
+    def rightwards(
+        self, start: float, time: float, stop: float, until: float
+    ) -> tuple[list[Panel], float, float]:
+        """Panels from start towards stop, while tau >= 0 and T < until; and where and when they end."""
+        panels: list[Panel] = []
+        while start < stop and time < until:
+            piece = self.piece_right_of(start)
+            if not piece.supersonic:
+                break
+            end = min(stop, piece.right)
+            far = float(self.features[-1])
+            if np.isinf(end) and start >= far:
+                # Uniform from here on.
+                rate = float(self.slowness(np.array(piece.level)))
+                if (until - time) > MOST_PANELS * rate * self.longest(piece.level):
+                    raise ValueError(
+                        f"prestress: level {piece.level!r}; allowed: fronts that stay within"
+                        f" {MOST_PANELS} panels until {until:g}"
+                    )
+                end = start + (until - time) / rate * (1.0 + 1e-9) + 1e-9
+            elif np.isinf(end):
+                end = max(far, np.nextafter(start, np.inf))
+            panels += self.between(piece.level, start, end, time)
+            start, time = end, panels[-1].time_ends[1]
+        return panels, start, time
+
+    def between(self, level: float, start: float, end: float, time: float) -> list[Panel]:
+        """Panels of a front that goes right over part of one piece, from a time on."""
+        inner = self.features[(self.features > start) & (self.features < end)]
+        longest = self.longest(level)
+        rough = np.concatenate([[start], inner, [end]])
+        edges = np.unique(
+            np.concatenate(
+                [
+                    np.linspace(a, b, int(np.ceil((b - a) / longest)) * self.refinement + 1)
+                    for a, b in pairwise(rough)
+                ]
+            )
+        )
+        edges[0], edges[-1] = start, end
+        while True:
+            half = 0.5 * np.diff(edges)[:, None]
+            x = edges[:-1, None] + half * (1.0 + NODES)
+            tau = smooth(self.prestress, level, x)
+            rate = self.slowness(tau)
+            tails = np.maximum(
+                np.abs(rate @ TO_SERIES[-2:].T).max(axis=1), np.abs(tau @ TO_SERIES[-2:].T).max(axis=1)
+            )
+            size = 2.0 * half[:, 0]
+            split = (tails * size > RESOLVED) & (size > NARROWEST)
+            if not split.any():
+                break
+            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
+        starts = time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (rate @ WEIGHTS))])
+        within = (half * rate) @ CUMULATIVE.T
+        return [
+            Panel(
+                x[k],
+                starts[k] + within[k],
+                tau[k] * half[k],
+                (edges[k], edges[k + 1]),
+                (starts[k], starts[k + 1]),
+            )
+            for k in range(len(x))
+        ]
+
+
+def straight_panel(left: float, right: float, rate: float, tau: float) -> Panel:
+    """A panel of a front at constant speed in uniform pre-stress, T = rate |x|."""
+    half = 0.5 * (right - left)
+    x = left + half * (1.0 + NODES)
+    ends = (left, right)
+    return Panel(x, rate * np.abs(x), np.full(COUNT, tau * half), ends, (rate * abs(left), rate * abs(right)))

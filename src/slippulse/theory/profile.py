@@ -1,0 +1,139 @@
+"""A pre-stress in pieces: smooth and of one sign on each, with the intervals that are released at t = 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ..model.prestress import Prestress
+from ..model.roots import root_between
+
+# A Gaussian is its level to rounding beyond so many widths; edges of panels stand at these multiples of the width.
+EXTENT = 9.0
+FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
+# Samples a width that find each sign change.
+SAMPLES = 32
+ROUNDING = 1e-15
+
+
+@dataclass(frozen=True)
+class Piece:
+    """An interval on which the pre-stress is smooth and does not change its sign.
+
+    Attributes
+    ----------
+    left, right : its ends; infinite for the outermost
+    level : side level on it
+    supersonic : whether tau >= 0, so that a front outruns the waves
+    """
+
+    left: float
+    right: float
+    level: float
+    supersonic: bool
+
+
+def smooth(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
+    """The pre-stress with one level everywhere: analytic, and the pre-stress itself where the level is that."""
+    tau = prestress.peak + (level - prestress.peak) * -np.expm1(-0.5 * (x / prestress.width) ** 2)
+    for centre, amplitude, width in prestress.bumps:
+        tau = tau + amplitude * np.exp(-0.5 * ((x - centre) / width) ** 2)
+    return tau
+
+
+def mirrored(prestress: Prestress) -> Prestress:
+    """The pre-stress at -x."""
+    return Prestress(
+        left=prestress.right,
+        right=prestress.left,
+        width=prestress.width,
+        peak=prestress.peak,
+        steps=tuple((-position, level) for position, level in prestress.steps),
+        bumps=tuple((-centre, amplitude, width) for centre, amplitude, width in prestress.bumps),
+    )
+
+
+def edges_of_features(prestress: Prestress) -> np.ndarray:
+    """Positions that an edge of a panel stands at, so that no feature falls between two nodes."""
+    return np.unique(np.concatenate([centre + width * FEATURES for centre, width in _gaussians(prestress)]))
+
+
+def pieces(prestress: Prestress) -> list[Piece]:
+    """The pieces from left to right."""
+    out = []
+    for left, right, level in _between_jumps(prestress):
+        x = _samples(prestress, left, right)
+        tau = smooth(prestress, level, x)
+        positive = tau > -ROUNDING
+
+        def value(z: float, level=level) -> float:
+            return float(smooth(prestress, level, np.asarray(z)))
+
+        marks = []
+        for k in np.flatnonzero(positive[1:] != positive[:-1]):
+            crossing = tau[k] * tau[k + 1] < 0.0
+            marks.append(root_between(value, x[k], x[k + 1], xtol=1e-14) if crossing else float(x[k + 1]))
+        sign = bool(positive[0])
+        for a, b in pairwise([left, *marks, right]):
+            if b > a:
+                out.append(Piece(a, b, level, sign))
+            sign = not sign
+    return out
+
+
+def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
+    """The intervals (points, where tau only touches 1) with tau >= 1, from left to right."""
+    found = []
+    for left, right, level in _between_jumps(prestress):
+        x = _samples(prestress, left, right)
+        excess = smooth(prestress, level, x) - 1.0
+        over = excess >= 0.0
+
+        def above(z: float, level=level) -> float:
+            return float(smooth(prestress, level, np.asarray(z))) - 1.0
+
+        marks = [float(x[0])] if over[0] else []
+        for k in np.flatnonzero(over[1:] != over[:-1]):
+            touching = [float(x[n]) for n in (k, k + 1) if excess[n] == 0.0]
+            marks.append(touching[0] if touching else root_between(above, x[k], x[k + 1], xtol=1e-14))
+        if over[-1]:
+            marks.append(float(x[-1]))
+        found += zip(marks[::2], marks[1::2], strict=True)
+    merged: list[tuple[float, float]] = []
+    for a, b in sorted(found):
+        if merged and a <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
+        else:
+            merged.append((a, b))
+    return merged
+
+
+def _gaussians(prestress: Prestress) -> list[tuple[float, float]]:
+    """Centre and width of the peak and of each bump."""
+    return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
+
+
+def _between_jumps(prestress: Prestress) -> list[tuple[float, float, float]]:
+    """Intervals of one side level: left, right, level."""
+    jumps = sorted({0.0, *(position for position, _ in prestress.steps)})
+    inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
+    levels = prestress.level(np.array(inside))
+    return [
+        (left, right, float(level))
+        for (left, right), level in zip(pairwise([-np.inf, *jumps, np.inf]), levels, strict=True)
+    ]
+
+
+def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
+    """Positions that show each change of sign within an interval, its finite ends among them."""
+    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+    x = np.concatenate([centre + width * fine for centre, width in _gaussians(prestress)])
+    # Far outside everything a side has its last level.
+    far = [float(x.min()) - 1.0, float(x.max()) + 1.0]
+    ends = [
+        left if np.isfinite(left) else min(far[0], right - 1.0),
+        right if np.isfinite(right) else max(far[1], left + 1.0),
+    ]
+    return np.unique(np.concatenate([x[(x > left) & (x < right)], ends]))

@@ -1,0 +1,89 @@
+"""1/v of a front into given pre-stress, for many pre-stresses at once.
+
+With 1/v = cos(psi), tau_0 = M_+(0) is smooth in psi at every damping ratio b, and is sin(psi) at b = 0. For small b it
+turns within a distance of about b of psi = 0 (from psi^2 to psi) and of psi = pi/2, so it is interpolated on panels
+that are halved until they resolve it, and inverted by Newton's method.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ..model.checks import check_choice, check_number
+from ..model.scene import RELEASES
+from .speed_solver import in_chunks
+
+# Nodes on a panel, and the largest last coefficients of the pre-stress on it.
+COUNT = 14
+NODES = legendre.leggauss(COUNT)[0]
+TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
+RESOLVED = 2e-12
+NARROWEST = 1e-7
+
+
+def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
+    """1/v of a front into pre-stress tau: 0 where tau >= 1, 1 where tau <= 0.
+
+    Parameters
+    ----------
+    tau : array
+    damping_ratio : beta/dx, >= 0
+    release : "total" or "elastic"
+
+    Raises
+    ------
+    ValueError
+        If damping_ratio or release is not as stated.
+
+    Source: the inverse of `prestress_for_speed`, to 1e-11.
+    """
+    check_number("damping_ratio", damping_ratio, at_least=0.0)
+    check_choice("release", release, RELEASES)
+    tau = np.clip(np.asarray(tau, dtype=float), 0.0, 1.0)
+    if damping_ratio == 0.0:
+        return np.sqrt((1.0 - tau) * (1.0 + tau))
+    edges, edge_tau, series = _law(float(damping_ratio), release)
+    panel = np.clip(np.searchsorted(edge_tau, tau, side="right") - 1, 0, edges.size - 2)
+    half = 0.5 * (edges[1:] - edges[:-1])[panel]
+    coefficients, slopes = series[:, panel], legendre.legder(series)[:, panel]
+    low, high = edge_tau[panel], edge_tau[panel + 1]
+    s = 2.0 * (tau - low) / (high - low) - 1.0
+    # On the first panel tau grows like psi^2, and Newton starts from above.
+    s = np.where(panel == 0, 2.0 * np.sqrt((tau - low) / (high - low)) - 1.0, s)
+    for _ in range(12):
+        slope = legendre.legval(s, slopes, tensor=False)
+        step = (legendre.legval(s, coefficients, tensor=False) - tau) / np.maximum(slope, 1e-12)
+        s = np.clip(s - step, -1.0, 1.0)
+        if np.max(np.abs(step), initial=0.0) < 1e-11:
+            break
+    # The end of the first panel is a double root.
+    s = np.where(tau <= 0.0, -1.0, s)
+    return np.cos(edges[panel] + half * (1.0 + s))
+
+
+@lru_cache(maxsize=32)
+def _law(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Panels in psi, the pre-stress at their edges, and its Legendre series on each."""
+
+    def prestress(psi: np.ndarray) -> np.ndarray:
+        excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
+        return np.exp(in_chunks(excess, np.full(excess.size, damping_ratio), release))
+
+    quarter = 0.5 * np.pi
+    todo = [(0.0, 0.5 * quarter), (0.5 * quarter, quarter)]
+    done = []
+    while todo:
+        left, right = todo.pop()
+        series = TO_SERIES @ prestress(left + 0.5 * (right - left) * (1.0 + NODES))
+        if np.max(np.abs(series[-2:])) < RESOLVED or right - left < NARROWEST:
+            done.append((left, right, series))
+        else:
+            middle = 0.5 * (left + right)
+            todo += [(left, middle), (middle, right)]
+    done.sort(key=lambda panel: panel[0])
+    edges = np.array([done[0][0]] + [right for _, right, _ in done])
+    inner = prestress(edges[1:-1])
+    return edges, np.concatenate([[0.0], inner, [1.0]]), np.array([series for *_, series in done]).T

@@ -1,0 +1,209 @@
+"""How the rupture spreads from every nucleation point: fronts that outrun the waves, slow ones, and where they meet."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from ..model.roots import root_between
+from .curve import Curve, Panel
+from .fronts import FrontLaw
+from .profile import nucleations
+from .slow_front import advance
+
+# Why a slow front cannot be followed further.
+UNKNOWN = {
+    "unknown": "what decides on a slow front comes from another part of the rupture",
+    "unresolved": "the motion of a slow front is not resolved",
+}
+
+
+class Stretch:
+    """A connected part of the rupture and its two fronts, side -1 (left) and +1 (right).
+
+    Attributes
+    ----------
+    panels : from left to right
+    ends : position and time of the outermost known point, by side
+    stopped : why a front goes no further, by side: "dead" (it stops for good), "duration", "unknown" (what decides on
+        it comes from beyond this stretch), or None while it goes on
+    restarts : by side, where a front that was slow outran the waves again
+    joins : where fronts from different nucleation points met
+    """
+
+    def __init__(self, left: float, right: float) -> None:
+        self.panels: list[Panel] = []
+        self.ends = {-1.0: (left, 0.0), 1.0: (right, 0.0)}
+        self.stopped: dict[float, str | None] = {-1.0: None, 1.0: None}
+        self.restarts: dict[float, list[float]] = {-1.0: [], 1.0: []}
+        self.joins: list[float] = []
+
+    def curve(self) -> Curve:
+        return Curve(self.panels, self.restarts[-1.0], self.restarts[1.0])
+
+    def add(self, side: float, panels: list[Panel], x: float, time: float) -> None:
+        """Append panels made by a front seen going right, which ends at x and time so seen."""
+        if side < 0.0:
+            self.panels = [panel.mirrored() for panel in panels[::-1]] + self.panels
+        else:
+            self.panels = self.panels + panels
+        self.ends[side] = (side * x, time)
+
+    def cut(self, side: float, x: float) -> None:
+        """Take away what lies beyond x."""
+        kept = []
+        for panel in self.panels if side > 0.0 else [panel.mirrored() for panel in self.panels[::-1]]:
+            left, right = panel.x_ends
+            if right <= side * x:
+                kept.append(panel)
+            elif left < side * x:
+                _, place = Curve([panel]).place(np.array([side * x]))
+                if place[0] > -1.0:
+                    kept.append(panel.part(-1.0, float(place[0])))
+        time = kept[-1].time_ends[1] if kept else 0.0
+        self.panels = kept if side > 0.0 else [panel.mirrored() for panel in kept[::-1]]
+        self.ends[side] = (x, time)
+        self.restarts[side] = [r for r in self.restarts[side] if side * r < side * x]
+
+
+def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float, float, str]]]:
+    """All connected parts of the rupture until a time, from left to right, and points where more is not known.
+
+    Parameters
+    ----------
+    law : pre-stress, front law and gamma
+    until : time up to which T(x) is wanted
+
+    Raises
+    ------
+    ValueError
+        If the pre-stress nowhere reaches 1.
+    """
+    starts = nucleations(law.prestress)
+    if not starts:
+        raise ValueError("prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere")
+    laws = {1.0: law, -1.0: law.mirrored()}
+    stretches = []
+    for left, right in starts:
+        stretch = Stretch(left, right)
+        if left < right:
+            panels, *_ = law.rightwards(left, 0.0, right, np.inf)
+            stretch.add(1.0, panels, right, 0.0)
+        stretches.append(stretch)
+    barriers = {
+        1.0: [left for left, _ in starts[1:]] + [np.inf],
+        -1.0: [np.inf] + [-right for _, right in starts[:-1]],
+    }
+    limits = {(id(s), side): barriers[side][n] for n, s in enumerate(stretches) for side in (-1.0, 1.0)}
+    for stretch in stretches:
+        for side in (-1.0, 1.0):
+            _run(laws[side], stretch, side, limits[id(stretch), side], until)
+    stretches = _joined(stretches, limits)
+    # The slow fronts, the earliest first: each follows from what the others did before.
+    while True:
+        going = [
+            (s.ends[side][1], n, side)
+            for n, s in enumerate(stretches)
+            for side in (-1.0, 1.0)
+            if s.stopped[side] is None
+        ]
+        if not going:
+            break
+        _, n, side = min(going)
+        stretch = stretches[n]
+        _step(laws[side], stretch, side, limits[id(stretch), side], until)
+        stretches = _joined(stretches, limits)
+    ends = [
+        (*s.ends[side], UNKNOWN[s.stopped[side]])
+        for s in stretches
+        for side in (-1.0, 1.0)
+        if s.stopped[side] in UNKNOWN
+    ]
+    return stretches, ends + _overrun(stretches)
+
+
+def _overrun(stretches: list[Stretch]) -> list[tuple[float, float, str]]:
+    """Cut fronts that come to where another has stopped for good: what they do there is not known."""
+    out = []
+    for left, right in pairwise(stretches):
+        for near, far, side in ((left, right, -1.0), (right, left, 1.0)):
+            # The front of `far` on this side has passed the end of `near`.
+            x = near.ends[-side][0]
+            if far.panels and side * far.ends[side][0] > side * x:
+                far.cut(side, x)
+                far.stopped[side] = "met"
+                out.append((*far.ends[side], "a front comes to where another one has stopped"))
+    return out
+
+
+def _run(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: float) -> None:
+    """Let a front go on while it outruns the waves, as far as the next nucleation point."""
+    x, time = stretch.ends[side]
+    panels, x, time = law.rightwards(side * x, time, limit, until)
+    if panels:
+        stretch.add(side, panels, x, time)
+    if time >= until:
+        stretch.stopped[side] = "duration"
+    elif x >= limit:
+        stretch.stopped[side] = "met"
+
+
+def _step(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: float) -> None:
+    """One panel of a slow front, and where its negative piece ends the fast front that follows."""
+    x, _ = stretch.ends[side]
+    piece = law.piece_right_of(side * x)
+    mark = min(piece.right, limit)
+    curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
+    step = advance(curve, law.prestress, piece.level, law.gamma, mark)
+    if step.panel is not None:
+        stretch.add(side, [step.panel], step.panel.x_ends[1], step.panel.time_ends[1])
+    if step.stop in ("dead", *UNKNOWN):
+        stretch.stopped[side] = step.stop
+    elif stretch.ends[side][1] >= until:
+        stretch.stopped[side] = "duration"
+    elif step.stop == "mark":
+        if mark >= limit:
+            stretch.stopped[side] = "met"
+        elif law.piece_right_of(mark).supersonic:
+            stretch.restarts[side].append(side * mark)
+            _run(law, stretch, side, limit, until)
+
+
+def _joined(stretches: list[Stretch], limits: dict) -> list[Stretch]:
+    """Neighbours whose fronts have met, made one: where both have been, the earlier counts."""
+    out = [stretches[0]]
+    for right in stretches[1:]:
+        left = out[-1]
+        overlap = right.ends[-1.0][0], left.ends[1.0][0]
+        if not (overlap[0] <= overlap[1] and left.panels and right.panels):
+            out.append(right)
+            continue
+        first, second = left.curve(), right.curve()
+
+        def lead(x: float, first=first, second=second) -> float:
+            return float(first.arrival(np.array(x)) - second.arrival(np.array(x)))
+
+        low = max(overlap[0], float(first.edges[0]))
+        high = min(overlap[1], float(second.edges[-1]))
+        if not (lead(low) <= 0.0 <= lead(high)):
+            out.append(right)
+            continue
+        x = root_between(lead, low, high, xtol=1e-14)
+        slow = abs(float(np.diff(first.arrival(np.array([x - 1e-6, x])))[0])) > 1e-6
+        slow = slow or abs(float(np.diff(second.arrival(np.array([x, x + 1e-6])))[0])) > 1e-6
+        left.cut(1.0, x)
+        right.cut(-1.0, x)
+        both = Stretch(left.ends[-1.0][0], right.ends[1.0][0])
+        both.panels = left.panels + right.panels
+        both.ends = {-1.0: left.ends[-1.0], 1.0: right.ends[1.0]}
+        both.stopped = {-1.0: left.stopped[-1.0], 1.0: right.stopped[1.0]}
+        both.joins = [*left.joins, x, *right.joins]
+        for side in (-1.0, 1.0):
+            both.restarts[side] = left.restarts[side] + right.restarts[side] + ([x] if slow else [])
+        limits[id(both), -1.0] = limits[id(left), -1.0]
+        limits[id(both), 1.0] = limits[id(right), 1.0]
+        # Kept alive: its identity is a key.
+        both.parts = (left, right)
+        out[-1] = both
+    return out

@@ -1,0 +1,186 @@
+"""Slip, velocity and strain behind the fronts, trailing edges, and where the construction ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import j0
+
+import slippulse as sp
+from slippulse.theory import Rupture, front_speed, steady_pulse, uniform_transition_time
+
+PUBLISHED = (sp.Prestress(0.25, 0.25), 0.55, 0.1)
+# Positions, stick times and slips of the published scene; lattices of dx = 0.01, 0.005 and 0.0025, extrapolated, agree
+# to 2.4e-5 and 4e-6.
+X = np.array([0.0, 1.0, 2.0, 3.2, 4.5, 6.0, 8.0, 9.6])
+STICK = np.array([3.931228, 4.047665, 4.377168, 4.987691, 5.826132, 6.934555, 8.549606, 9.908655])
+SLIP = np.array([1.941664, 1.779533, 1.472257, 1.194463, 1.027645, 0.926688, 0.863650, 0.842801])
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(6)
+SCENES = {
+    "symmetric": (sp.Prestress(0.4, 0.4), 0.65, 0.1),
+    "asymmetric": (sp.Prestress(-0.5, 0.5), 0.65, 0.1),
+    "stress": (sp.Prestress(-0.4, 0.3, 1.5), 0.0, 0.1),
+    "step": (sp.Prestress(0.5, 0.5, steps=((2.0, 0.3),)), 0.65, 0.0),
+}
+
+
+def test_the_published_scene():
+    rupture = Rupture(*PUBLISHED, "total", 11.0)
+    assert rupture.limit is None
+    assert rupture.stick_time(X) == pytest.approx(STICK, abs=1e-6)
+    assert rupture.final_slip(X) == pytest.approx(SLIP, abs=1e-6)
+    assert rupture.stick_time(-X) == pytest.approx(rupture.stick_time(X), abs=1e-12)
+    assert rupture.first_stick == pytest.approx((STICK[0], 0.0), abs=1e-6)
+    assert rupture.transition_time == pytest.approx(STICK[0], abs=1e-6)
+    assert rupture.pulse_width(STICK[5]) == pytest.approx(rupture.fronts_at(STICK[5])[1] - X[5], abs=2e-6)
+    assert rupture.pulse_width(2.0) != rupture.pulse_width(2.0)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_stick_times_and_slip_owe_nothing_to_the_panels(name):
+    profile, gamma, ratio = SCENES[name]
+    x = np.linspace(-3.0, 4.0, 30)
+    coarse, fine = (Rupture(profile, gamma, ratio, "total", 6.5, refinement=n) for n in (1, 2))
+    for quantity in ("stick_time", "final_slip"):
+        a, b = getattr(coarse, quantity)(x), getattr(fine, quantity)(x)
+        assert np.array_equal(np.isfinite(a), np.isfinite(b))
+        assert a[np.isfinite(a)] == pytest.approx(b[np.isfinite(b)], abs=1e-8)
+    times = np.linspace(0.5, 6.0, 5)
+    for field, values in coarse.map(times, x).items():
+        assert values == pytest.approx(fine.map(times, x)[field], abs=1e-7, nan_ok=True), field
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_velocity_is_riemanns_integral(name):
+    profile, gamma, ratio = SCENES[name]
+    rupture = Rupture(profile, gamma, ratio, "total", 8.0)
+
+    def arrival(x: float) -> float:
+        return float(rupture.release_time(x))
+
+    for y, time in ((0.3, 1.5), (1.0, 3.0), (-0.8, 2.5)):
+        left = brentq(lambda x, y=y, t=time: t - arrival(x) - (y - x), -3.4, y, xtol=1e-13)
+        right = brentq(lambda x, y=y, t=time: t - arrival(x) - (x - y), y, 4.5, xtol=1e-13)
+
+        def integrand(x: float, y=y, time=time) -> float:
+            interval = max((time - arrival(x)) ** 2 - (x - y) ** 2, 0.0)
+            return 0.5 * float(profile(x)) * j0(np.sqrt(gamma * interval))
+
+        exact = quad(integrand, left, right, points=[-1.3, 0.0, min(2.0, 0.999 * right)], epsabs=1e-9)[0]
+        assert float(rupture.slip_velocity(y, time)) == pytest.approx(exact, abs=1e-8)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_slip_and_strain_belong_to_the_velocity(name):
+    """u is its integral in time, and the strain the derivative of u: three formulas, found apart."""
+    profile, gamma, ratio = SCENES[name]
+    rupture = Rupture(profile, gamma, ratio, "total", 6.0)
+    h = 1e-4
+    for x, time in ((0.7, 3.0), (-1.1, 2.6), (2.5, 3.4)):
+        release = float(rupture.release_time(x))
+        # du/dt has kinks where characteristics from the nucleation and the step pass.
+        passing = [float(rupture.release_time(p)) + abs(x - p) for p in (0.0, 2.0)]
+        edges = np.unique([*np.linspace(release, time, 161), *(t for t in passing if release < t < time)])
+        half = 0.5 * np.diff(edges)[:, None]
+        velocity = rupture.slip_velocity(x, edges[:-1, None] + half * (1.0 + NODES))
+        total = np.sum(half * WEIGHTS * velocity)
+        assert float(rupture.slip(x, time)) == pytest.approx(total, abs=1e-7)
+        difference = np.diff(rupture.slip(np.array([x - h, x + h]), time))[0] / (2.0 * h)
+        assert float(rupture.strain(x, time)) == pytest.approx(difference, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", ["symmetric", "asymmetric"])
+def test_the_slip_obeys_the_equation(name):
+    profile, gamma, ratio = SCENES[name]
+    rupture = Rupture(profile, gamma, ratio, "total", 6.0)
+    h = 1e-3
+    for x, time in ((0.7, 2.5), (-1.5, 2.8), (2.2, 3.0)):
+        u = rupture.slip(
+            x + h * np.array([-1.0, 0.0, 1.0, 0.0, 0.0]), time + h * np.array([0.0, -1.0, 0.0, 1.0, 0.0])
+        )
+        balance = u[1] + u[3] - u[0] - u[2]
+        assert balance / h**2 + gamma * u[4] == pytest.approx(float(profile(x)), abs=1e-5)
+
+
+def test_nothing_moves_ahead_of_the_fronts_and_behind_the_trailing_edges():
+    rupture = Rupture(*PUBLISHED, "total", 9.0)
+    fields = rupture.map([1.0, 8.5], [-7.0, 0.0, 5.0, 12.0])
+    assert fields["slip_velocity"][0, [0, 2, 3]] == pytest.approx(0.0, abs=0.0)
+    assert fields["slip_velocity"][1, 1:] == pytest.approx(0.0, abs=0.0)
+    assert fields["slip"][1, 1] == pytest.approx(SLIP[0], abs=1e-6)
+    assert fields["strain"][1, 0] > 0.0 > fields["strain"][1, 2]
+
+
+@pytest.mark.parametrize(("ratio", "level", "then"), [(0.0, 0.3, 0.6), (0.0, 0.6, 0.35), (0.1, 0.5, 0.7)])
+def test_the_pulse_is_steady_exactly_beyond_its_memory(ratio, level, then):
+    gamma, step = 0.65, 6.0
+    speed = float(front_speed(then, ratio))
+    pulse = steady_pulse(then, gamma, 0.0, speed)
+    bound = pulse.width / (speed - 1.0)
+    profile = sp.Prestress(level, level, steps=((step, then),))
+    rupture = Rupture(profile, gamma, ratio, "total", (step + bound) * 1.3 + 6.0)
+    x = step + bound * np.array([0.7, 1.001, 1.05, 1.2])
+    if rupture.limit is not None:
+        assert np.all(rupture.stick_time(x[1:]) < rupture.horizon(x[1:]))
+    delay = rupture.stick_time(x) - rupture.release_time(x) - pulse.width / speed
+    assert np.abs(delay[1:]) == pytest.approx(0.0, abs=1e-9)
+    assert abs(delay[0]) > 1e-6
+    assert rupture.final_slip(x)[1:] == pytest.approx(pulse.slip, abs=1e-9)
+    times = rupture.release_time(x[1]) + np.linspace(0.05, 0.95, 9) * pulse.width / speed
+    xi = -speed * (times - rupture.release_time(x[1]))
+    slip, velocity, _ = pulse.profile(xi)
+    assert rupture.slip(x[1], times) == pytest.approx(slip, abs=1e-9)
+    assert rupture.slip_velocity(x[1], times) == pytest.approx(velocity, abs=1e-9)
+
+
+@pytest.mark.parametrize(("tau0", "known"), [(0.1, 1.219), (0.4, 1.206), (0.9, 1.112)])
+def test_transition_in_uniform_prestress(tau0, known):
+    assert uniform_transition_time(tau0, 1.0) / np.pi == pytest.approx(known, abs=5e-4)
+    rate = np.sqrt(1.0 - tau0**2)
+
+    def velocity(time: float) -> float:
+        return quad(lambda x: j0(np.sqrt(max((time - rate * x) ** 2 - x**2, 0.0))), 0.0, time / (1.0 + rate))[
+            0
+        ]
+
+    assert uniform_transition_time(tau0, 1.0) == pytest.approx(brentq(velocity, 2.0, 5.0), abs=1e-8)
+    assert uniform_transition_time(tau0, 4.0, 0.1) == pytest.approx(
+        0.5 * uniform_transition_time(tau0, 1.0, 0.1)
+    )
+
+
+def test_a_crack_with_two_slow_fronts_is_arrested():
+    """Without leaf springs: each front stops where Int_X^e tau dx = 0 with e where the other one becomes slow."""
+    profile = sp.Prestress(-0.5, -0.5)
+    rupture = Rupture(profile, 0.0, 0.1, "total", 9.0)
+    zero = brentq(lambda x: float(profile(x)), 0.5, 3.0, xtol=1e-14)
+    stop = brentq(lambda x: profile.integral(x, zero), -20.0, -zero - 0.1, xtol=1e-13)
+    ((left, right),) = rupture.front_ends
+    assert (left.reason, right.reason) == ("stops", "stops")
+    assert left.x == pytest.approx(stop, abs=1e-8)
+    assert right.x == pytest.approx(-stop, abs=1e-8)
+    assert left.time == pytest.approx(float(rupture.release_time(zero)) + zero - stop, abs=1e-7)
+
+
+def test_where_the_construction_ends_is_said_and_kept():
+    """Two ruptures meet: the waves of one push what has just stuck in the other."""
+    profile = sp.Prestress(0.4, 0.4, bumps=((5.0, 0.7, 1.0),))
+    rupture = Rupture(profile, 0.65, 0.1, "total", 5.0)
+    end = rupture.limit
+    assert end is not None
+    assert "slower than the waves" in end.reason
+    assert float(rupture.horizon(end.x)) == pytest.approx(end.time, abs=1e-9)
+    assert np.isnan(rupture.slip(end.x, end.time + 0.1))
+    assert np.isfinite(rupture.slip(end.x, end.time - 0.1))
+    fields = rupture.map([4.9], np.linspace(-8.0, 13.0, 30))
+    late = rupture.horizon(np.linspace(-8.0, 13.0, 30)) <= 4.9
+    for values in fields.values():
+        assert np.array_equal(np.isnan(values[0]), late)
+    assert not np.any(rupture.stick_time(np.linspace(-3.0, 8.0, 40)) > 5.0)
+
+
+def test_times_beyond_the_duration_are_refused():
+    with pytest.raises(ValueError, match=r"^time: 5\.0; allowed: <= duration = 4$"):
+        Rupture(*PUBLISHED, "total", 4.0).slip(0.0, 5.0)

@@ -1,0 +1,172 @@
+"""Arrival times: front law, quadrature, several nucleation points, the free boundary of negative pre-stress."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.special import j0
+
+import slippulse as sp
+from slippulse.theory import ArrestingCrack, Rupture, barrier_depth, barrier_depth_estimate, front_speed
+from slippulse.theory.slowness import slowness
+
+# Asked of T(x).
+RELATIVE = 1e-8
+ASYMMETRIC = sp.Prestress(-0.5, 0.5)
+
+
+@pytest.mark.parametrize("release", ["total", "elastic"])
+@pytest.mark.parametrize("ratio", [0.0, 1e-3, 0.01, 0.1, 1.0, 5.0])
+def test_the_interpolated_front_law_is_the_front_law(ratio, release):
+    tau = np.concatenate([np.random.default_rng(1).uniform(0.0, 1.0, 12), [1e-4, 0.01, 0.99, 0.9999]])
+    assert slowness(tau, ratio, release) == pytest.approx(1.0 / front_speed(tau, ratio, release), abs=2e-9)
+    assert slowness(np.array([-1.0, 0.0, 1.0, 1.5]), ratio, release) == pytest.approx([1, 1, 0, 0], abs=1e-12)
+
+
+def test_arrival_times_are_integrals_of_the_slowness():
+    profile = sp.Prestress(0.25, 0.6, 0.8, steps=((3.0, 0.4),), bumps=((-2.0, 0.3, 0.5),))
+    rupture = Rupture(profile, 0.55, 0.1, "total", 8.0)
+
+    def rate(x: float) -> float:
+        tau = min(float(profile(x)), 1.0 - 1e-15)
+        return 1.0 / float(front_speed(tau, 0.1)) if x != 0.0 else 0.0
+
+    for x in (-3.0, 4.0):
+        points = [p for p in (-2.0, 3.0) if min(x, 0.0) < p < max(x, 0.0)] or None
+        exact = quad(rate, min(x, 0.0), max(x, 0.0), points=points, epsabs=1e-12, epsrel=1e-11, limit=200)[0]
+        assert float(rupture.release_time(x)) == pytest.approx(exact, rel=RELATIVE)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.01, 0.1])
+def test_arrival_times_owe_nothing_to_the_panels(ratio):
+    profile = sp.Prestress(-0.5, 0.4, steps=((4.0, 0.7),))
+    x = np.linspace(-3.4, 6.0, 95)
+    coarse, fine = (Rupture(profile, 0.65, ratio, "total", 6.0, refinement=n).release_time(x) for n in (1, 2))
+    known = np.isfinite(fine)
+    assert known.sum() > 85
+    assert np.array_equal(known, np.isfinite(coarse))
+    assert coarse[known] == pytest.approx(fine[known], rel=RELATIVE, abs=1e-13)
+
+
+def test_the_earlier_front_counts_where_two_meet():
+    profile = sp.Prestress(0.3, 0.3, bumps=((6.0, 0.9, 1.0),))
+    rupture = Rupture(profile, 0.65, 0.1, "total", 3.0)
+    edge = brentq(lambda x: float(profile(x)) - 1.0, 6.0, 8.0, xtol=1e-14)
+    assert rupture.release_time([6.0, edge]) == pytest.approx(0.0, abs=1e-12)
+    (join,) = rupture.stretches[0].joins
+    rate = lambda x: float(slowness(profile(np.asarray(x)), 0.1))  # noqa: E731
+    start = brentq(lambda x: float(profile(x)) - 1.0, 4.0, 6.0, xtol=1e-14)
+    from_left, from_right = (quad(rate, *ends, epsabs=1e-11)[0] for ends in ((0.0, join), (join, start)))
+    assert from_left == pytest.approx(from_right, rel=1e-7)
+    assert float(rupture.release_time(join)) == pytest.approx(from_left, rel=1e-7)
+
+
+@pytest.mark.parametrize(("gamma", "ratio"), [(0.65, 0.1), (0.65, 0.0), (0.0, 0.1)])
+def test_velocity_vanishes_on_a_slow_front(gamma, ratio):
+    """The integral equation of the free boundary, by adaptive quadrature."""
+    rupture = Rupture(ASYMMETRIC, gamma, ratio, "total", 4.0)
+    assert rupture.limit is None
+
+    def arrival(x: float) -> float:
+        return float(rupture.release_time(x))
+
+    for x in (-3.0, -2.2, -1.7):
+        time = arrival(x)
+        entry = brentq(lambda e, x=x, t=time: arrival(e) + e - t - x, x + 0.05, 2.0, xtol=1e-13)
+
+        def integrand(z: float, x=x, time=time) -> float:
+            interval = max((time - arrival(z)) ** 2 - (z - x) ** 2, 0.0)
+            return float(ASYMMETRIC(z)) * j0(np.sqrt(gamma * interval))
+
+        total = quad(integrand, x, entry, points=[0.0] if entry > 0.0 else None, epsabs=1e-9, limit=100)[0]
+        assert total == pytest.approx(0.0, abs=1e-8)
+        assert arrival(x - 1e-4) - time > 1e-4
+
+
+def test_a_slow_front_without_leaf_springs_is_the_closed_form():
+    crack = ArrestingCrack(sp.Prestress(-0.5, 0.0), 0.1)
+    rupture = Rupture(sp.Prestress(-0.5, 0.0), 0.0, 0.1, "total", 12.0)
+    for x in (-3.5, -2.5, -1.5, -0.5, 1.0):
+        if x < 0.0:
+            assert float(rupture.release_time(x)) == pytest.approx(crack.time_at(x), rel=RELATIVE)
+    ((left, _),) = rupture.front_ends
+    assert left.reason == "duration"
+    assert abs(left.x) < abs(crack.balance_position)
+
+
+def test_a_one_way_pulse_leaves_a_front_that_stops():
+    ((left, right),) = Rupture(ASYMMETRIC, 0.65, 0.1, "total", 8.0).front_ends
+    assert left.reason == "stops"
+    assert left.x == pytest.approx(-3.62, abs=0.005)
+    assert right.reason == "duration"
+
+
+@pytest.mark.parametrize(("ratio", "depth"), [(0.0, 3.617884220), (0.1, 3.036086347)])
+def test_the_depth_of_a_barrier(ratio, depth):
+    """Extrapolated lattices: 3.62 and 3.03 from dx = 0.02, 0.01, 0.005."""
+    found = barrier_depth(0.5, -0.5, 0.65, ratio)
+    assert found == pytest.approx(depth, abs=1e-8)
+    # A pulse that has become steady in a scene stops there too.
+    scene = sp.Prestress(0.5, 0.5, steps=((20.0, -0.5),))
+    ((_, right),) = Rupture(scene, 0.65, ratio, "total", 24.0).front_ends
+    assert right.x - 20.0 == pytest.approx(found, abs=1e-8)
+
+
+def test_the_depth_scales_with_the_leaf_springs_and_falls_with_the_level():
+    assert barrier_depth(0.4, -0.3, 1.0) == pytest.approx(0.5 * barrier_depth(0.4, -0.3, 0.25), rel=1e-10)
+    depths = [barrier_depth(0.4, level, 0.65, 0.1) for level in (-0.1, -0.3, -1.0, -3.0)]
+    assert np.all(np.diff(depths) < 0.0)
+    assert barrier_depth_estimate(0.5, -0.5, 0.65) == pytest.approx(2.1328, abs=1e-4)
+
+
+@pytest.mark.parametrize(("share", "passed"), [(0.95, True), (0.99, True), (1.01, False), (1.1, False)])
+def test_a_barrier_is_passed_if_and_only_if_it_is_shorter_than_the_depth(share, passed):
+    length = share * barrier_depth(0.5, -0.5, 0.65, 0.1)
+    profile = sp.Prestress(0.5, 0.5, steps=((14.0, -0.5), (14.0 + length, 0.5)))
+    rupture = Rupture(profile, 0.65, 0.1, "total", 19.0)
+    time = rupture.release_time([14.0 + length - 1e-6, 14.0 + length + 0.5])
+    assert np.isfinite(time[1]) == passed
+    if passed:
+        # It outruns the waves again at once.
+        assert time[1] - time[0] == pytest.approx(0.5 / front_speed(0.5, 0.1), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("keys", "word"),
+    [
+        ({"gamma": -1.0}, "gamma"),
+        ({"damping_ratio": float("nan")}, "damping_ratio"),
+        ({"release": "both"}, "release"),
+        ({"duration": 0.0}, "duration"),
+        ({"prestress": sp.Prestress(0.5, 0.5, peak=0.9)}, "prestress"),
+        ({"prestress": "flat"}, "prestress"),
+        ({"refinement": 0}, "refinement"),
+    ],
+)
+def test_what_is_outside_the_domain_is_refused_in_one_line(keys, word):
+    settings = {
+        "prestress": ASYMMETRIC,
+        "gamma": 0.65,
+        "damping_ratio": 0.1,
+        "release": "total",
+        "duration": 2.0,
+    }
+    with pytest.raises(ValueError, match=rf"^{word}: .*allowed: [^\n]+$"):
+        Rupture(**settings | keys)
+
+
+@pytest.mark.parametrize(
+    ("function", "values", "word"),
+    [
+        (barrier_depth, (0.5, 0.1, 0.65), "tau_barrier"),
+        (barrier_depth, (1.0, -0.1, 0.65), "tau0"),
+        (barrier_depth, (0.5, -0.1, 0.0), "gamma"),
+        (barrier_depth_estimate, (0.5, 0.5, 0.65), "tau_barrier"),
+        (sp.theory.uniform_transition_time, (0.0, 0.65), "tau0"),
+    ],
+)
+def test_functions_refuse_too(function, values, word):
+    with pytest.raises(ValueError, match=rf"^{word}: .*allowed: "):
+        function(*values)
