@@ -12,7 +12,7 @@ from .stability import largest_step
 
 BOUNDARIES = ("displacement", "stress")
 RELEASES = ("total", "elastic")
-SCHEMES = ("localised", "fixed_step")
+SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
 
 # A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width

@@ -13,6 +13,7 @@ from ..data.versions import versions
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.lattice import LatticeRun, UnstableRun, run_scene
+from .continuum import ContinuumRun, solve_scene
 
 # A velocity this far below zero, as a share of the largest, means that a stick was stepped over.
 NEGATIVE_VELOCITY = 1e-9
@@ -52,7 +53,10 @@ def simulate(
     UnresolvedRun
         With ``strict``, when a flag is set.
     """
-    run = run_scene(scene, samples, progress)
+    if scene.scheme == "continuum":
+        run = solve_scene(scene, samples)
+    else:
+        run = run_scene(scene, samples, progress)
     numbers = run.numbers | judge(scene, run)
     if strict and numbers["flags"]:
         raise UnresolvedRun(f"the run is flagged: {numbers['flags']} ({describe_flags(scene, numbers)})")
@@ -74,9 +78,14 @@ def simulate(
     return dataset
 
 
-def judge(scene: Scene, run: LatticeRun) -> dict:
+def judge(scene: Scene, run: LatticeRun | ContinuumRun) -> dict:
     """Flags of a finished run: what would make its numbers something else than the model's."""
     pulse_blocks = narrowest_pulse(scene, run)
+    if scene.scheme == "continuum":
+        return {
+            "pulse_blocks": pulse_blocks,
+            "flags": "construction_ended" if run.numbers["limit_reason"] else "",
+        }
     flags = []
     if run.numbers["min_stuck_stress"] <= scene.reverse_threshold:
         flags.append("reverse_sliding")

@@ -1,0 +1,86 @@
+"""The exact solution as a scheme: the same Dataset as a lattice run, which tends to it at first order in dx."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import slippulse as sp
+
+LATTICE = {"order": 8, "max_step": 1.0}
+SCENES = {
+    "displacement": {
+        "boundary": "displacement",
+        "gamma": 0.65,
+        "prestress": sp.Prestress(0.5, 0.5),
+        "duration": 9.0,
+    },
+    "asymmetric": {
+        "boundary": "displacement",
+        "gamma": 0.65,
+        "prestress": sp.Prestress(-0.5, 0.5),
+        "duration": 8.0,
+    },
+    "stress": {"boundary": "stress", "prestress": sp.Prestress(-0.75, 0.0, 2.0), "duration": 9.0},
+}
+
+
+def run(name: str, dx: float, ratio: float = 0.1, **more):
+    return sp.simulate(sp.Scene(dx=dx, beta=ratio * dx, **SCENES[name], **more))
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_the_lattice_tends_to_it_at_first_order(name):
+    """Release times at positions that every spacing has, away from the nucleation and from where a front stops."""
+    errors = []
+    for dx in (0.08, 0.04):
+        lattice, exact = run(name, dx, **LATTICE), run(name, dx, scheme="continuum")
+        x = np.arange(1.6, 6.0, 0.8)
+        errors.append(
+            float(
+                np.max(
+                    np.abs(
+                        np.interp(x, lattice.x, lattice.release_time)
+                        - np.interp(x, exact.x, exact.release_time)
+                    )
+                )
+            )
+        )
+    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.35) and errors[1] < 0.1
+
+
+def test_it_is_the_same_dataset():
+    samples = sp.Samples(times=np.linspace(0.0, 8.0, 5), positions=np.linspace(-4.0, 4.0, 9))
+    scene = {"dx": 0.1, "beta": 0.01, **SCENES["displacement"]}
+    lattice = sp.simulate(sp.Scene(**scene), samples)
+    exact = sp.simulate(sp.Scene(scheme="continuum", **scene), samples)
+    assert set(exact.variables) == set(lattice.variables)
+    for name in exact.variables:
+        assert exact[name].dims == lattice[name].dims and exact[name].attrs == lattice[name].attrs
+    missing = set(lattice.attrs) - set(exact.attrs)
+    assert missing <= {name for name in lattice.attrs if name.endswith(("energy", "loss", "of_prestress"))}
+    assert exact.attrs["scheme"] == "continuum" and exact.attrs["flags"] == ""
+    difference = np.abs(exact.sample_slip - lattice.sample_slip).max()
+    assert float(difference) < 0.1 * float(lattice.sample_slip.max())
+
+
+def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
+    """A second nucleation whose waves hold a place that is about to stick."""
+    profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))
+    found = None
+    for duration in (8.0, 12.0, 16.0):
+        exact = sp.simulate(
+            sp.Scene("displacement", profile, duration, 0.1, gamma=0.65, beta=0.01, scheme="continuum")
+        )
+        if exact.attrs["flags"]:
+            found = exact
+    assert found is not None, "no scene of these ends early"
+    assert found.attrs["flags"] == "construction_ended" and found.attrs["limit_reason"]
+    assert found.attrs["limit_time"] <= found.attrs["duration"]
+    assert np.isnan(found.slip.values).any()
+
+
+def test_a_sweep_may_be_exact():
+    scenes = [sp.Scene(dx=0.1, beta=0.0, scheme="continuum", **SCENES["displacement"])] * 2
+    sweep = sp.run_sweep(scenes, record=("fronts", "fields"))
+    assert sweep.sizes["point"] == 2 and np.isfinite(sweep["first_stick_time"]).all()
