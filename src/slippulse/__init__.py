@@ -19,6 +19,7 @@ _HOMES = {
     "Scene": "model.scene",
     "UnresolvedRun": "simulation.simulate",
     "UnstableRun": "solver.lattice",
+    "point": "data.points",
     "run_sweep": "simulation.sweep",
     "settings_for": "configuration.accuracy",
     "simulate": "simulation.simulate",

@@ -11,10 +11,23 @@ from .variables import VARIABLES
 
 FRONTS = ("release_time", "stick_time")
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
+# What every data file says of itself.
+FILE = {
+    "Conventions": "CF-1.11",
+    "title": "Ruptures of the minimal model for the onset of slip pulses",
+    "source": "slippulse, simulations",
+    "references": "https://doi.org/10.1103/PhysRevE.103.052802",
+}
 
 
 def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
-    """One run of a sweep as `simulate` returned it, as far as it was recorded."""
+    """One run of a sweep as `simulate` returned it, as far as it was recorded.
+
+    Parameters
+    ----------
+    sweep : data of a sweep, such as ``xarray.open_dataset("results/data/arrest.nc")``
+    index : number of the run, from 0
+    """
     out = xr.Dataset()
     scalars = [
         name
@@ -35,7 +48,8 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
         )
         for name in ("sample_slip", "sample_velocity"):
             out[name] = (("sample_time", "sample_position"), sweep.variables[name].values[index])
-    out.attrs = {name: sweep.variables[name].values[index].item() for name in scalars} | dict(sweep.attrs)
+    of_the_run = {name: value for name, value in sweep.attrs.items() if name not in (*FILE, "featureType")}
+    out.attrs = {name: sweep.variables[name].values[index].item() for name in scalars} | of_the_run
     return out
 
 
@@ -48,9 +62,6 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
         if name != "versions"
     }
     out = xr.Dataset(per_point)
-    for name in out.variables:
-        # Parameters and counts carry their meaning in their name; all are non-dimensional.
-        out[name].attrs = {"units": "1", "long_name": name.replace("_", " ")}
     kept = (
         "x",
         "prestress",
@@ -59,11 +70,6 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
     )
     if len(kept) > 2:
         out["row_size"] = ("point", np.array([result.sizes["x"] for result in results]))
-        out["row_size"].attrs = {
-            "units": "1",
-            "long_name": "number of blocks of a point",
-            "sample_dimension": "block",
-        }
         for name in kept:
             out[name] = ("block", np.concatenate([result[name].values for result in results]))
     if "samples" in record:
@@ -77,8 +83,11 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
         )
         for name in ("sample_slip", "sample_velocity"):
             out[name] = (("point", "time", "position"), np.stack([result[name].values for result in results]))
-    for name in set(out.variables) & set(VARIABLES):
-        units, long_name = VARIABLES[name]
-        out[name].attrs = {"units": units, "long_name": long_name}
-    out.attrs = {"versions": first.attrs["versions"]}
+    for name in out.variables:
+        out[name].attrs = {"units": "1", "long_name": VARIABLES[name][1]}
+    out.attrs = FILE | {"versions": first.attrs["versions"]}
+    if "row_size" in out:
+        # CF's contiguous ragged array: the profiles of the runs over x, one after the other.
+        out["row_size"].attrs["sample_dimension"] = "block"
+        out.attrs["featureType"] = "profile"
     return out

@@ -72,8 +72,7 @@ def simulate(
         data["sample_velocity"] = (("sample_time", "sample_position"), run.sample_velocity)
     dataset = xr.Dataset(data, coords=coordinates)
     for name in dataset.variables:
-        units, long_name = VARIABLES[name]
-        dataset[name].attrs = {"units": units, "long_name": long_name}
+        dataset[name].attrs = {"units": "1", "long_name": VARIABLES[name][1]}
     dataset.attrs = scene.attributes() | numbers | {"versions": versions()}
     return dataset
 
