@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import time
 from collections.abc import Callable, Mapping
@@ -10,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from slippulse.data.job_times import read_job_records
+from slippulse.data.provenance import machine_class
 from slippulse.data.versions import versions
 from slippulse.measure.fronts import front_speed
 from slippulse.model.prestress import Prestress
@@ -32,18 +33,8 @@ DURATIONS, SPACINGS = (100.0, 200.0, 400.0, 800.0), (0.02, 0.01, 0.005)
 
 
 def machine() -> dict:
-    """Class of the machine, without its name."""
-    model = ""
-    if Path("/proc/cpuinfo").exists():
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
-    return {
-        "architecture": platform.machine(),
-        "processor": model,
-        "cores": os.cpu_count(),
-        "python": platform.python_version(),
-        "versions": versions(),
-    }
+    """Class of the machine, without its name, and versions."""
+    return machine_class() | {"python": platform.python_version(), "versions": versions()}
 
 
 def best(run: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -260,9 +251,7 @@ def settings_compared(presets: Mapping, window: float) -> list[dict]:
 
 def pipeline(folder: Path) -> dict:
     """Seconds and memory of the pipeline's jobs by rule, from Snakemake's own records; empty before it has run."""
-    from slippulse.data.job_times import read_records
-
-    records = read_records(folder)
+    records = read_job_records(folder)
     if records.empty:
         return {}
     return {

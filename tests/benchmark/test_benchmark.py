@@ -12,7 +12,7 @@ import tolerances as tol
 import slippulse as sp
 from benchmarks import __main__ as command
 from benchmarks import measure, stencils
-from slippulse.data.job_times import read_records
+from slippulse.data.job_times import read_job_records
 from slippulse.figures import pipeline_time
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
@@ -86,7 +86,7 @@ def test_records_are_read_by_rule(tmp_path):
     ):
         text = head + f"{seconds}\t0:00:02\t{memory}\t1\t1\t1\t0\t0\t100\t{2 * seconds}\n"
         (tmp_path / f"{name}.tsv").write_text(text, encoding="utf-8")
-    records = read_records(tmp_path)
+    records = read_job_records(tmp_path)
     assert list(records["rule"]) == ["simulate", "simulate", "write_claims"]
     assert list(records["job"]) == ["simulate/a", "simulate/b", "write_claims"]
     assert records["processor_seconds"].sum() == 10.0

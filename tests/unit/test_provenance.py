@@ -59,8 +59,8 @@ def test_sources_are_the_library_and_the_workflow(project):
 
 def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
     (tmp_path / "simulate").mkdir()
-    (tmp_path / "simulate/a.tsv").write_text("s\tcpu\n1.25\t1\n")
-    (tmp_path / "simulate/b.tsv").write_text("s\tcpu\n0.5\t1\n")
+    (tmp_path / "simulate/a.tsv").write_text("s\tcpu_time\tmax_rss\n1.25\t1\t100\n")
+    (tmp_path / "simulate/b.tsv").write_text("s\tcpu_time\tmax_rss\n0.5\t1\t100\n")
     assert job_times(tmp_path) == {"simulate": 1.75}
     facts = provenance(project, config | {"preset": "draft"}, config, tmp_path)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]

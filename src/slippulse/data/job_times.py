@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 
-def read_records(folder: str | Path) -> pd.DataFrame:
+def read_job_records(folder: str | Path) -> pd.DataFrame:
     """One row a job: rule (its folder, or its name), job, seconds, processor seconds, memory (MB).
 
     Parameters

@@ -14,6 +14,7 @@ from pathlib import Path
 import yaml
 
 from .alterations import changes
+from .job_times import read_job_records
 from .records import file_digest
 from .versions import PACKAGES
 
@@ -81,12 +82,8 @@ def machine_class() -> dict:
 
 def job_times(benchmarks: str | Path) -> dict[str, float]:
     """Seconds that the jobs of each rule took, all together, from their benchmark files."""
-    totals: dict[str, float] = {}
-    for path in sorted(Path(benchmarks).rglob("*.tsv")):
-        rule = path.relative_to(benchmarks).parts[0].removesuffix(".tsv")
-        rows = path.read_text(encoding="utf-8").splitlines()[1:]
-        totals[rule] = totals.get(rule, 0.0) + sum(float(row.split("\t")[0]) for row in rows)
-    return {rule: round(seconds, 2) for rule, seconds in totals.items()}
+    seconds = read_job_records(benchmarks).groupby("rule", sort=False)["seconds"].sum()
+    return {rule: round(float(total), 2) for rule, total in seconds.items()}
 
 
 def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: str | Path) -> dict:

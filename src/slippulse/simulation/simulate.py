@@ -53,10 +53,8 @@ def simulate(
     UnresolvedRun
         With ``strict``, when a flag is set.
     """
-    if scene.scheme == "continuum":
-        run = solve_scene(scene, samples)
-    else:
-        run = run_scene(scene, samples, progress)
+    exact = scene.scheme == "continuum"
+    run = solve_scene(scene, samples) if exact else run_scene(scene, samples, progress)
     numbers = run.numbers | judge(scene, run)
     if strict and numbers["flags"]:
         raise UnresolvedRun(f"the run is flagged: {numbers['flags']} ({describe_flags(scene, numbers)})")
