@@ -19,6 +19,7 @@ rule write_claims:
         claims=plain(config["claims"]),
         published=plain(config["published"]),
         share=config["measure"]["share"],
+        altered=changes(SHIPPED, config),
         configuration=digest_of(config),
     message:
         "Judging the claims"

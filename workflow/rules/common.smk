@@ -9,6 +9,7 @@ from slippulse.configuration.job_limits import joining_limits, sweep_limits
 from slippulse.configuration.overlay import read_overlay
 from slippulse.configuration.refusals import runs
 from slippulse.configuration.scenes import scene_block
+from slippulse.data.alterations import changes
 from slippulse.data.records import digest_of
 from slippulse.steps.reach import PACKAGE, declared, sources
 

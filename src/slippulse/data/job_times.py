@@ -24,8 +24,8 @@ def read_job_records(folder: str | Path) -> pd.DataFrame:
                 "rule": inside.parts[0] if len(inside.parts) > 1 else inside.stem,
                 "job": str(inside.with_suffix("").as_posix()),
                 "seconds": float(record["s"]),
-                "processor_seconds": float(record["cpu_time"]),
-                "memory": float(record["max_rss"]),
+                "processor_seconds": float(record.get("cpu_time", "nan")),
+                "memory": float(record.get("max_rss", "nan")),
             }
         )
     return pd.DataFrame(rows, columns=["rule", "job", "seconds", "processor_seconds", "memory"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 
@@ -60,10 +60,23 @@ class Group:
     rows: list[Row]
 
 
-def claims_page(claims: Iterable[Mapping]) -> str:
-    """The ledger as a page of its own."""
+def claims_page(claims: Iterable[Mapping], altered: Sequence[Mapping] = ()) -> str:
+    """The ledger as a page of its own.
+
+    Parameters
+    ----------
+    claims : as in claims.json
+    altered : what differs from the shipped configuration (`slippulse.data.alterations.changes`)
+    """
     ledger = Ledger(claims)
-    return page("claims.html", summary=ledger.summary(), groups=claim_groups(ledger))
+    rules = any(change["key"].startswith("claims.") for change in altered)
+    return page(
+        "claims.html",
+        summary=ledger.summary(),
+        groups=claim_groups(ledger),
+        altered=altered,
+        rules_altered=rules,
+    )
 
 
 def claim_groups(ledger: Ledger) -> list[Group]:

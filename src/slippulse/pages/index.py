@@ -12,7 +12,6 @@ from markupsafe import Markup
 
 from ..claims.reading import FAILURES_FIRST, Ledger
 from ..texts.captions import read_captions
-from ..texts.numerals import short
 from ..texts.prose import fill
 from .claims import SIGNS, claim_groups
 from .render import markup_of, page, picture_size
@@ -101,7 +100,7 @@ def index_page(
     return page(
         "index.html",
         paper=facts["paper"],
-        altered=_altered(facts),
+        altered=facts["overlay"],
         lines=[_line(line, ledger, html[line["text"]]) for line in lines],
         accuracy=html[accuracy],
         picture=figures.get(summary["picture"]),
@@ -118,13 +117,6 @@ def _line(line: Mapping, ledger: Ledger, text: Markup) -> Line:
     """A line has the worst verdict of its claims."""
     worst = min(map(ledger, line["claims"]), key=lambda claim: FAILURES_FIRST.index(claim.verdict))
     return Line(line["topic"], worst.id, worst.verdict, SIGNS[worst.verdict], text)
-
-
-def _altered(facts: Mapping) -> list[dict]:
-    return [
-        {"key": change["key"], "shipped": short(change["shipped"], 160), "here": short(change["here"], 160)}
-        for change in facts["overlay"]
-    ]
 
 
 def _facts(facts: Mapping) -> dict[str, str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import theory
+from ..data.alterations import changes
 from ..model.prestress import Prestress
 from ..texts.captions import read_captions
 from ..texts.prose import FILTERS, fill
@@ -34,6 +35,8 @@ def define(names: dict[str, object], inputs: Inputs, show: Callable[[str], None]
     claim = LedgerTables(inputs.claims, inputs.config["claims"])
     names |= FILTERS | {"claim": claim, "config": inputs.config, "inputs": inputs, "show": show}
     names |= {"CLOSE": CLOSE, "SMALL": SMALL, "WIDE": WIDE, "np": np, "theory": theory}
+    altered = changes(inputs.shipped, inputs.config)
+    names["tolerances_altered"] = any(change["key"].startswith("claims.") for change in altered)
     for function in (Prestress, attempt, grid_studies, presets, speeds):
         names[function.__name__] = function
 

@@ -18,7 +18,7 @@ FILES = ("pages/templates/*",)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: measured, coarser, uncertainties. Outputs: json, html. Settings: claims, share, published."""
+    """Files: measured, coarser, uncertainties. Outputs: json, html. Settings: claims, share, published, altered."""
     coarser = {name: _by_factor(table) for name, table in _tables(files["coarser"]).items()}
     evidence = Evidence(
         _tables(files["measured"]), coarser, _tables(files["uncertainties"]), settings["claims"]
@@ -26,7 +26,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     found = all_claims(evidence, settings["share"], settings["published"])
     claims = [claim.as_dict() for claim in found]
     write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
-    write_text(claims_page(claims), outputs["html"])
+    write_text(claims_page(claims, settings["altered"]), outputs["html"])
 
 
 def _tables(paths: list[str]) -> dict[str, pd.DataFrame]:
