@@ -20,7 +20,7 @@ PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-d
 INSTALL := sh -c '"$(BIN)/uv" --version >/dev/null 2>&1 && exec "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes "$$@" || exec "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes "$$@"' install
 PIP_EDITABLE := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 
-.PHONY: help setup slurm lock replicate rulegraph verify faults test slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe replicate rulegraph verify faults test slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
@@ -32,6 +32,7 @@ help:
 	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
 	@echo "make slurm-test  the draft through a Slurm of one node, started for it here, against the draft without"
 	@echo "make check       format and lint"
+	@echo "make describe    the tables of config/README.md and the JSON Schema, from the definition of the keys"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
 
@@ -62,6 +63,10 @@ lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
 	    --group slurm --quiet --constraints requirements.lock -o requirements-slurm.lock \
 	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
+
+# The JSON Schema and the tables of config/README.md, from the definition of the configuration's keys.
+describe: $(READY)
+	@"$(BIN)/python" -m slippulse.configuration.describe
 
 replicate: $(READY)
 	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.overlay "$$OVERLAY"

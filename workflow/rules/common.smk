@@ -5,28 +5,19 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-from slippulse.configuration.expand import ConfigError, accuracy_of, resolve, validate
+from slippulse.configuration.expand import ConfigError, accuracy_of, resolve
 from slippulse.configuration.expand import expand as expand_block
 from slippulse.configuration.cost import expected_cost
-from slippulse.configuration.refusals import runs
-from slippulse.configuration.scenes import scene_block
+from slippulse.configuration.limits import run_count
+from slippulse.configuration.scenes import scene_simulation
 from slippulse.configuration.overlay import read_overlay
-
-# Of a switch on the command line Snakemake reads True and False, and leaves true and false text.
-for key, value in config.items():
-    if value in ("true", "false"):
-        config[key] = value == "true"
+from slippulse.configuration.read import read_config
 
 try:
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     SHIPPED = read_overlay(Path(workflow.basedir) / "config/config.yaml")
-    validate(
-        config,
-        Path(workflow.basedir) / "workflow/schemas/config.schema.yaml",
-        SHIPPED,
-        # A job on another node starts Snakemake anew, with what was checked here.
-        every_run=workflow.is_main_process,
-    )
+    # A job on another node starts Snakemake anew, with scenes that were checked here.
+    read_config(config, SHIPPED, workflow.config_settings.config, every_run=workflow.is_main_process)
 except ConfigError as error:
     raise WorkflowError(f"The configuration is refused:\n{error}") from None
 
@@ -227,13 +218,13 @@ def join_data_megabytes(wildcards, attempt):
 def join_uncertainties_megabytes(wildcards, attempt):
     """Memory limit for the grid studies of all chunks in one table: of these it holds what names each run."""
     whole = resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
-    return attempt * (1000 + math.ceil(BYTES_OF_A_RUN * runs(whole) / 1e6))
+    return attempt * (1000 + math.ceil(BYTES_OF_A_RUN * run_count(whole) / 1e6))
 
 
 def join_uncertainties_minutes(wildcards, attempt):
     """Time limit for the same."""
     whole = resolve(config["simulations"][wildcards.simulation], config["model"], ACCURACY)
-    return attempt * (10 + math.ceil(ESTIMATE_WITHIN * SECONDS_OF_A_RUN * runs(whole) / 60.0))
+    return attempt * (10 + math.ceil(ESTIMATE_WITHIN * SECONDS_OF_A_RUN * run_count(whole) / 60.0))
 
 
 def coarser_blocks(wildcards):
@@ -268,7 +259,7 @@ SCENE_NAMES = "|".join(SCENES) or "(?!)"
 
 def block_of_scene(wildcards, coarser=1.0):
     """Everything that the data of a scene depend on, in one dict of builtins."""
-    scene = scene_block(SCENES[wildcards.simulation], config["model"])
+    scene = scene_simulation(SCENES[wildcards.simulation], config["model"])
     return resolve(scene, config["model"], ACCURACY, coarser)
 
 
@@ -315,7 +306,7 @@ def blocks_behind(arguments):
     names = {name for file in files or [""] if file not in scenes for name in simulations_behind(file)}
     blocks = {f"simulations.{name}": config["simulations"][name] for name in sorted(names)}
     for name in sorted({name for file in scenes for name in scenes_behind(file)}):
-        blocks[f"scenes.{name}"] = scene_block(SCENES[name], config["model"])
+        blocks[f"scenes.{name}"] = scene_simulation(SCENES[name], config["model"])
     return {key: resolve(block, config["model"], ACCURACY) for key, block in blocks.items()}
 
 

@@ -2,7 +2,8 @@
 
 import sys
 
-from slippulse.configuration.refusals import check_affordable, check_folder, check_targets
+from slippulse.configuration.limits import check_affordable
+from slippulse.configuration.targets import check_folder, check_targets
 
 
 def refuse_unknown_targets():

@@ -75,7 +75,7 @@ def _mean_sliding_length(scene: Scene) -> float:
     return 0.5 * scene.duration
 
 
-def too_large(cost: Cost, times: int = 1) -> str:
+def exceeded_limit(cost: Cost, times: int = 1) -> str:
     """What a cost exceeds, in words, where ``times`` that of one job is allowed; empty when it is within bounds."""
     if cost.runs > times * LARGEST_RUNS:
         return f"up to {times * LARGEST_RUNS} runs"

@@ -13,8 +13,8 @@ class ConfigError(ValueError):
     """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
 
 
-def shown(value: object) -> str:
-    """A value as a refusal prints it: on one line, short, and as plain text where it is a plain name."""
+def short_repr(value: object) -> str:
+    """A value as a refusal prints it: on one line, and short."""
     if isinstance(value, str) and re.fullmatch(r"[\w.:+-]{1,60}", value, re.ASCII):
         return repr(value)
     text = repr(value) if not isinstance(value, int | float) else str(value)

@@ -106,6 +106,15 @@ class Prestress:
             tau = tau + sum(values for *_, values in group)
         return tau
 
+    def largest(self) -> float:
+        """The largest pre-stress, at the peak and the bumps and around them."""
+        if not self.bumps:
+            return max(self.peak, *(level for _, level in self.steps), self.left, self.right)
+        places = np.array([0.0, *(centre for centre, *_ in self.bumps)])
+        widths = np.array([self.width, *(width for *_, width in self.bumps)])
+        near = places[:, None, None] + np.linspace(-3.0, 3.0, 601) * widths[:, None]
+        return float(np.max(self(np.concatenate([near.ravel(), places]))))
+
     def integral(self, lower: float, upper: float) -> float:
         """Integral of tau from ``lower`` to ``upper`` (finite), in closed form between the steps."""
         inside = sorted({0.0, *(position for position, _ in self.steps)} | {lower, upper})

@@ -12,7 +12,9 @@ from .stability import largest_step
 
 BOUNDARIES = ("displacement", "stress")
 RELEASES = ("total", "elastic")
-SCHEMES = ("localised", "fixed_step")
+# The lattice in two ways, and the exact solution of its continuum limit.
+LATTICE_SCHEMES = ("localised", "fixed_step")
+SCHEMES = (*LATTICE_SCHEMES, "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
 
 # A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width
@@ -46,12 +48,13 @@ class Scene:
         Damping, >= 0. What selects the front speed is beta/dx.
     release : "total" or "elastic"
         Whether the released stress includes the damping force.
-    scheme : "localised" or "fixed_step"
-        Taylor steps with each release and stick at its instant, or symplectic Euler with events checked once a step.
+    scheme : "localised", "fixed_step" or "continuum"
+        Taylor steps with each release and stick at its instant, symplectic Euler with events checked once a step, or
+        the exact solution of the continuum limit.
     max_step : float
-        Largest time step in units of dx; the step itself under "fixed_step".
+        Largest time step in units of dx; the step itself under "fixed_step"; not used by "continuum".
     order : int
-        Order of the Taylor step, 3 to 8; not used by "fixed_step".
+        Order of the Taylor step, 3 to 8; used by "localised" alone.
     half_lattice : bool
         Simulate x >= 0 only when the pre-stress is symmetric.
     friction_ratio : float

@@ -23,8 +23,8 @@ def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float
 
     Parameters
     ----------
-    scheme : "localised" or "fixed_step"
-    order : order of the Taylor step (not used by "fixed_step")
+    scheme : "localised", "fixed_step", or "continuum", which takes no steps
+    order : order of the Taylor step (used by "localised" alone)
     damping_ratio : beta/dx, >= 0
     gamma_dx2 : gamma dx^2, >= 0 (0 under a stress boundary)
 
@@ -32,6 +32,8 @@ def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float
     "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + b^2) - b with dt_c = 2/sqrt(4 + gamma dx^2). "localised":
     the largest h at which one step, slip to one order more than velocity, amplifies no mode.
     """
+    if scheme == "continuum":
+        return math.inf
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # The difference of nearly equal numbers at large damping, rewritten.
