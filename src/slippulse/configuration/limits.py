@@ -11,7 +11,7 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from ..theory.front_law import STRONGEST_DAMPING, front_speed
 from ..theory.pulse import steady_pulse
-from .cost import HOW_TO_GO_ON, LARGEST_RUNS, LARGEST_WHOLE, exceeded_limit, expected_cost
+from .cost import HOW_TO_GO_ON, LARGEST_RUNS, LARGEST_WHOLE, exceeded_limit, expected_cost, most_expected
 
 # Lists of a simulation whose product its runs are.
 LISTS = ("left", "right", "width", "profiles", "gamma", "damping_ratio", "beta", "dx", "release")
@@ -74,6 +74,8 @@ def check_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None], chunk
     ValueError
         With the estimate, what is allowed and how to go on.
     """
+    if not exceeded_limit(most_expected(scenes, samples)):
+        return
     cost = expected_cost(scenes, samples)
     if limit := exceeded_limit(cost, LARGEST_WHOLE if chunks > 1 else 1):
         raise ValueError(f"cost: {cost}; allowed: {limit} ({HOW_TO_GO_ON})")
