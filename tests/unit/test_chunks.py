@@ -70,8 +70,8 @@ def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
     chunks = [expand(block | {"chunk": [number, 5]}) for number in range(1, 6)]
     for number, chunk in enumerate(chunks, start=1):
         assert chunk[0] == [scenes[run] for run in runs_of(number, 5, len(scenes))]
-    total = sum(expected_cost(*chunk).block_updates for chunk in chunks)
-    assert total == pytest.approx(expected_cost(scenes, samples).block_updates)
+    total = sum(expected_cost(*chunk).seconds for chunk in chunks)
+    assert total == pytest.approx(expected_cost(scenes, samples).seconds)
 
 
 @pytest.fixture(scope="module")

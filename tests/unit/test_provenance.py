@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 import yaml
 
+from slippulse.configuration.alterations import alterations
 from slippulse.data.provenance import (
-    changes,
     checksums,
     job_times,
     machine_class,
@@ -27,13 +27,13 @@ from slippulse.data.verify import changed_files, compare, main
 def test_an_overlay_is_marked_value_by_value():
     shipped = {"model": {"release": "total", "friction_ratio": 5.0}, "list": [1, 2], "gone": 1}
     config = {"model": {"release": "elastic", "friction_ratio": 5.0}, "list": [1], "new": {"a": 1}}
-    assert changes(shipped, config) == [
+    assert alterations(config, shipped) == [
         {"key": "model.release", "shipped": "total", "here": "elastic"},
         {"key": "list", "shipped": [1, 2], "here": [1]},
         {"key": "gone", "shipped": 1, "here": None},
         {"key": "new", "shipped": None, "here": {"a": 1}},
     ]
-    assert changes(shipped, shipped) == []
+    assert alterations(shipped, shipped) == []
 
 
 def test_the_digest_sees_content_and_names_and_no_order(tmp_path):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from .front_paths import front_paths, sliding_times
 
 # Seconds on one core of the reference machine: the start of a scene; a step; a sliding block in a step, by order; an
 # event, by order; a block of the lattice, to be set up and written; a block that is looked at by the textbook scheme.
-START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.7e-3, 5e-7, 0.75e-9, (1.0e-6, 0.07e-6), 1.5e-7, 5e-9
+START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.7e-3, 3e-7, 0.75e-9, (1.0e-6, 0.07e-6), 1.5e-7, 5e-9
 # A step ends early after so many events; the lattice has so many blocks at the start.
 EVENTS_OF_A_STEP, FIRST_BLOCKS = 64, 512
 # The run in so many parts, short ones at first.
@@ -127,18 +128,24 @@ def _passed(when: np.ndarray, weight: np.ndarray, times: np.ndarray) -> np.ndarr
     return np.interp(times, when[order], np.cumsum(weight[order]), left=0.0)
 
 
-def far_beyond(scene: Scene, seconds: float) -> str:
-    """What to say of a run that has taken so long; empty while that is within ten times the estimate.
+def overrun_watch(scene: Scene, say: Callable[[str], None]) -> Callable[[float], None]:
+    """A callback for the progress of a run, in its own thread, that says once when it takes ten times its estimate.
 
     Parameters
     ----------
     scene : that runs
-    seconds : on one core, until now
+    say : called with one line
     """
-    expected = expected_seconds(scene)
-    if seconds < max(WORTH_A_WORD, FAR_BEYOND * expected):
-        return ""
-    return f"a run takes {seconds:.3g} s, {seconds / expected:.2g} times its estimate, and goes on"
+    started, allowed = time.thread_time(), max(WORTH_A_WORD, FAR_BEYOND * expected_seconds(scene))
+
+    def watch(share: float) -> None:
+        nonlocal allowed
+        seconds = time.thread_time() - started
+        if seconds > allowed:
+            say(f"a run takes {FAR_BEYOND:g} times its estimate ({share:.0%} done after {seconds:.3g} s) and goes on")
+            allowed = math.inf
+
+    return watch
 
 
 def exceeded_limit(cost: Cost, times: int = 1) -> str:

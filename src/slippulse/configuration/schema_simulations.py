@@ -6,6 +6,7 @@ from pydantic import AfterValidator, StringConstraints
 from pydantic_core import PydanticCustomError
 
 from ..model.prestress import Prestress
+from ..model.samples import RECORDS
 from ..model.scene import BOUNDARIES, RELEASES, SCHEMES
 from .keys import (
     LENGTH,
@@ -28,7 +29,6 @@ from .keys import (
     rows,
 )
 
-RECORDS = ("fronts", "fields", "samples")
 MODELS = "the model's"
 
 

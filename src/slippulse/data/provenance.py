@@ -13,6 +13,7 @@ from pathlib import Path
 
 import yaml
 
+from ..configuration.alterations import alterations
 from .versions import PACKAGES
 
 
@@ -44,28 +45,6 @@ def source_files(root: str | Path) -> list[Path]:
             if path.is_file() and "__pycache__" not in path.parts
         ]
     return found
-
-
-def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """What an overlay changed: one entry a value, with the shipped one beside it.
-
-    Parameters
-    ----------
-    shipped, config : the configuration without and with overlays
-    key : where in the configuration both stand
-
-    Returns
-    -------
-    list of dicts with key, shipped, here; None where one side has nothing
-    """
-    if isinstance(shipped, Mapping) and isinstance(config, Mapping):
-        names = [*shipped, *(name for name in config if name not in shipped)]
-        return [
-            change
-            for name in names
-            for change in changes(shipped.get(name), config.get(name), f"{key}.{name}".lstrip("."))
-        ]
-    return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
 
 
 def git_state(root: str | Path) -> dict | None:
@@ -125,7 +104,7 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: 
     from importlib.metadata import version
 
     return {
-        "overlay": changes(shipped, config),
+        "overlay": alterations(config, shipped),
         "config": dict(config),
         "source_digest": tree_digest(root, source_files(root)),
         "lock_digest": file_digest(Path(root) / "requirements.lock"),

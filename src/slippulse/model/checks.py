@@ -8,6 +8,8 @@ import re
 from collections.abc import Iterable
 from numbers import Real
 
+import numpy as np
+
 
 class ConfigError(ValueError):
     """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
@@ -50,7 +52,7 @@ def check_number(
         f"< {below:g}" if below is not None else "",
     ]
     allowed = " and ".join(["a finite number", *(bound for bound in bounds if bound)])
-    good = isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    good = isinstance(value, Real) and not isinstance(value, bool | np.bool_) and _finite(value)
     if good:
         good = (
             (above is None or value > above)
@@ -59,7 +61,14 @@ def check_number(
             and (below is None or value < below)
         )
     if not good:
-        raise ValueError(f"{key}: {value!r}; allowed: {allowed}")
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+
+
+def _finite(value: Real) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
@@ -70,5 +79,5 @@ def check_choice(key: str, value: object, choices: tuple) -> None:
     ValueError
         Naming the key, the value and the choices.
     """
-    if value not in choices:
-        raise ValueError(f"{key}: {value!r}; allowed: {', '.join(map(str, choices))}")
+    if not isinstance(value, str | int) or value not in choices:
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: {', '.join(map(str, choices))}")

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# What a run may keep: release and stick times, fields at the end, samples on its way.
+RECORDS = ("fronts", "fields", "samples")
+
 
 @dataclass
 class Samples:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -114,16 +115,26 @@ class Scene:
             raise ValueError(
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
+        bound = self._largest_step()
         check_number("max_step", self.max_step, above=0.0)
         # Single-precision or integer parameters would be computed with as such, and compiled for.
         for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
             object.__setattr__(self, name, float(getattr(self, name)))
-        bound = self.largest_stable_step
         if self.max_step > bound:
             raise ValueError(
                 f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
                 f" {self.scheme!r} at beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {self.gamma * self.dx**2:.4g}"
             )
+
+    def _largest_step(self) -> float:
+        """The stability bound, refused where there is none."""
+        stiffness = float(self.gamma) * float(self.dx) ** 2
+        if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and self.largest_stable_step > 0.0):
+            raise ValueError(
+                f"gamma: {self.gamma!r}, at beta/dx = {self.damping_ratio:.4g} and gamma dx^2 = {stiffness:.4g};"
+                " allowed: numbers for which a stable step can be computed"
+            )
+        return self.largest_stable_step
 
     @property
     def damping_ratio(self) -> float:

@@ -4,26 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..configuration.alterations import alterations
+
 ABSENT = "absent"
-
-
-def altered_keys(config: Mapping, shipped: Mapping, prefix: str = "") -> list[tuple[str, object, object]]:
-    """Keys at which two configurations differ, dotted, with the run's value and the shipped one.
-
-    Parameters
-    ----------
-    config, shipped : nested mappings of builtins
-    prefix : key of these mappings in the whole
-    """
-    found = []
-    for key in sorted({*config, *shipped}, key=str):
-        name = f"{prefix}{key}"
-        ours, theirs = config.get(key, ABSENT), shipped.get(key, ABSENT)
-        if isinstance(ours, Mapping) and isinstance(theirs, Mapping):
-            found += altered_keys(ours, theirs, f"{name}.")
-        elif ours != theirs:
-            found.append((name, ours, theirs))
-    return found
 
 
 def altered_verdicts(claims: list[dict], shipped: Mapping[str, str]) -> list[tuple[str, str, str]]:
@@ -47,12 +30,13 @@ def alteration_note(
     claims : the run's ledger
     verdicts : shipped verdict of each claim
     """
-    keys = altered_keys(config, shipped)
+    altered = alterations(config, shipped)
     changed = altered_verdicts(claims, verdicts)
     lines = []
-    if keys:
+    if altered:
         listed = "; ".join(
-            f"`{key}`: `{_short(ours)}` (shipped: `{_short(theirs)}`)" for key, ours, theirs in keys
+            f"`{entry['key']}`: `{_short(entry['here'])}` (shipped: `{_short(entry['shipped'])}`)"
+            for entry in altered
         )
         lines.append(
             f"**Altered configuration.** This run differs from the shipped configuration in {listed}."
@@ -60,11 +44,11 @@ def alteration_note(
     if changed:
         listed = "; ".join(f"`{id}`: {now} (shipped: {before})" for id, now, before in changed)
         lines.append(f"**Verdicts that differ from the shipped report:** {listed}.")
-    elif keys:
+    elif altered:
         lines.append("No verdict differs from the shipped report.")
     return "\n".join(f"> {line}\n>" for line in lines).rstrip(">")
 
 
 def _short(value: object, longest: int = 80) -> str:
-    text = str(value).replace("`", "'")
+    text = ABSENT if value is None else str(value).replace("`", "'")
     return text if len(text) <= longest else text[: longest - 3] + "..."

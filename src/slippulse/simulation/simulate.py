@@ -10,8 +10,9 @@ import xarray as xr
 
 from ..data.variables import VARIABLES
 from ..data.versions import versions
+from ..model.checks import short_repr
 from ..model.samples import Samples
-from ..model.scene import Scene
+from ..model.scene import LATTICE_SCHEMES, Scene
 from ..solver.lattice import LatticeRun, UnstableRun, run_scene
 
 # A velocity this far below zero, as a share of the largest, means that a stick was stepped over.
@@ -47,11 +48,21 @@ def simulate(
 
     Raises
     ------
+    TypeError
+        When an argument is of another type, in one line.
     UnstableRun
         When slip velocity is not finite or beyond anything the pre-stress can drive.
     UnresolvedRun
         With ``strict``, when a flag is set.
     """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene: {short_repr(scene)}; allowed: a Scene")
+    if samples is not None and not isinstance(samples, Samples):
+        raise TypeError(f"samples: {short_repr(samples)}; allowed: Samples, or None")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: {short_repr(progress)}; allowed: a function of the share done, or None")
+    if scene.scheme not in LATTICE_SCHEMES:
+        raise ValueError(f"scheme: {scene.scheme!r}; allowed: {', '.join(LATTICE_SCHEMES)}")
     run = run_scene(scene, samples, progress)
     numbers = run.numbers | judge(scene, run)
     if strict and numbers["flags"]:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from warnings import warn
 
-import numpy as np
 import xarray as xr
 
+from ..configuration.cost import expected_seconds, overrun_watch
 from ..data.points import combine
-from ..model.samples import Samples
+from ..model.checks import check_number, short_repr
+from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
 from .simulate import simulate
-
-RECORDS = ("fronts", "fields", "samples")
-
 
 def run_sweep(
     scenes: Sequence[Scene],
@@ -37,13 +36,33 @@ def run_sweep(
     Returns
     -------
     Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous ragged
-    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
+    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position). A run that takes ten
+    times its estimate is warned of, and goes on.
+
+    Raises
+    ------
+    ValueError
+        One line naming the argument and what is allowed.
     """
+    scenes = list(scenes)
+    if not scenes or not all(isinstance(scene, Scene) for scene in scenes):
+        raise ValueError(f"scenes: {short_repr(scenes)}; allowed: a list of Scenes, at least one")
     samples = list(samples) if samples is not None else [None] * len(scenes)
+    if len(samples) != len(scenes):
+        raise ValueError(f"samples: {len(samples)} for {len(scenes)} scenes; allowed: one a scene, or None")
+    if isinstance(record, str) or not {*record} or not {*record} <= {*RECORDS}:
+        raise ValueError(f"record: {short_repr(record)}; allowed: a list of {', '.join(RECORDS)}")
+    if "samples" in record and any(of_scene is None for of_scene in samples):
+        raise ValueError("record: 'samples' without samples; allowed: Samples for each scene, as the second argument")
+    check_number("threads", threads, at_least=1)
     results: list[xr.Dataset | None] = [None] * len(scenes)
-    order = sorted(range(len(scenes)), key=lambda i: -expected_cost(scenes[i]))
-    with ThreadPoolExecutor(max_workers=max(1, threads)) as pool:
-        futures = {pool.submit(simulate, scenes[i], samples[i]): i for i in order}
+    order = sorted(range(len(scenes)), key=lambda i: -expected_seconds(scenes[i]))
+
+    def run(i: int) -> xr.Dataset:
+        return simulate(scenes[i], samples[i], overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2)))
+
+    with ThreadPoolExecutor(max_workers=int(threads)) as pool:
+        futures = {pool.submit(run, i): i for i in order}
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 results[futures[future]] = future.result()
@@ -54,10 +73,3 @@ def run_sweep(
             raise
     return combine([result for result in results if result is not None], record)
 
-
-def expected_cost(scene: Scene) -> float:
-    """Block updates a scene may need, up to a factor: fronts at the wave speed and a crack between them."""
-    width = scene.duration
-    if scene.boundary == "displacement":
-        width = min(width, np.pi / np.sqrt(scene.gamma))
-    return scene.duration / scene.dx * (width / scene.dx)
