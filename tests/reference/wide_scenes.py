@@ -27,9 +27,17 @@ def wide_scene(chance: random.Random) -> sp.Scene:
         right = left if chance.random() < 0.6 else chance.choice([0.0, *LEVELS, chance.uniform(-1.0, 1.0)])
         steps, bumps = (), ()
         if chance.random() < 0.25:
-            steps = ((chance.choice([-1, 1]) * chance.uniform(1.0, 40.0), chance.choice([-0.5, 0.0, 0.3, 0.8])),)
+            steps = (
+                (chance.choice([-1, 1]) * chance.uniform(1.0, 40.0), chance.choice([-0.5, 0.0, 0.3, 0.8])),
+            )
         if chance.random() < 0.25:
-            bumps = ((chance.uniform(-20.0, 20.0), chance.choice([-1.0, -0.5, 0.3, 0.5]), chance.uniform(0.3, 3.0)),)
+            bumps = (
+                (
+                    chance.uniform(-20.0, 20.0),
+                    chance.choice([-1.0, -0.5, 0.3, 0.5]),
+                    chance.uniform(0.3, 3.0),
+                ),
+            )
         scheme = chance.choice([*LATTICE_SCHEMES, "localised", "localised", "localised"])
         order = chance.choice(ORDERS)
         step = min(1.0, MARGIN * largest_step(scheme, order, ratio, gamma * dx**2))

@@ -142,7 +142,9 @@ def overrun_watch(scene: Scene, say: Callable[[str], None]) -> Callable[[float],
         nonlocal allowed
         seconds = time.thread_time() - started
         if seconds > allowed:
-            say(f"a run takes {FAR_BEYOND:g} times its estimate ({share:.0%} done after {seconds:.3g} s) and goes on")
+            say(
+                f"a run takes {FAR_BEYOND:g} times its estimate ({share:.0%} done after {seconds:.3g} s) and goes on"
+            )
             allowed = math.inf
 
     return watch

@@ -63,11 +63,10 @@ def _typed(values: Mapping) -> dict:
             return [typed(entry, place) for entry in value]
         return read_scalar(value, place) if isinstance(value, str) else value
 
-    known = {key: typed(value, key) for key, value in values.items()}
-    if "allow_large" in values:
-        said = str(values["allow_large"]).lower()
-        known["allow_large"] = SWITCHES.get(said, values["allow_large"])
-    return known
+    switches = {
+        key: SWITCHES.get(str(value).lower(), value) for key, value in values.items() if key == "allow_large"
+    }
+    return {key: typed(value, key) for key, value in values.items() if key not in switches} | switches
 
 
 def _nulls(value: Mapping, place: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:

@@ -13,6 +13,7 @@ from .refusals import format_problems, name_problems, removal_problems, schema_p
 from .scenes import scene_problems, scene_simulation
 
 
+@np.errstate(all="ignore")
 def validate(
     config: Mapping,
     shipped: Mapping | None = None,
@@ -53,7 +54,6 @@ def validate(
         raise ConfigError(format_problems(problems))
 
 
-@np.errstate(all="ignore")
 def _simulation_problems(key: str, simulation: Mapping, config: Mapping, accuracy: Mapping) -> list[str]:
     """What is wrong with one simulation, on its own lattice and on those of its grid study."""
     lattice = ""

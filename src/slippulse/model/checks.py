@@ -19,7 +19,7 @@ def short_repr(value: object) -> str:
     """A value as a refusal prints it: on one line, and short."""
     if isinstance(value, str) and re.fullmatch(r"[\w.:+-]{1,60}", value, re.ASCII):
         return repr(value)
-    text = repr(value) if not isinstance(value, int | float) else str(value)
+    text = " ".join((repr(value) if not isinstance(value, int | float) else str(value)).split())
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -69,6 +69,26 @@ def _finite(value: Real) -> bool:
         return math.isfinite(value)
     except OverflowError:
         return False
+
+
+def as_numbers(key: str, value: object) -> np.ndarray:
+    """An array of finite numbers.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, the value and what is allowed.
+    """
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError
+        numbers = np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        numbers = None
+    if numbers is None or not np.isfinite(numbers).all():
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: finite numbers")
+    return numbers
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:

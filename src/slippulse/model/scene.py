@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .checks import check_choice, check_number
+from .checks import check_choice, check_number, short_repr
 from .prestress import Prestress
 from .stability import largest_step
 
@@ -96,14 +96,15 @@ class Scene:
             ("half_lattice", bool, "true or false"),
         ):
             if type(getattr(self, name)) is not kind:
-                raise ValueError(f"{name}: {getattr(self, name)!r}; allowed: {allowed}")
+                raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
         if not isinstance(self.prestress, Prestress):
-            raise ValueError(f"prestress: {self.prestress!r}; allowed: a Prestress")
+            raise ValueError(f"prestress: {short_repr(self.prestress)}; allowed: a Prestress")
         check_number("duration", self.duration, above=0.0)
         check_number("dx", self.dx, above=0.0)
         check_number("beta", self.beta, at_least=0.0)
         check_number("friction_ratio", self.friction_ratio, at_least=0.0)
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
+        check_number("gamma", self.gamma, at_least=0.0)
         if self.boundary == "stress":
             if self.gamma != 0.0:
                 raise ValueError(
@@ -129,7 +130,9 @@ class Scene:
     def _largest_step(self) -> float:
         """The stability bound, refused where there is none."""
         stiffness = float(self.gamma) * float(self.dx) ** 2
-        if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and self.largest_stable_step > 0.0):
+        if not (
+            math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and self.largest_stable_step > 0.0
+        ):
             raise ValueError(
                 f"gamma: {self.gamma!r}, at beta/dx = {self.damping_ratio:.4g} and gamma dx^2 = {stiffness:.4g};"
                 " allowed: numbers for which a stable step can be computed"

@@ -39,6 +39,8 @@ def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # The difference of nearly equal numbers at large damping, rewritten.
         return critical**2 / (math.sqrt(critical**2 + damping_ratio**2) + damping_ratio)
+    if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2)):
+        return 0.0
     return _taylor_bound(order, float(f"{damping_ratio:.6g}"), float(f"{gamma_dx2:.6g}"))
 
 

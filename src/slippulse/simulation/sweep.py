@@ -15,6 +15,7 @@ from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
 from .simulate import simulate
 
+
 def run_sweep(
     scenes: Sequence[Scene],
     samples: Sequence[Samples | None] | None = None,
@@ -44,22 +45,15 @@ def run_sweep(
     ValueError
         One line naming the argument and what is allowed.
     """
-    scenes = list(scenes)
-    if not scenes or not all(isinstance(scene, Scene) for scene in scenes):
-        raise ValueError(f"scenes: {short_repr(scenes)}; allowed: a list of Scenes, at least one")
-    samples = list(samples) if samples is not None else [None] * len(scenes)
-    if len(samples) != len(scenes):
-        raise ValueError(f"samples: {len(samples)} for {len(scenes)} scenes; allowed: one a scene, or None")
-    if isinstance(record, str) or not {*record} or not {*record} <= {*RECORDS}:
-        raise ValueError(f"record: {short_repr(record)}; allowed: a list of {', '.join(RECORDS)}")
-    if "samples" in record and any(of_scene is None for of_scene in samples):
-        raise ValueError("record: 'samples' without samples; allowed: Samples for each scene, as the second argument")
-    check_number("threads", threads, at_least=1)
+    samples = [None] * len(scenes) if samples is None and isinstance(scenes, Sequence) else samples
+    _check_arguments(scenes, samples, record, threads)
     results: list[xr.Dataset | None] = [None] * len(scenes)
     order = sorted(range(len(scenes)), key=lambda i: -expected_seconds(scenes[i]))
 
     def run(i: int) -> xr.Dataset:
-        return simulate(scenes[i], samples[i], overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2)))
+        return simulate(
+            scenes[i], samples[i], overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2))
+        )
 
     with ThreadPoolExecutor(max_workers=int(threads)) as pool:
         futures = {pool.submit(run, i): i for i in order}
@@ -73,3 +67,37 @@ def run_sweep(
             raise
     return combine([result for result in results if result is not None], record)
 
+
+def _check_arguments(scenes: object, samples: object, record: object, threads: object) -> None:
+    """Refuse what is not a list of scenes with what each records.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what is allowed.
+    """
+    if (
+        not isinstance(scenes, Sequence)
+        or not scenes
+        or not all(isinstance(scene, Scene) for scene in scenes)
+    ):
+        raise ValueError(f"scenes: {short_repr(scenes)}; allowed: a list of Scenes, at least one")
+    kinds = (Samples, type(None))
+    if not isinstance(samples, Sequence) or not all(isinstance(of_scene, kinds) for of_scene in samples):
+        raise ValueError(f"samples: {short_repr(samples)}; allowed: a list of Samples, or None")
+    if len(samples) != len(scenes):
+        raise ValueError(f"samples: {len(samples)} for {len(scenes)} scenes; allowed: one a scene, or None")
+    words = record if isinstance(record, Sequence) and not isinstance(record, str) else ()
+    if not words or not all(isinstance(word, str) and word in RECORDS for word in words):
+        raise ValueError(f"record: {short_repr(record)}; allowed: a list of {', '.join(RECORDS)}")
+    if "samples" in words:
+        shapes = {of_scene and (of_scene.times.shape, of_scene.positions.shape) for of_scene in samples}
+        if None in shapes:
+            raise ValueError(
+                "record: 'samples' without samples; allowed: Samples for each scene, the second argument"
+            )
+        if len(shapes) > 1:
+            raise ValueError(
+                f"samples: {len(shapes)} shapes; allowed: as many times and positions for each scene"
+            )
+    check_number("threads", threads, at_least=1, at_most=1024)
