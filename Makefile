@@ -24,9 +24,9 @@ PIP_EDITABLE := "$(BIN)/python" -m pip install --quiet --disable-pip-version-che
 CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
 CHECK_OPTIONS = $(CHECK_PLACE); \
     case "$$CORES" in ""|*[!0-9]*|0|0[0-9]*) echo "CORES: $$CORES; allowed: a whole number from 1 on, such as CORES=2" >&2; exit 1;; esac; \
-    case "$$ALLOW_LARGE" in ""|true|false) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
+    case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock replicate rulegraph verify faults test slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe replicate rulegraph verify faults test slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
@@ -38,6 +38,7 @@ help:
 	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
 	@echo "make slurm-test  the draft through a Slurm of one node, started for it here, against the draft without"
 	@echo "make check       format and lint"
+	@echo "make describe    the tables of config/README.md and the JSON Schema, from the definition of the keys"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
 
@@ -69,6 +70,10 @@ lock:
 	uv pip compile --universal --python-version 3.11 --generate-hashes --no-emit-index-url --no-annotate --no-header \
 	    --group slurm --quiet --constraints requirements.lock -o requirements-slurm.lock \
 	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
+
+# The JSON Schema and the tables of config/README.md, from the definition of the configuration's keys.
+describe: $(READY)
+	@"$(BIN)/python" -m slippulse.configuration.describe
 
 replicate: $(READY)
 	@$(CHECK_OPTIONS)

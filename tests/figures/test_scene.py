@@ -12,7 +12,7 @@ from PIL import Image
 
 from slippulse.comparison.scene_numbers import scene_numbers
 from slippulse.configuration.expand import expand, resolve
-from slippulse.configuration.scenes import check_scene, scene_block
+from slippulse.configuration.scenes import scene_problems, scene_simulation
 from slippulse.data.points import point
 from slippulse.data.store import load_table, save_table
 from slippulse.figures import scene as figure
@@ -47,7 +47,7 @@ def drawn(project, tmp_path_factory):
     folder, accuracy, made = tmp_path_factory.mktemp("scenes"), config["presets"]["draft"], {}
 
     def sweep(scene, coarser):
-        block = resolve(scene_block(scene, config["model"]), config["model"], accuracy, coarser)
+        block = resolve(scene_simulation(scene, config["model"]), config["model"], accuracy, coarser)
         scenes, samples = expand(block)
         return run_sweep(scenes, samples, block["record"])
 
@@ -66,7 +66,7 @@ def drawn(project, tmp_path_factory):
 def test_shipped_scenes_move_and_are_recorded_far_enough(config):
     assert len(config["scenes"]) >= 2
     for name, scene in (config["scenes"] | SCENES).items():
-        assert check_scene(scene, name) == []
+        assert scene_problems(scene, name) == []
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -7,7 +7,7 @@ import math
 from hypothesis import strategies as st
 
 import slippulse as sp
-from slippulse.model.scene import ORDERS, RELEASES, SCHEMES
+from slippulse.model.scene import LATTICE_SCHEMES, ORDERS, RELEASES
 from slippulse.model.stability import largest_step
 
 # Levels far below and just below the threshold, at and beside 0.
@@ -24,7 +24,7 @@ BUMP = st.tuples(st.floats(-15.0, 15.0), st.floats(-2.0, 1.5), st.floats(0.5, 3.
 
 
 @st.composite
-def random_scenes(draw, schemes: tuple[str, ...] = SCHEMES) -> sp.Scene:
+def random_scenes(draw, schemes: tuple[str, ...] = LATTICE_SCHEMES) -> sp.Scene:
     """A valid scene of a few thousand block updates to some millions."""
     dx = draw(st.sampled_from([0.1, 0.2, 0.37, 1.0]))
     boundary = draw(st.sampled_from(["displacement", "stress"]))

@@ -6,11 +6,6 @@ from itertools import islice
 
 import numpy as np
 import pytest
-
-from slippulse.configuration.cost import expected_cost
-from slippulse.configuration.expand import expand, resolve
-from slippulse.data.chunks import dealing, runs_of
-from slippulse.data.join import ChunksDiffer
 from slippulse.steps.jobs import (
     join_data,
     join_measurements,
@@ -19,6 +14,11 @@ from slippulse.steps.jobs import (
     simulate_block,
     study_grid,
 )
+
+from slippulse.configuration.cost import expected_cost
+from slippulse.configuration.expand import expand, resolve
+from slippulse.data.chunks import dealing, runs_of
+from slippulse.data.join import ChunksDiffer
 
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either kind alone too; a
@@ -70,8 +70,8 @@ def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
     chunks = [expand(block | {"chunk": [number, 5]}) for number in range(1, 6)]
     for number, chunk in enumerate(chunks, start=1):
         assert chunk[0] == [scenes[run] for run in runs_of(number, 5, len(scenes))]
-    total = sum(expected_cost(*chunk).block_updates for chunk in chunks)
-    assert total == pytest.approx(expected_cost(scenes, samples).block_updates)
+    total = sum(expected_cost(*chunk).seconds for chunk in chunks)
+    assert total == pytest.approx(expected_cost(scenes, samples).seconds)
 
 
 @pytest.fixture(scope="module")

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from slippulse.configuration.expand import ConfigError, expand, resolve, validate
-
-SCHEMA = "workflow/schemas/config.schema.yaml"
+from slippulse.configuration.expand import ConfigError, expand, resolve
+from slippulse.configuration.validate import validate
 
 
 @pytest.mark.parametrize("preset", ["draft", "paper", "reference"])
-def test_every_preset_is_accepted(config, project, preset):
+def test_every_preset_is_accepted(config, preset):
     config["preset"] = preset
-    validate(config, project / SCHEMA)
+    validate(config)
 
 
 def at(config: dict, path: str, value) -> None:
@@ -44,13 +43,13 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(("path", "value", "named"), MISTAKES, ids=[f"{m[0]}={m[1]}" for m in MISTAKES])
-def test_a_mistake_is_named(config, project, path, value, named):
+def test_a_mistake_is_named(config, path, value, named):
     at(config, path, value)
     if path == "presets.paper.max_step":
         # The preset's step is cut to the bound by itself; a block's own step is refused.
         at(config, f"{SIMULATION}.max_step", value)
     with pytest.raises(ConfigError) as refusal:
-        validate(config, project / SCHEMA)
+        validate(config)
     for part in named:
         assert part in str(refusal.value)
 

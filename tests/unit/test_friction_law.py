@@ -12,7 +12,7 @@ from reference.lattice_state import elastic_stress, sliding, threshold_stress, t
 from scipy.optimize import brentq
 
 import slippulse as sp
-from slippulse.model.scene import SCHEMES
+from slippulse.model.scene import LATTICE_SCHEMES
 
 FINE = {"max_step": 0.05, "order": 8, "resolved_blocks": 1}
 
@@ -51,7 +51,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 def test_nothing_moves_just_below_the_threshold(scheme):
     peak = math.nextafter(1.0, 0.0)
     scene = sp.Scene("stress", sp.Prestress(0.9, 0.9, peak=peak), 5.0, 0.1, scheme=scheme, resolved_blocks=1)
@@ -63,7 +63,7 @@ def test_nothing_moves_just_below_the_threshold(scheme):
         assert not run[name].values.any(), name
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 def test_the_nucleation_block_alone_is_released_exactly_at_the_threshold(scheme):
     scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 0.005, 0.1, scheme=scheme)
     run = sp.simulate(scene)

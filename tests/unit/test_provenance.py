@@ -11,7 +11,6 @@ import pandas as pd
 import pytest
 import yaml
 
-from slippulse.data.alterations import changes
 from slippulse.data.provenance import (
     checksums,
     job_times,

@@ -10,7 +10,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse.configuration.expand import expand, resolve
-from slippulse.model.scene import ORDERS, SCHEMES
+from slippulse.model.scene import LATTICE_SCHEMES, ORDERS
 from slippulse.model.stability import largest_step
 from slippulse.simulation.simulate import judge
 from slippulse.solver.lattice import UnstableRun, run_scene
@@ -123,7 +123,7 @@ def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps
         run_scene(beyond_the_bound("localised", tol.WELL_ABOVE_BOUND, **STRONG, beta=1.0))
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 def test_a_scene_beyond_the_bound_is_refused_with_the_bound(scheme):
     bound = largest_step(scheme, 4, 0.5, 0.0)
     for step, refused in ((tol.BELOW_BOUND * bound, False), (tol.ABOVE_BOUND * bound, True)):

@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.scene import SCHEMES
+from slippulse.model.scene import LATTICE_SCHEMES
 from slippulse.model.stability import largest_step
 from slippulse.solver import driver
 
@@ -38,7 +38,7 @@ def at_most(calls: int):
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
     """The published scene with -beta: modes grow at up to 2 beta/dx^2, 20 per unit of time."""
     scene = sp.Scene(**PUBLISHED, scheme=scheme, release=release)
@@ -50,7 +50,7 @@ def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
 @pytest.mark.parametrize("row", [0, 1])
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 @pytest.mark.parametrize("place", [0.2, 0.5, 0.9])
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     """Put into the slip or the velocity of a sliding block."""
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.4), 4.0, 0.05, gamma=0.65, beta=0.005, scheme=scheme)

@@ -9,7 +9,7 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.scene import SCHEMES
+from slippulse.model.scene import LATTICE_SCHEMES
 from slippulse.solver import driver
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
@@ -37,7 +37,7 @@ def largest_difference(one, two) -> float:
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1])
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 @pytest.mark.parametrize("boundary", ["displacement", "stress"])
 def test_the_mirror_image_of_a_scene_has_the_mirror_image_of_its_result(boundary, scheme, ratio):
     one = simulated(UNEVEN, boundary, scheme, ratio)
@@ -49,7 +49,7 @@ def test_the_mirror_image_of_a_scene_has_the_mirror_image_of_its_result(boundary
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1])
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 @pytest.mark.parametrize("boundary", ["displacement", "stress"])
 def test_half_the_lattice_gives_the_whole_result(boundary, scheme, ratio):
     half = simulated(EVEN, boundary, scheme, ratio)
@@ -69,7 +69,7 @@ def test_half_the_lattice_gives_the_whole_result(boundary, scheme, ratio):
         assert half.attrs[name] == pytest.approx(whole.attrs[name], rel=1e3 * tol.MIRROR, nan_ok=True), name
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 @pytest.mark.parametrize("profile", [EVEN, UNEVEN], ids=["even", "uneven"])
 def test_the_size_of_the_first_lattice_does_not_change_a_bit(monkeypatch, profile, scheme):
     whole = simulated(profile, scheme=scheme)

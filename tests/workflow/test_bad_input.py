@@ -9,10 +9,11 @@ import pytest
 import yaml
 
 import slippulse as sp
-from slippulse.configuration.expand import ConfigError, expand, resolve, validate
+from slippulse.configuration.expand import ConfigError, expand, resolve
 from slippulse.configuration.overlay import LARGEST_FILE, main, read_overlay
+from slippulse.configuration.read import merge, read_config
+from slippulse.configuration.scenes import all_simulations
 
-SCHEMA = "workflow/schemas/config.schema.yaml"
 # Enough of the shipped simulations for every case, so that a refusal of scenes is quick.
 KEPT = ("steady_displacement", "space_time_displacement", "space_time_stress", "burridge_knopoff_stress")
 STEADY, STRESS = "simulations: {steady_displacement: ", "simulations: {space_time_stress: "
@@ -20,7 +21,7 @@ OWN = "simulations: {mine: {boundary: displacement, duration: {time: 10.0}, reco
 OWN_STRESS = "simulations: {mine: {boundary: stress, left: [-1.0], record: [fronts], "
 # Four runs, each of 1.1 hours at 2.0e+4, and as the square of the time.
 LONG = (
-    "simulations: {{mine: {{boundary: stress, left: [-1.0, -0.8, -0.6, -0.5], right: [0.0], dx: [0.02],"
+    "simulations: {{mine: {{boundary: stress, left: [0.3, 0.31, 0.32, 0.33], right: same, dx: [0.02],"
     " record: [fronts], chunks: {chunks}, duration: {{time: {time}}}}}}}"
 )
 MANY = "[" + ", ".join(f"{0.001 * i:.3f}" for i in range(1, 801)) + "]"
@@ -60,7 +61,7 @@ CASES = {
     "one number for a list": (STEADY + "{gamma: 0.3}}", ["gamma: 0.3", "a list of different numbers"]),
     "a list for one number": ("model: {damping_ratio: [0.1]}", ["model.damping_ratio: [0.1]", "a number >= 0"]),
     "a switch for a number": ("model: {damping_ratio: true}", ["model.damping_ratio: True", "a number >= 0"]),
-    "nothing for a number": ("model: {damping_ratio: }", ["model.damping_ratio: None", "a number >= 0"]),
+    "null for a number": ("model: {damping_ratio: null}", ["model.damping_ratio: missing", "null removes a key"]),
     "a fraction for a whole number": ("presets: {paper: {order: 4.5}}", ["order: 4.5", "a whole number from 3 to 8"]),
     "a list for a mapping": ("simulations: [1, 2]", ["simulations: [1, 2]", "a mapping"]),
     "text for a mapping": (STEADY + "{duration: long}}", ["duration: 'long'", "one of time"]),
@@ -89,7 +90,68 @@ CASES = {
     "accuracy above a tenth": ("accuracy: 0.5", ["accuracy: 0.5", "from 1.0e-4 to 0.1"]),
     "accuracy too small to reach": ("accuracy: 1.0e-7", ["accuracy: 1e-07", "from 1.0e-4 to 0.1"]),
     "accuracy as text": ("accuracy: 1e-3", ["accuracy: '1e-3'", "write 1.0e-3"]),
+    # what YAML 1.1 and 1.2 read differently is in FILES
+    "misspelt null": (STEADY + "{gama: null}}", ["steady_displacement.gama: null", "did you mean 'gamma'"]),
+    "null for a name that is not there": (
+        "simulations: {steady_displacment: null}",
+        ["steady_displacment: null", "did you mean 'steady_displacement'"],
+    ),
+    "null for a shipped simulation": (
+        "simulations: {steady_displacement: null}", ["steady_displacement: null", "what is shipped stays"],
+    ),
+    "null for a preset's key": ("presets: {paper: {dx: null}}", ["presets.paper.dx: missing", "null removes a key"]),
+    "null in a list": (STEADY + "{gamma: [null]}}", ["gamma.0: None", "a number > 0"]),
+    "a number as a name": (
+        "simulations: {123: {boundary: stress}}", ["simulations: '123'", "begins with a letter"],
+    ),
+    "scheme that is none": ("model: {scheme: exact}", ["model.scheme: 'exact'", "localised, fixed_step, continuum"]),
+    "reading of a quantity that is not measured": (
+        "published: {front_speed: {quantity: front_speed_rigt}}",
+        ["published.front_speed.quantity: 'front_speed_rigt'", "did you mean 'front_speed_right'"],
+    ),
+    "reading of a quantity that is not recorded": (
+        "simulations: {space_time_displacement: {record: [fronts], samples: null}}",
+        ["published.velocity_displacement.quantity: 'largest_velocity'", "this takes record: [fields]"],
+    ),
+    "null for a scene that is not there": (
+        "scenes: {barier: null}", ["scenes.barier: null", "did you mean 'barrier'"],
+    ),
+    "name of a simulation for a scene": (
+        "scenes: {steady_displacement: {title: a, boundary: stress, left: 0.0, right: 0.0, duration: 1.0}}",
+        ["scenes.steady_displacement: also the name of a simulation", "a name of its own"],
+    ),
     # what belongs together
+    "samples that are not recorded": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, samples: {times: 2, positions: 1, extent: 0.0}}}",
+        ["mine.samples: given, but not recorded", "record: [samples]"],
+    ),
+    "peak below 1 everywhere": (
+        OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: 0.5, right: 0.5, peak: 0.9}]")
+        + "duration: {time: 1.0}}}",
+        ["mine.profiles.peak: 0.9", "at most 0.9", "reaches 1 somewhere"],
+    ),
+    "balance distances of positive levels": (
+        STEADY + "{duration: {time: null, balance_distances: 2.0}}}",
+        ["steady_displacement.duration.balance_distances: 2.0 times |x_minus|", "prestress.right: 0.2", "allowed: 0"],
+    ),
+    "fixed spacing with a rule": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, spacing: {fixed: 0.1, scale: 2.0}}}",
+        ["mine.spacing.fixed: given with scale", "alone"],
+    ),
+    "gamma that leaves no stable step": (STEADY + "{gamma: [1.0e+200]}}", ["steady_displacement.gamma: 1e+200"]),
+    "fronts that outrun the waves": (
+        OWN_STRESS.replace("-1.0", "0.9999")
+        + "right: same, damping_ratio: [1.0], dx: [0.01], duration: {time: 60.0}}}",
+        ["mine.cost: 1 runs", "hours on one core", "allow_large=true"],
+    ),
+    "a nucleation of a million layers": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, width: [1.0e+9], dx: [0.01]}}",
+        ["mine.cost: 1 runs", "hours on one core", "allow_large=true"],
+    ),
+    "damping of ten thousand": (
+        OWN + "gamma: [0.5], left: [0.5], right: same, damping_ratio: [1.0e+4], dx: [0.01]}}",
+        ["mine.cost: 1 runs", "hours on one core", "allow_large=true"],
+    ),
     "accuracy of the textbook scheme": (
         "{accuracy: 1.0e-2, model: {scheme: fixed_step}}",
         ["model.scheme: 'fixed_step'", "'localised' where accuracy is given"],
@@ -211,6 +273,16 @@ FILES = {
     "list": (b"- preset\n- draft\n", ["a list", "a mapping of keys"]),
     "number": (b"42\n", ["a number", "a mapping of keys"]),
     "empty": (b"# nothing\n", ["empty", "a mapping of keys"]),
+    "nothing for a number": (b"model: {damping_ratio: }", ["line 1", "no value", "null, which removes the key"]),
+    "sexagesimal": (b"model:\n  friction_ratio: 1:30\n", ["line 2", "'1:30', which YAML 1.1 reads as 90"]),
+    "octal": (b"model: {friction_ratio: 010}\n", ["line 1", "'010', which YAML 1.1 reads as 8", "plain digits"]),
+    "underscores": (b"model: {friction_ratio: 1_000}\n", ["line 1", "'1_000'", "reads as 1000"]),
+    "yes": (b"allow_large: yes\n", ["line 1", "'yes', which YAML 1.1 reads as True", "true or false"]),
+    "off as a key": (b"model: {off: 1}\n", ["line 1", "'off', which YAML 1.1 reads as False"]),
+    "a date": (b"preset: 2020-01-02\n", ["line 1", "2020-01-02", "text in quotes"]),
+    "binary number": (b"model: {friction_ratio: 0b11}\n", ["line 1", "'0b11'", "reads as 3"]),
+    "merge key": (b"model: {<<: {release: total}}\n", ["line 1", "<<"]),
+    "octal in what looks like JSON": (b'{"model": {"friction_ratio": 010}}\n', ["line 1", "reads as 8"]),
     "broken": (b"preset: [draft\n", ["not YAML", "line 2"]),
     "tabs": (b"simulations:\n\tmine: 1\n", ["not YAML", "line 2"]),
     "binary": (b"\x89PNG\r\n\x1a\n\xff\xfe", ["not text"]),
@@ -234,15 +306,6 @@ FILES = {
 }  # fmt: skip
 
 
-def merged(base: dict, overlay: dict) -> dict:
-    """Mappings are merged, all else is replaced, as Snakemake does it."""
-    out = dict(base)
-    for key, value in overlay.items():
-        both = isinstance(value, dict) and isinstance(out.get(key), dict)
-        out[key] = merged(out[key], value) if both else value
-    return out
-
-
 @pytest.fixture(scope="module")
 def shipped(project) -> dict:
     config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
@@ -260,17 +323,17 @@ def assert_one_clear_message(message: str, named: list[str]) -> None:
     assert "Traceback" not in message
 
 
-def test_what_is_shipped_passes_here_too(shipped, project):
-    validate(copy.deepcopy(shipped), project / SCHEMA, shipped)
+def test_what_is_shipped_passes_here_too(shipped):
+    read_config(copy.deepcopy(shipped), shipped)
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_mistake_in_an_overlay_is_refused(shipped, project, tmp_path, case):
+def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, case):
     text, named = CASES[case]
     (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
-    config = merged(copy.deepcopy(shipped), read_overlay(tmp_path / "mine.yaml"))
+    config = merge(copy.deepcopy(shipped), read_overlay(tmp_path / "mine.yaml"))
     with pytest.raises(ValueError) as refusal:
-        validate(config, project / SCHEMA, shipped)
+        read_config(config, shipped)
     assert type(refusal.value) is ConfigError
     assert_one_clear_message(str(refusal.value), named)
     assert [path.name for path in tmp_path.iterdir()] == ["mine.yaml"]
@@ -288,27 +351,124 @@ def test_a_file_that_is_no_overlay_is_refused(tmp_path, case, capsys):
     assert [path.name for path in tmp_path.iterdir()] == ["mine.yaml"]
 
 
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("1", 1), ("-2.5", -2.5), (".5", 0.5), ("1.0e-3", 1e-3), ("0x10", 16), ("true", True), ("null", None),
+     ("1e-3", "1e-3"), ("'010'", "010"), ('"yes"', "yes"), ("total", "total"), ("0", 0), ("1.", 1.0)],
+)  # fmt: skip
+def test_other_scalars_are_what_yaml_says(tmp_path, text, value):
+    (tmp_path / "mine.yaml").write_text(f"key: {text}\n", encoding="utf-8")
+    read = read_overlay(tmp_path / "mine.yaml")["key"]
+    assert read == value and type(read) is type(value)
+
+
+def test_json_is_read_as_json(tmp_path):
+    (tmp_path / "mine.json").write_text('{"presets": {"paper": {"dx": 1e-2}}}', encoding="utf-8")
+    assert read_overlay(tmp_path / "mine.json") == {"presets": {"paper": {"dx": 0.01}}}
+
+
+def test_the_command_line_sets_nested_values(shipped):
+    given = {
+        "model": {"damping_ratio": "0.2", "release": "elastic"},
+        "allow_large": "true",
+        "accuracy": "1.0e-2",
+    }
+    config = merge(copy.deepcopy(shipped), given)
+    read_config(config, shipped, given)
+    assert config["model"] == shipped["model"] | {"damping_ratio": 0.2, "release": "elastic"}
+    assert config["allow_large"] is True and config["accuracy"] == 0.01
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"), [(1, True), ("yes", True), ("on", True), (0, False), ("no", False), ("False", False)]
+)
+def test_words_for_a_switch_on_the_command_line(shipped, said, meant):
+    config = merge(copy.deepcopy(shipped), {"allow_large": said})
+    read_config(config, shipped, {"allow_large": said})
+    assert config["allow_large"] is meant
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
+        ({"allow_large": 2}, "allow_large: 2; allowed: true or false"),
+        ({"model": {"damping_ratio": "1:30"}}, "model.damping_ratio: '1:30', which YAML 1.1 reads as 90"),
+        ({"model": {"damping_ratio": "much"}}, "model.damping_ratio: 'much'; allowed: a number >= 0"),
+    ],
+)
+def test_what_the_command_line_may_not_say(shipped, given, named):
+    with pytest.raises(ConfigError) as refusal:
+        read_config(merge(copy.deepcopy(shipped), given), shipped, given)
+    assert named in str(refusal.value)
+
+
+ALTERATIONS = {
+    "beta instead of beta/dx": (
+        STEADY + "{damping_ratio: null, beta: [0.001]}}", "steady_displacement", "damping_ratio",
+    ),
+    "another boundary": (
+        STEADY + "{boundary: stress, gamma: null, left: [0.3], right: same}}", "steady_displacement", "gamma",
+    ),
+    "another unit of the duration": (
+        STEADY + "{duration: {time: null, half_periods: 3.0}}}", "steady_displacement", "",
+    ),
+    "levels instead of profiles": (
+        "simulations: {steady_stress: {profiles: null, left: [-0.5], right: [0.0]}}", "steady_stress", "profiles",
+    ),
+    "the continuum": (STEADY + "{scheme: continuum}}", "steady_displacement", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", ALTERATIONS)
+def test_a_shipped_sweep_can_be_altered(project, tmp_path, case):
+    text, name, gone = ALTERATIONS[case]
+    shipped = read_overlay(project / "config/config.yaml")
+    kept = {*KEPT, "steady_stress"}
+    shipped["simulations"] = {kind: sweep for kind, sweep in shipped["simulations"].items() if kind in kept}
+    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    config = merge(shipped, read_overlay(tmp_path / "mine.yaml"))
+    read_config(config, shipped)
+    assert gone not in config["simulations"][name] and None not in config["simulations"][name].values()
+    scenes, _ = expand(resolve(config["simulations"][name], config["model"], config["presets"]["paper"]))
+    assert scenes
+
+
+def test_scenes_are_simulations_once_read(project):
+    config = read_overlay(project / "config/config.yaml")
+    simulations = all_simulations(config)
+    assert list(simulations) == [*config["simulations"], *config["scenes"]]
+    for name, scene in config["scenes"].items():
+        (run,), (samples,) = expand(resolve(simulations[name], config["model"], config["presets"]["paper"]))
+        assert (run.boundary, run.duration, run.prestress.left) == (
+            scene["boundary"],
+            scene["duration"],
+            scene["left"],
+        )
+        assert samples is not None and {*simulations[name]["record"]} == {"fronts", "fields", "samples"}
+
+
 def test_there_are_enough_cases():
     assert len(CASES) + len(FILES) >= 40
 
 
-def test_asking_twice_lets_a_large_sweep_pass(shipped, project):
+def test_asking_twice_lets_a_large_sweep_pass(shipped):
     levels = [round(0.001 * i, 3) for i in range(1, 801)]
     overlay = {
         "simulations": {"steady_displacement": {"left": levels, "gamma": levels}},
         "allow_large": True,
     }
-    validate(merged(copy.deepcopy(shipped), overlay), project / SCHEMA, shipped)
+    read_config(merge(copy.deepcopy(shipped), overlay), shipped)
 
 
 @pytest.mark.parametrize(("chunks", "refused"), [(1, True), (2, True), (3, True), (4, False)])
-def test_more_chunks_let_a_long_sweep_pass(shipped, project, chunks, refused):
-    config = merged(copy.deepcopy(shipped), yaml.safe_load(LONG.format(chunks=chunks, time="5.0e+4")))
+def test_more_chunks_let_a_long_sweep_pass(shipped, chunks, refused):
+    config = merge(copy.deepcopy(shipped), yaml.safe_load(LONG.format(chunks=chunks, time="5.0e+4")))
     if not refused:
-        validate(config, project / SCHEMA, shipped)
+        read_config(config, shipped)
         return
     with pytest.raises(ConfigError, match="up to 12 hours on one core"):
-        validate(config, project / SCHEMA, shipped)
+        read_config(config, shipped)
 
 
 @pytest.mark.parametrize(
@@ -321,7 +481,7 @@ def test_more_chunks_let_a_long_sweep_pass(shipped, project, chunks, refused):
         ({"release": "both"}, None),
     ],
 )
-def test_the_library_raises_the_same_text(shipped, project, changes, overlay):
+def test_the_library_raises_the_same_text(shipped, changes, overlay):
     good = {
         "boundary": "displacement", "prestress": sp.Prestress(0.2, 0.2), "duration": 120.0, "dx": 0.01, "gamma": 0.65,
     }  # fmt: skip
@@ -329,7 +489,7 @@ def test_the_library_raises_the_same_text(shipped, project, changes, overlay):
         sp.Scene(**good | changes)
     assert re.fullmatch(r"[\w.]+: .+; allowed: .+", str(refusal.value))
     if overlay:
-        config = merged(copy.deepcopy(shipped), {"simulations": {"steady_displacement": overlay}})
+        config = merge(copy.deepcopy(shipped), {"simulations": {"steady_displacement": overlay}})
         with pytest.raises(ValueError) as of_scenes:
             expand(
                 resolve(
@@ -337,5 +497,5 @@ def test_the_library_raises_the_same_text(shipped, project, changes, overlay):
                 )
             )
         with pytest.raises(ConfigError) as of_config:
-            validate(config, project / SCHEMA, shipped)
+            read_config(config, shipped)
         assert str(of_scenes.value) in str(of_config.value)

@@ -22,6 +22,7 @@ TARGETS = {
     "stress_barrier": "results/scenes/stress_barrier.html",
     "two_nucleation_sites": "results/scenes/data/two_sites.csv",
     "elastic_release": "results/measurements/space_time_displacement.csv",
+    "fixed_beta": "results/measurements/continuum_fixed_ratio.csv",
     "halved_spacing": "results/measurements/space_time_displacement.csv",
     "own_sweep": "results/measurements/own_sweep.csv",
     "chunked_sweep": "results/measurements/chunked_sweep.csv",
@@ -96,6 +97,13 @@ def test_the_elastic_rule_is_slower(run):
     elastic, total = (theory.front_speed(0.25, 0.1, rule) for rule in ("elastic", "total"))
     # The run of the space-time figure ends before its front is steady.
     assert table["front_speed_right"][0] < 0.5 * (elastic + total)
+
+
+def test_null_removes_a_key_and_beta_stays(run):
+    table, _ = run("fixed_beta")
+    assert set(table["beta"]) == {0.01} and table["damping_ratio"].nunique() == len(table) > 1
+    by_spacing = table.sort_values("dx")["front_speed_right"]
+    assert by_spacing.is_monotonic_decreasing
 
 
 def test_halved_spacing_is_half_of_the_presets(run):

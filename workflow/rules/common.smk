@@ -4,11 +4,12 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from slippulse.configuration.expand import ConfigError, accuracy_of, resolve, validate
+from slippulse.configuration.expand import ConfigError, accuracy_of, resolve
 from slippulse.configuration.job_limits import joining_limits, sweep_limits
+from slippulse.configuration.limits import run_count
 from slippulse.configuration.overlay import read_overlay
-from slippulse.configuration.refusals import runs
-from slippulse.configuration.scenes import scene_block
+from slippulse.configuration.read import read_config
+from slippulse.configuration.scenes import all_simulations
 from slippulse.data.alterations import changes
 from slippulse.data.records import digest_of
 from slippulse.steps.reach import PACKAGE, declared, sources
@@ -20,21 +21,11 @@ def refuse(reason):
     raise SystemExit(1)
 
 
-# Of a switch on the command line Snakemake reads True and False, and leaves true and false text.
-for key, value in config.items():
-    if value in ("true", "false"):
-        config[key] = value == "true"
-
 try:
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     SHIPPED = read_overlay(Path(workflow.basedir) / "config/config.yaml")
-    validate(
-        config,
-        Path(workflow.basedir) / "workflow/schemas/config.schema.yaml",
-        SHIPPED,
-        # A job on another node starts Snakemake anew, with what was checked here.
-        every_run=workflow.is_main_process,
-    )
+    # A job on another node starts Snakemake anew, with scenes that were checked here.
+    read_config(config, SHIPPED, workflow.config_settings.config, every_run=workflow.is_main_process)
 except ConfigError as error:
     refuse(f"The configuration is refused:\n{error}")
 
@@ -42,9 +33,7 @@ ACCURACY = accuracy_of(config)
 LOCK = "requirements.lock"
 SCENES = config.get("scenes", {})
 # A scene is a simulation of one run that records everything.
-SIMULATIONS = config["simulations"] | {
-    name: scene_block(scene, config["model"]) for name, scene in SCENES.items()
-}
+SIMULATIONS = all_simulations(config)
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED["simulations"]]
 OWN_SCENE_NAMES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
@@ -169,7 +158,7 @@ def job_megabytes(wildcards, attempt):
 
 def joining(wildcards):
     """Limits for joining the chunks of a simulation."""
-    return joining_limits(runs(sweep_of(wildcards.simulation)))
+    return joining_limits(run_count(sweep_of(wildcards.simulation)))
 
 
 def settings_of_figure(name):

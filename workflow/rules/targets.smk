@@ -1,16 +1,22 @@
 # Included last: what is asked for on the command line is something that a rule makes, and affordable.
 
 from slippulse.configuration.expand import expand as expand_sweep
-from slippulse.configuration.refusals import check_affordable, check_folder, check_targets
+from slippulse.configuration.limits import check_affordable
+from slippulse.configuration.targets import check_folder, check_targets
 from slippulse.data.records import changed_since_made, mark_outdated, remove_changed
 
 
 def refuse_unknown_targets():
-    """A misspelt file on the command line is refused with the nearest one that a rule makes."""
+    """A misspelt target is refused with the nearest one that there is."""
     known = [str(file) for rule in workflow.rules for file in rule.output if not file.contains_wildcard()]
     known += [f"results/scenes/{name}.{ending}" for name in SCENES for ending in ("png", "html", "gif")]
     check_folder(Path("results"))
-    check_targets(sys.argv[1:], lambda file: any(rule.is_producer(file) for rule in workflow.rules), known)
+    names = {rule.name for rule in workflow.rules}
+    check_targets(
+        sys.argv[1:],
+        lambda target: target in names or any(rule.is_producer(target) for rule in workflow.rules),
+        [*names, *known],
+    )
 
 
 def simulations_behind(file):

@@ -11,13 +11,13 @@ import pandas as pd
 from ..model.scene import prestress_from
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_law import STRONGEST_DAMPING, front_speed
+from ..theory.front_law import front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
 
 
 def far_pulse(attributes: Mapping, side: str = "right") -> SteadyPulse | None:
     """The steady pulse that theory has for one side of a run; None where it has none."""
-    if attributes["boundary"] != "displacement" or attributes["damping_ratio"] > STRONGEST_DAMPING:
+    if attributes["boundary"] != "displacement":
         return None
     tau = float(prestress_from(attributes).level(np.asarray(1e300 if side == "right" else -1e300)))
     if not 0.0 < tau < 1.0:
@@ -118,9 +118,8 @@ def _theories(attributes: Mapping, share: float) -> dict[str, Callable[[], float
     out = {
         f"front_speed_{side}": lambda level=level: float(front_speed(level, ratio, release))
         for side, level in far.items()
-        if ratio <= STRONGEST_DAMPING
     }
-    plain = not profile.steps and not profile.bumps and ratio <= STRONGEST_DAMPING
+    plain = not profile.steps and not profile.bumps
     if attributes["boundary"] == "displacement":
         if pulse := _or_none(lambda: far_pulse(attributes)):
             out |= {

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import check_choice, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.scene import BOUNDARIES, RELEASES, Scene
 from ..model.stability import MARGIN, largest_step
@@ -79,6 +79,9 @@ def settings_for(
     check_number("accuracy", accuracy, at_least=SMALLEST, at_most=LARGEST)
     check_choice("boundary", boundary, BOUNDARIES)
     check_choice("release", release, RELEASES)
+    if not isinstance(prestress, Prestress):
+        raise ValueError(f"prestress: {short_repr(prestress)}; allowed: a Prestress")
+    check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0)
     if damping_ratio > STRONGEST_DAMPING:
         raise ValueError(

@@ -1,16 +1,25 @@
-"""What a list of scenes costs to run, before it runs."""
+"""What scenes cost to run, before they run."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from ..model.samples import Samples
 from ..model.scene import Scene
+from .front_paths import front_paths, sliding_times
 
-# Block updates a second on one core at order 8, and what a release or stick and the start of a scene cost in them.
-RATE, EVENT, START = 2.5e8, 250.0, 8e5
+# Seconds on one core of the reference machine: the start of a scene; a step; a sliding block in a step, by order; an
+# event, by order; a block of the lattice, to be set up and written; a block that is looked at by the textbook scheme.
+START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.7e-3, 3e-7, 0.75e-9, (1.0e-6, 0.07e-6), 1.5e-7, 5e-9
+# A step ends early after so many events; the lattice has so many blocks at the start.
+EVENTS_OF_A_STEP, FIRST_BLOCKS = 64, 512
+# The run in so many parts, short ones at first.
+PARTS = np.linspace(0.0, 1.0, 33) ** 2
 # What runs without being asked twice: a night on one core, the memory of a small machine, a large sweep.
 LARGEST_HOURS = 12.0
 LARGEST_BYTES = 4e9
@@ -18,64 +27,130 @@ LARGEST_RUNS = 20_000
 # How many times as much a sweep in chunks may be altogether: a million runs, a day on 25 cores.
 LARGEST_WHOLE = 50
 HOW_TO_GO_ON = "--config allow_large=true to go on"
+# A run that takes so many times its estimate, and longer than so many seconds, says so.
+FAR_BEYOND, WORTH_A_WORD = 10.0, 5.0
 
 
 @dataclass(frozen=True)
 class Cost:
-    """An estimate, right to a factor of about 3 over the shipped sweeps.
+    """An estimate, right to a factor of 3.
 
     Attributes
     ----------
     runs : scenes
-    block_updates : all of them, events and the start of each scene included by what they cost
+    seconds : on one core
     bytes : recorded data, and the lattice of the largest scene
     """
 
     runs: int
-    block_updates: float
+    seconds: float
     bytes: float
 
     @property
     def hours(self) -> float:
         """On one core."""
-        return self.block_updates / RATE / 3600.0
+        return self.seconds / 3600.0
 
     def __str__(self) -> str:
-        return (
-            f"{self.runs} runs, {self.block_updates:.2g} block updates, about {self.hours:.2g} hours on one core,"
-            f" {self.bytes / 1e9:.2g} GB"
-        )
+        return f"{self.runs} runs, about {self.hours:.2g} hours on one core, {self.bytes / 1e9:.2g} GB"
 
 
 def expected_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) -> Cost:
-    """Cost of a list of scenes with what each records.
-
-    Fronts run at about the wave speed; between them slides a crack (Gamma = 0), or two pulses of about one half period
-    of the leaf springs, which stick behind. Each block is released once.
-    """
-    updates, recorded, lattice = 0.0, 0.0, 0.0
+    """Cost of a list of scenes with what each records."""
+    seconds, recorded, lattice = 0.0, 0.0, 0.0
     for scene, recording in zip(scenes, samples, strict=True):
-        fold = 0.5 if scene.symmetric else 1.0
-        blocks = 2.0 * fold * scene.duration / scene.dx
-        pulses = scene.boundary == "displacement"
-        sliding = 2.0 * fold * _mean_sliding_length(scene) / scene.dx
-        updates += scene.duration / (scene.max_step * scene.dx) * sliding
-        updates += START + EVENT * blocks * (2.0 if pulses else 1.0)
-        lattice = max(lattice, 8.0 * (scene.order + 12) * blocks)
+        of_scene, blocks = _scene_cost(scene)
+        seconds += of_scene
+        lattice = max(lattice, 16.0 * (scene.order + 16) * blocks)
         recorded += 8.0 * 7.0 * blocks
         if recording is not None:
             recorded += 16.0 * recording.times.size * recording.positions.size
-    return Cost(len(scenes), updates, recorded + lattice)
+    return Cost(len(scenes), seconds, recorded + lattice)
 
 
-def _mean_sliding_length(scene: Scene) -> float:
-    """Over the time of the run, on each side: a crack grows from nothing."""
-    if scene.boundary == "displacement":
-        return min(0.5 * scene.duration, math.pi / math.sqrt(scene.gamma))
-    return 0.5 * scene.duration
+def expected_seconds(scene: Scene) -> float:
+    """What one scene takes on one core, right to a factor of 3."""
+    return _scene_cost(scene)[0]
 
 
-def too_large(cost: Cost, times: int = 1) -> str:
+def most_expected(scenes: Sequence[Scene], samples: Sequence[Samples | None]) -> Cost:
+    """A cost that is not exceeded: every block slides from the start, as far as a front can come; found at once."""
+    seconds, recorded, lattice = 0.0, 0.0, 0.0
+    for scene, recording in zip(scenes, samples, strict=True):
+        profile = scene.prestress
+        level = max(profile.left, profile.right, *(level for _, level in profile.steps), 0.0)
+        speed = 1.0 / (1.0 - level) * (1.0 + scene.damping_ratio)
+        far = max((abs(centre) + 10.0 * width for centre, _, width in profile.bumps), default=0.0)
+        blocks = 2.0 * FIRST_BLOCKS + 4.0 * (speed * scene.duration + 10.0 * profile.width + far) / scene.dx
+        steps = scene.duration / (scene.max_step * scene.dx) + blocks / EVENTS_OF_A_STEP
+        one = START + steps * (STEP + LOOK + UPDATE * (scene.order + 1)) * blocks
+        seconds += one + blocks * (BLOCK + 2.0 * (EVENT[0] + EVENT[1] * scene.order))
+        lattice = max(lattice, 16.0 * (scene.order + 16) * blocks)
+        recorded += 8.0 * 7.0 * blocks
+        if recording is not None:
+            recorded += 16.0 * recording.times.size * recording.positions.size
+    return Cost(len(scenes), seconds, recorded + lattice)
+
+
+@np.errstate(all="ignore")
+def _scene_cost(scene: Scene) -> tuple[float, float]:
+    """Seconds, and blocks of the lattice, of one scene."""
+    fold = 0.5 if scene.symmetric else 1.0
+    step = min(scene.max_step * scene.dx, scene.duration)
+    profile, paths = scene.prestress, front_paths(scene)
+    weight = fold * paths.size / scene.dx
+    reach = max((abs(centre) + 4.0 * width for centre, _, width in profile.bumps), default=0.0)
+    smallest = FIRST_BLOCKS / fold + 2.0 * fold * reach / scene.dx
+    if not np.isfinite(paths.release).any():
+        return START + BLOCK * smallest, smallest
+    times = scene.duration * PARTS
+    released = _passed(paths.release, weight, times)
+    stuck = _passed(paths.release + sliding_times(scene, paths), weight, times)
+    sliding = np.maximum(released - stuck, 0.0)
+    sliding = 0.5 * (sliding[1:] + sliding[:-1])
+    events = np.diff(released) + np.diff(stuck)
+    blocks = max(smallest, float(released[-1]))
+    seconds = START + BLOCK * blocks
+    if scene.scheme == "continuum":
+        return seconds, blocks
+    steps = np.where(sliding > 0.5, np.diff(times) / step, 0.0)
+    if scene.scheme == "fixed_step":
+        lattice = smallest * 2.0 ** np.ceil(np.log2(np.maximum(released[1:] / smallest, 1.0)))
+        return seconds + float(np.sum(steps * (STEP + LOOK * lattice))), blocks
+    steps = np.where(steps > 0.0, np.maximum(steps, events / EVENTS_OF_A_STEP), 0.0)
+    update, event = UPDATE * (scene.order + 1), EVENT[0] + EVENT[1] * scene.order
+    return seconds + float(np.sum(steps * (STEP + update * sliding) + event * events)), blocks
+
+
+def _passed(when: np.ndarray, weight: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """How much has passed by each time."""
+    order = np.argsort(when)
+    return np.interp(times, when[order], np.cumsum(weight[order]), left=0.0)
+
+
+def overrun_watch(scene: Scene, say: Callable[[str], None]) -> Callable[[float], None]:
+    """A callback for the progress of a run, in its own thread, that says once when it takes ten times its estimate.
+
+    Parameters
+    ----------
+    scene : that runs
+    say : called with one line
+    """
+    started, allowed = time.thread_time(), max(WORTH_A_WORD, FAR_BEYOND * expected_seconds(scene))
+
+    def watch(share: float) -> None:
+        nonlocal allowed
+        seconds = time.thread_time() - started
+        if seconds > allowed:
+            say(
+                f"a run takes {FAR_BEYOND:g} times its estimate ({share:.0%} done after {seconds:.3g} s) and goes on"
+            )
+            allowed = math.inf
+
+    return watch
+
+
+def exceeded_limit(cost: Cost, times: int = 1) -> str:
     """What a cost exceeds, in words, where ``times`` that of one job is allowed; empty when it is within bounds."""
     if cost.runs > times * LARGEST_RUNS:
         return f"up to {times * LARGEST_RUNS} runs"

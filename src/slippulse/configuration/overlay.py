@@ -1,26 +1,34 @@
-"""Overlay files, read as plain data: no tags, no aliases, no templates, no duplicate keys, nothing large.
+"""Overlay files, read as plain data: no tags, aliases, templates, duplicate keys, or scalars that YAML 1.1 misreads.
 
-    python -m slippulse.overlay mine.yaml      says in one line what is wrong, before Snakemake reads the file
+    python -m slippulse.configuration.overlay mine.yaml      says in one line what is wrong, before Snakemake reads it
 
-Snakemake reads a --configfile itself, with a loader that resolves aliases and can evaluate expressions; a file that
-passes here holds neither.
+Snakemake reads a --configfile itself, with a loader of YAML 1.1 that resolves aliases and can evaluate expressions; a
+file that passes here holds none of it, and means the same in YAML 1.2.
 """
 
 from __future__ import annotations
 
+import json
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import yaml
 
-from ..model.checks import ConfigError, shown
+from ..model.checks import ConfigError, short_repr
 
 # The shipped configuration has some 20 kB; a larger file is not a list of what differs from it.
 LARGEST_FILE = 1_000_000
 DEEPEST = 12
-# The parser written in C, where libyaml is there: ten times as fast, and the whole schema is read at every start.
+# The parser written in C, where libyaml is there: ten times as fast.
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+# Plain scalars that are the same null, switch or number in YAML 1.1 and 1.2.
+SAME_IN_BOTH = re.compile(
+    r"~|null|Null|NULL|true|True|TRUE|false|False|FALSE"
+    r"|[-+]?(0|[1-9]\d*)|0x[\da-fA-F]+|[-+]?(\.\d+|\d+\.\d*)([eE][-+]\d+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)",
+    re.ASCII,
+)
 KINDS = {list: "a list", str: "text", int: "a number", float: "a number", bool: "true or false"}
 
 
@@ -49,7 +57,8 @@ def read_overlay(path: str | Path) -> dict:
     try:
         text = data.decode("utf-8-sig")
         _refuse_what_is_not_data(path, text)
-        overlay = yaml.load(text, Loader=LOADER)
+        # As Snakemake does, which reads JSON as such: 1e-3 is a number there.
+        overlay = json.loads(text) if text.lstrip().startswith("{") and _is_json(text) else _load(text)
     except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: not text (byte {error.start}); allowed: YAML in UTF-8") from None
     except yaml.YAMLError as error:
@@ -59,11 +68,59 @@ def read_overlay(path: str | Path) -> dict:
     except (ValueError, RecursionError) as error:
         if isinstance(error, ConfigError):
             raise
-        raise ConfigError(f"{path}: {shown(str(error))}; allowed: plain YAML") from None
+        raise ConfigError(f"{path}: {short_repr(str(error))}; allowed: plain YAML") from None
     if not isinstance(overlay, dict):
         kind = "empty" if overlay is None else KINDS.get(type(overlay), type(overlay).__name__)
         raise ConfigError(f"{path}: {kind}; allowed: a mapping of keys, as in config/config.yaml")
     return overlay
+
+
+def read_scalar(text: str, key: str) -> object:
+    """What text of the command line stands for, as a plain scalar of a file.
+
+    Parameters
+    ----------
+    text : as it was given
+    key : of which it is the value
+
+    Raises
+    ------
+    ConfigError
+        Where YAML 1.1 and 1.2 differ.
+    """
+    if misread := _misread(text):
+        raise ConfigError(f"{key}: {misread}")
+    try:
+        value = _load(text)
+    except (yaml.YAMLError, ValueError):
+        return text
+    return text if isinstance(value, Mapping | list) else value
+
+
+def _load(text: str) -> object:
+    return yaml.load(text, Loader=LOADER)
+
+
+def _is_json(text: str) -> bool:
+    try:
+        json.loads(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _misread(text: str) -> str:
+    """What is wrong with a plain scalar that YAML 1.1, which Snakemake reads, takes for something else than 1.2."""
+    resolvers = LOADER.yaml_implicit_resolvers.get(text[:1], ())
+    if SAME_IN_BOTH.fullmatch(text) or not any(pattern.match(text) for _, pattern in resolvers):
+        return ""
+    try:
+        meant = f"reads as {short_repr(_load(text))}"
+    except (yaml.YAMLError, ValueError):
+        meant = "does not read as text"
+    if re.fullmatch("[a-zA-Z]+", text):
+        return f"{short_repr(text)}, which YAML 1.1 {meant}; allowed: true or false, or the word in quotes"
+    return f"{short_repr(text)}, which YAML 1.1 {meant}; allowed: plain digits (90, 10.0), or text in quotes"
 
 
 def _where(error: yaml.YAMLError) -> str:
@@ -77,7 +134,7 @@ def _refuse_what_is_not_data(path: Path, text: str) -> None:
     # One entry an open collection: the keys met so far and whether a key comes next; None in a list.
     open_collections: list[list | None] = []
     documents = 0
-    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+    for event in yaml.parse(text, Loader=LOADER):
         place = f"{path}: line {event.start_mark.line + 1}"
         if isinstance(event, yaml.DocumentStartEvent):
             documents += 1
@@ -86,12 +143,17 @@ def _refuse_what_is_not_data(path: Path, text: str) -> None:
         if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
             raise ConfigError(f"{place}: an anchor or alias; allowed: values written out")
         if getattr(event, "tag", None):
-            raise ConfigError(f"{place}: tag {shown(event.tag)}; allowed: no tags")
+            raise ConfigError(f"{place}: tag {short_repr(event.tag)}; allowed: no tags")
         if isinstance(event, yaml.MappingEndEvent | yaml.SequenceEndEvent):
             open_collections.pop()
             continue
         if not isinstance(event, yaml.NodeEvent):
             continue
+        if isinstance(event, yaml.ScalarEvent) and event.implicit[0]:
+            if not event.value and open_collections:
+                raise ConfigError(f"{place}: no value; allowed: a value, or null, which removes the key")
+            if misread := _misread(event.value):
+                raise ConfigError(f"{place}: {misread}")
         inside = open_collections[-1] if open_collections else None
         if inside is not None:
             keys, key_next = inside
@@ -100,10 +162,12 @@ def _refuse_what_is_not_data(path: Path, text: str) -> None:
                 if not isinstance(event, yaml.ScalarEvent):
                     raise ConfigError(f"{place}: a collection as a key; allowed: names as keys")
                 if event.value == "__use_yte__" or event.value.startswith("?"):
-                    raise ConfigError(f"{place}: template key {shown(event.value)}; allowed: no templates")
+                    raise ConfigError(
+                        f"{place}: template key {short_repr(event.value)}; allowed: no templates"
+                    )
                 if event.value in keys:
                     raise ConfigError(
-                        f"{place}: key {shown(event.value)} a second time; allowed: each key once"
+                        f"{place}: key {short_repr(event.value)} a second time; allowed: each key once"
                     )
                 keys.add(event.value)
         if isinstance(event, yaml.CollectionStartEvent):

@@ -19,6 +19,8 @@ def prestress_balance_position(prestress: Prestress) -> float:
     ------
     ValueError
         If the levels are otherwise: the integral then has no finite value, or never returns to 0.
+    ArithmeticError
+        If numbers are too large to compute with.
 
     Source: equation (11) of the paper, section III C.
     """
@@ -31,7 +33,10 @@ def prestress_balance_position(prestress: Prestress) -> float:
     reach = far
     while prestress.integral(-reach, far) > 0.0:
         reach *= 2.0
-    return float(root_between(lambda x: prestress.integral(x, far), -reach, 0.0, xtol=1e-12 * reach))
+    try:
+        return float(root_between(lambda x: prestress.integral(x, far), -reach, 0.0, xtol=1e-12 * reach))
+    except ValueError as error:
+        raise ArithmeticError(f"the balance of the pre-stress cannot be computed: {error}") from None
 
 
 def _far(prestress: Prestress) -> float:

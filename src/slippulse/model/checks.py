@@ -8,16 +8,18 @@ import re
 from collections.abc import Iterable
 from numbers import Real
 
+import numpy as np
+
 
 class ConfigError(ValueError):
     """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
 
 
-def shown(value: object) -> str:
-    """A value as a refusal prints it: on one line, short, and as plain text where it is a plain name."""
+def short_repr(value: object) -> str:
+    """A value as a refusal prints it: on one line, and short."""
     if isinstance(value, str) and re.fullmatch(r"[\w.:+-]{1,60}", value, re.ASCII):
         return repr(value)
-    text = repr(value) if not isinstance(value, int | float) else str(value)
+    text = " ".join((repr(value) if not isinstance(value, int | float) else str(value)).split())
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -50,7 +52,7 @@ def check_number(
         f"< {below:g}" if below is not None else "",
     ]
     allowed = " and ".join(["a finite number", *(bound for bound in bounds if bound)])
-    good = isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+    good = isinstance(value, Real) and not isinstance(value, bool | np.bool_) and _finite(value)
     if good:
         good = (
             (above is None or value > above)
@@ -59,7 +61,34 @@ def check_number(
             and (below is None or value < below)
         )
     if not good:
-        raise ValueError(f"{key}: {value!r}; allowed: {allowed}")
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+
+
+def _finite(value: Real) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def as_numbers(key: str, value: object) -> np.ndarray:
+    """An array of finite numbers.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, the value and what is allowed.
+    """
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError
+        numbers = np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        numbers = None
+    if numbers is None or not np.isfinite(numbers).all():
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: finite numbers")
+    return numbers
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
@@ -70,5 +99,5 @@ def check_choice(key: str, value: object, choices: tuple) -> None:
     ValueError
         Naming the key, the value and the choices.
     """
-    if value not in choices:
-        raise ValueError(f"{key}: {value!r}; allowed: {', '.join(map(str, choices))}")
+    if not isinstance(value, str | int) or value not in choices:
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: {', '.join(map(str, choices))}")

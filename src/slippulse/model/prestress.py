@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from numbers import Real
 
 import numpy as np
 
-from .checks import check_number
+from .checks import check_number, short_repr
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,15 @@ class Prestress:
             tau = tau + sum(values for *_, values in group)
         return tau
 
+    def largest(self) -> float:
+        """The largest pre-stress, at the peak and the bumps and around them."""
+        if not self.bumps:
+            return max(self.peak, *(level for _, level in self.steps), self.left, self.right)
+        places = np.array([0.0, *(centre for centre, *_ in self.bumps)])
+        widths = np.array([self.width, *(width for *_, width in self.bumps)])
+        near = places[:, None, None] + np.linspace(-3.0, 3.0, 601) * widths[:, None]
+        return float(np.max(self(np.concatenate([near.ravel(), places]))))
+
     def integral(self, lower: float, upper: float) -> float:
         """Integral of tau from ``lower`` to ``upper`` (finite), in closed form between the steps."""
         inside = sorted({0.0, *(position for position, _ in self.steps)} | {lower, upper})
@@ -132,12 +142,12 @@ def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> f
 
 def _tuples(key: str, rows: object, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:
     allowed = f"a list of [{', '.join(names)}]"
-    if isinstance(rows, str) or not hasattr(rows, "__iter__"):
-        raise ValueError(f"{key}: {rows!r}; allowed: {allowed}")
+    if isinstance(rows, str | bytes | Mapping) or not hasattr(rows, "__iter__"):
+        raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     out = []
     for row in rows:
         if not hasattr(row, "__len__") or len(row) != len(names) or not all(isinstance(v, Real) for v in row):
-            raise ValueError(f"{key}: {row!r}; allowed: {allowed}, numbers")
+            raise ValueError(f"{key}: {short_repr(row)}; allowed: {allowed}, numbers")
         for name, value in zip(names, row, strict=True):
             check_number(f"{key} {name}", value)
         out.append(tuple(float(value) for value in row))

@@ -6,6 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .checks import as_numbers
+
+# What a run may keep: release and stick times, fields at the end, samples on its way.
+RECORDS = ("fronts", "fields", "samples")
+
 
 @dataclass
 class Samples:
@@ -26,12 +31,9 @@ class Samples:
     positions: np.ndarray
 
     def __post_init__(self) -> None:
-        self.times = np.asarray(self.times, dtype=float)
-        self.positions = np.asarray(self.positions, dtype=float)
+        self.times = as_numbers("samples.times", self.times)
+        self.positions = as_numbers("samples.positions", self.positions)
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
-        for name in ("times", "positions"):
-            if not np.isfinite(getattr(self, name)).all():
-                raise ValueError(f"samples.{name}: not finite; allowed: finite numbers")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")

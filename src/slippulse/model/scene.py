@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .checks import check_choice, check_number
+from .checks import check_choice, check_number, short_repr
 from .prestress import Prestress
 from .stability import largest_step
 
 BOUNDARIES = ("displacement", "stress")
 RELEASES = ("total", "elastic")
-SCHEMES = ("localised", "fixed_step", "continuum")
+# The lattice in two ways, and the exact solution of its continuum limit.
+LATTICE_SCHEMES = ("localised", "fixed_step")
+SCHEMES = (*LATTICE_SCHEMES, "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
 
 # A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width
@@ -46,12 +49,13 @@ class Scene:
         Damping, >= 0. What selects the front speed is beta/dx.
     release : "total" or "elastic"
         Whether the released stress includes the damping force.
-    scheme : "localised" or "fixed_step"
-        Taylor steps with each release and stick at its instant, or symplectic Euler with events checked once a step.
+    scheme : "localised", "fixed_step" or "continuum"
+        Taylor steps with each release and stick at its instant, symplectic Euler with events checked once a step, or
+        the exact solution of the continuum limit.
     max_step : float
-        Largest time step in units of dx; the step itself under "fixed_step".
+        Largest time step in units of dx; the step itself under "fixed_step"; not used by "continuum".
     order : int
-        Order of the Taylor step, 3 to 8; not used by "fixed_step".
+        Order of the Taylor step, 3 to 8; used by "localised" alone.
     half_lattice : bool
         Simulate x >= 0 only when the pre-stress is symmetric.
     friction_ratio : float
@@ -92,14 +96,15 @@ class Scene:
             ("half_lattice", bool, "true or false"),
         ):
             if type(getattr(self, name)) is not kind:
-                raise ValueError(f"{name}: {getattr(self, name)!r}; allowed: {allowed}")
+                raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
         if not isinstance(self.prestress, Prestress):
-            raise ValueError(f"prestress: {self.prestress!r}; allowed: a Prestress")
+            raise ValueError(f"prestress: {short_repr(self.prestress)}; allowed: a Prestress")
         check_number("duration", self.duration, above=0.0)
         check_number("dx", self.dx, above=0.0)
         check_number("beta", self.beta, at_least=0.0)
         check_number("friction_ratio", self.friction_ratio, at_least=0.0)
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
+        check_number("gamma", self.gamma, at_least=0.0)
         if self.boundary == "stress":
             if self.gamma != 0.0:
                 raise ValueError(
@@ -111,16 +116,28 @@ class Scene:
             raise ValueError(
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
+        bound = self._largest_step()
         check_number("max_step", self.max_step, above=0.0)
         # Single-precision or integer parameters would be computed with as such, and compiled for.
         for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
             object.__setattr__(self, name, float(getattr(self, name)))
-        bound = self.largest_stable_step
         if self.max_step > bound:
             raise ValueError(
                 f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
                 f" {self.scheme!r} at beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {self.gamma * self.dx**2:.4g}"
             )
+
+    def _largest_step(self) -> float:
+        """The stability bound, refused where there is none."""
+        stiffness = float(self.gamma) * float(self.dx) ** 2
+        if not (
+            math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and self.largest_stable_step > 0.0
+        ):
+            raise ValueError(
+                f"gamma: {self.gamma!r}, at beta/dx = {self.damping_ratio:.4g} and gamma dx^2 = {stiffness:.4g};"
+                " allowed: numbers for which a stable step can be computed"
+            )
+        return self.largest_stable_step
 
     @property
     def damping_ratio(self) -> float:

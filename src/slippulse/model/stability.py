@@ -23,33 +23,41 @@ def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float
 
     Parameters
     ----------
-    scheme : "localised" or "fixed_step"
-    order : order of the Taylor step (not used by "fixed_step")
+    scheme : "localised", "fixed_step", or "continuum", which takes no steps
+    order : order of the Taylor step (used by "localised" alone)
     damping_ratio : beta/dx, >= 0
     gamma_dx2 : gamma dx^2, >= 0 (0 under a stress boundary)
 
     A mode of the lattice has stiffness s in [0, 4] + gamma dx^2 and damping rate b s', s' in [0, 4], in units of dx.
     "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + b^2) - b with dt_c = 2/sqrt(4 + gamma dx^2). "localised":
-    the largest h at which one step, slip to one order more than velocity, amplifies no mode.
+    the largest h at which one step, slip to one order more than velocity, amplifies no mode; 0 where the polynomials
+    cannot be computed.
     """
+    if scheme == "continuum":
+        return math.inf
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # The difference of nearly equal numbers at large damping, rewritten.
         return critical**2 / (math.sqrt(critical**2 + damping_ratio**2) + damping_ratio)
+    if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2)):
+        return 0.0
     return _taylor_bound(order, float(f"{damping_ratio:.6g}"), float(f"{gamma_dx2:.6g}"))
 
 
 @lru_cache(maxsize=4096)
+@np.errstate(over="ignore", invalid="ignore")
 def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
     allowed = 1.0 + (WEAK_GROWTH if order in WEAK_ORDERS else ROUNDING)
 
     def unstable(steps: np.ndarray) -> np.ndarray:
         largest = _amplifications(order, steps, modes + gamma_dx2, damping_ratio * modes)
-        return np.max(largest, axis=-1) > allowed
+        # Not a number is not stable.
+        return ~(np.max(largest, axis=-1) <= allowed)
 
     # From small steps on, a few at a time: the first that is unstable is what counts.
-    steps = np.geomspace(0.01 / (1.0 + damping_ratio), 8.0, 160)
+    smallest = 0.01 / (1.0 + damping_ratio) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
+    steps = np.geomspace(smallest, 8.0, 160)
     for start in range(0, steps.size, PARTS):
         found = np.flatnonzero(unstable(steps[start : start + PARTS]))
         if found.size:

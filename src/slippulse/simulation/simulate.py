@@ -10,6 +10,7 @@ import xarray as xr
 
 from ..data.variables import VARIABLES
 from ..data.versions import versions
+from ..model.checks import short_repr
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.lattice import LatticeRun, UnstableRun, run_scene
@@ -48,11 +49,19 @@ def simulate(
 
     Raises
     ------
+    TypeError
+        When an argument is of another type, in one line.
     UnstableRun
         When slip velocity is not finite or beyond anything the pre-stress can drive.
     UnresolvedRun
         With ``strict``, when a flag is set.
     """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene: {short_repr(scene)}; allowed: a Scene")
+    if samples is not None and not isinstance(samples, Samples):
+        raise TypeError(f"samples: {short_repr(samples)}; allowed: Samples, or None")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress: {short_repr(progress)}; allowed: a function of the share done, or None")
     exact = scene.scheme == "continuum"
     run = solve_scene(scene, samples) if exact else run_scene(scene, samples, progress)
     numbers = run.numbers | judge(scene, run)

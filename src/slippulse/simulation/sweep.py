@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from warnings import warn
 
-import numpy as np
 import xarray as xr
 
+from ..configuration.cost import expected_seconds, overrun_watch
 from ..data.points import combine
-from ..model.samples import Samples
+from ..model.checks import check_number, short_repr
+from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
 from .simulate import simulate
-
-RECORDS = ("fronts", "fields", "samples")
 
 
 def run_sweep(
@@ -37,13 +37,26 @@ def run_sweep(
     Returns
     -------
     Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous ragged
-    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
+    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position). A run that takes ten
+    times its estimate is warned of, and goes on.
+
+    Raises
+    ------
+    ValueError
+        One line naming the argument and what is allowed.
     """
-    samples = list(samples) if samples is not None else [None] * len(scenes)
+    samples = [None] * len(scenes) if samples is None and isinstance(scenes, Sequence) else samples
+    _check_arguments(scenes, samples, record, threads)
     results: list[xr.Dataset | None] = [None] * len(scenes)
-    order = sorted(range(len(scenes)), key=lambda i: -expected_cost(scenes[i]))
-    with ThreadPoolExecutor(max_workers=max(1, threads)) as pool:
-        futures = {pool.submit(simulate, scenes[i], samples[i]): i for i in order}
+    order = sorted(range(len(scenes)), key=lambda i: -expected_seconds(scenes[i]))
+
+    def run(i: int) -> xr.Dataset:
+        return simulate(
+            scenes[i], samples[i], overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2))
+        )
+
+    with ThreadPoolExecutor(max_workers=int(threads)) as pool:
+        futures = {pool.submit(run, i): i for i in order}
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 results[futures[future]] = future.result()
@@ -55,9 +68,36 @@ def run_sweep(
     return combine([result for result in results if result is not None], record)
 
 
-def expected_cost(scene: Scene) -> float:
-    """Block updates a scene may need, up to a factor: fronts at the wave speed and a crack between them."""
-    width = scene.duration
-    if scene.boundary == "displacement":
-        width = min(width, np.pi / np.sqrt(scene.gamma))
-    return scene.duration / scene.dx * (width / scene.dx)
+def _check_arguments(scenes: object, samples: object, record: object, threads: object) -> None:
+    """Refuse what is not a list of scenes with what each records.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what is allowed.
+    """
+    if (
+        not isinstance(scenes, Sequence)
+        or not scenes
+        or not all(isinstance(scene, Scene) for scene in scenes)
+    ):
+        raise ValueError(f"scenes: {short_repr(scenes)}; allowed: a list of Scenes, at least one")
+    kinds = (Samples, type(None))
+    if not isinstance(samples, Sequence) or not all(isinstance(of_scene, kinds) for of_scene in samples):
+        raise ValueError(f"samples: {short_repr(samples)}; allowed: a list of Samples, or None")
+    if len(samples) != len(scenes):
+        raise ValueError(f"samples: {len(samples)} for {len(scenes)} scenes; allowed: one a scene, or None")
+    words = record if isinstance(record, Sequence) and not isinstance(record, str) else ()
+    if not words or not all(isinstance(word, str) and word in RECORDS for word in words):
+        raise ValueError(f"record: {short_repr(record)}; allowed: a list of {', '.join(RECORDS)}")
+    if "samples" in words:
+        shapes = {of_scene and (of_scene.times.shape, of_scene.positions.shape) for of_scene in samples}
+        if None in shapes:
+            raise ValueError(
+                "record: 'samples' without samples; allowed: Samples for each scene, the second argument"
+            )
+        if len(shapes) > 1:
+            raise ValueError(
+                f"samples: {len(shapes)} shapes; allowed: as many times and positions for each scene"
+            )
+    check_number("threads", threads, at_least=1, at_most=1024)

@@ -15,8 +15,6 @@ from ..model.scene import RELEASES
 from .speed_solver import SLOWEST, fastest, first_guess, in_chunks, log_excess, root
 from .wiener_hopf import log_prestress
 
-# Beyond this damping ratio a pulse is hardly wider than the damped layer at its front.
-STRONGEST_DAMPING = 10.0
 # Beyond it, with tau_0 as near 1 as floating point comes, products of speed and damping would overflow.
 LARGEST_RATIO = 1e100
 # So near 1, in 1 - tau_0, rounding of the quadrature is felt and the first terms in 1/v are better.

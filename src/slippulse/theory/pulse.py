@@ -80,6 +80,17 @@ def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> Steady
     check_number("gamma", gamma, above=0.0)
     check_number("beta", beta, at_least=0.0)
     check_number("speed", speed, above=1.0)
+    try:
+        return _pulse(float(tau0), float(gamma), float(beta), float(speed))
+    except (ArithmeticError, ValueError):
+        raise ValueError(
+            f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}; allowed: numbers whose pulse can be"
+            " computed"
+        ) from None
+
+
+@np.errstate(over="raise", invalid="raise", divide="raise")
+def _pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
     stiffness = (speed - 1.0) * (speed + 1.0)
     if beta == 0.0:
         p, q = 0.0, float(np.sqrt(gamma / stiffness))

@@ -21,7 +21,7 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
     """
     check_number("tau0", tau0, above=0.0, below=1.0)
     check_number("gamma", gamma, above=0.0)
-    time = np.pi / np.sqrt(gamma)
+    time = np.pi / np.sqrt(float(gamma))
     return float(time), float(2.0 * time / np.sqrt(1.0 - tau0**2))
 
 
