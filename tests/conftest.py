@@ -13,8 +13,10 @@ from pathlib import Path
 
 import pytest
 import yaml
+from selection import selected
 
 from slippulse.data.store import load_table, save_table
+from slippulse.steps.reach import declared
 
 PROJECT = Path(__file__).resolve().parents[1]
 
@@ -98,10 +100,7 @@ def study(project, tmp_path_factory):
 
     def run(name: str):
         if name not in done:
-            settings = config["studies"][name] | {
-                "front_window": config["measure"]["front_window"],
-                "presets": config["presets"],
-            }
+            settings = selected(config, declared(f"studies.{name}", "SETTINGS"), config["studies"][name])
             table = import_module(f"slippulse.studies.{name}").table(settings)
             save_table(table, folder / f"{name}.csv")
             done[name] = load_table(folder / f"{name}.csv")

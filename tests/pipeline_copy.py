@@ -50,7 +50,9 @@ def snakemake(
     timeout: int = 300,
 ) -> subprocess.CompletedProcess:
     """Run Snakemake in a folder, with that folder's library."""
-    command = [sys.executable, "-m", "snakemake", "--cores", str(cores)]
+    # The profile of the folder logs for people; here the plain lines are read.
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
+    command += ["--cores", str(cores)]
     command += ["--configfile", overlay] if overlay else []
     library = (folder / "src").resolve()
     return subprocess.run(

@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from slippulse.comparison.table import measured_table
 from slippulse.data.store import load_table, save_table
 from slippulse.figures import fig02_phase_diagram as figure
 from slippulse.figures.style import GREY
 from slippulse.measure.regime import REGIMES
-from slippulse.measure.table import measure
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import Samples
@@ -63,7 +63,7 @@ def inputs():
             60.0,
         ),
     }
-    return data, {name: measure(dataset, MEASURE) for name, dataset in data.items()}
+    return data, {name: measured_table(dataset, MEASURE) for name, dataset in data.items()}
 
 
 @pytest.fixture(scope="module")

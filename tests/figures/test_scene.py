@@ -11,6 +11,7 @@ import tolerances as tol
 from PIL import Image
 
 from slippulse.comparison.scene_numbers import scene_numbers
+from slippulse.comparison.table import measured_table
 from slippulse.configuration.expand import expand, resolve
 from slippulse.configuration.scenes import scene_problems, scene_simulation
 from slippulse.data.points import point
@@ -19,7 +20,7 @@ from slippulse.figures import scene as figure
 from slippulse.figures.scene import number_text
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.figures.style import save_figure
-from slippulse.measure.table import PARAMETERS, measure
+from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.pages.scene import scene_page
 from slippulse.simulation.sweep import run_sweep
@@ -53,7 +54,7 @@ def drawn(project, tmp_path_factory):
 
     for name, scene in SCENES.items():
         runs = [sweep(scene, coarser) for coarser in (1.0, *accuracy["coarser"])]
-        tables = tuple(measure(run, config["measure"]) for run in runs)
+        tables = tuple(measured_table(run, config["measure"]) for run in runs)
         study = grid_tables(tables, tuple(accuracy["coarser"]), PARAMETERS)
         run = point(runs[0], 0)
         numbers = scene_numbers(run.attrs, study, config["measure"]["share"])

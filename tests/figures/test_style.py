@@ -2,37 +2,43 @@
 
 from __future__ import annotations
 
-from io import BytesIO
+from pathlib import Path
 
 import pytest
-from fontTools.ttLib import TTFont
+from PIL import Image
 from pypdf import PdfReader
 
+from slippulse.data.origin import configured_by
 from slippulse.figures.style import COLUMN, new_figure, save_figure
+
+CONFIGURATION = "0123456789abcdef"
 
 
 @pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    """A page with a figure that has words and a formula."""
+def folder(tmp_path_factory) -> Path:
+    """A figure that has words and a formula, written by a job."""
     folder = tmp_path_factory.mktemp("style")
     figure = new_figure(COLUMN, 2.0)
     axes = figure.subplots()
     axes.set_xlabel("pre-stress AVATAR")
     axes.set_ylabel(r"$\bar\tau_0$")
-    save_figure(figure, folder / "figure.png", folder / "figure.pdf")
-    return PdfReader(folder / "figure.pdf").pages[0]
+    with configured_by(CONFIGURATION):
+        save_figure(figure, folder / "figure.png", folder / "figure.pdf")
+    return folder
 
 
-def test_words_of_a_figure_can_be_searched_for(page):
-    assert "pre-stress AVATAR" in page.extract_text()
+def test_words_of_a_figure_can_be_searched_for(folder):
+    assert "pre-stress AVATAR" in PdfReader(folder / "figure.pdf").pages[0].extract_text()
 
 
-def test_fonts_of_a_figure_hold_outlines_and_no_rules_for_joining_letters(page):
-    """Where each letter goes is written out; a new matplotlib may choose otherwise what it embeds."""
-    fonts = [font.get_object() for font in page["/Resources"]["/Font"].values()]
-    assert fonts
-    for font in fonts:
-        descriptor = font["/DescendantFonts"][0]["/FontDescriptor"]
-        tables = set(TTFont(BytesIO(descriptor["/FontFile2"].get_data())).keys())
-        assert "glyf" in tables
-        assert not tables & {"GDEF", "GPOS", "GSUB"}
+def test_a_figure_says_by_which_configuration_it_was_made_and_nothing_else(folder):
+    with Image.open(folder / "figure.png") as image:
+        assert image.text == {"Comment": f"configuration {CONFIGURATION}"}
+    assert dict(PdfReader(folder / "figure.pdf").metadata) == {"/Keywords": f"configuration {CONFIGURATION}"}
+
+
+def test_a_figure_of_no_job_names_no_configuration(tmp_path):
+    save_figure(new_figure(2.0, 1.0), tmp_path / "figure.png", tmp_path / "figure.pdf")
+    with Image.open(tmp_path / "figure.png") as image:
+        assert image.text == {}
+    assert not PdfReader(tmp_path / "figure.pdf").metadata

@@ -6,19 +6,12 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from slippulse.steps.jobs import (
-    join_data,
-    join_measurements,
-    join_uncertainties,
-    measure_block,
-    simulate_block,
-    study_grid,
-)
 
 from slippulse.configuration.cost import expected_cost
 from slippulse.configuration.expand import expand, resolve
 from slippulse.data.chunks import dealing, runs_of
 from slippulse.data.join import ChunksDiffer
+from slippulse.steps import join_data, join_measurements, join_uncertainties, measure, simulate, study_grid
 
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either kind alone too; a
@@ -93,9 +86,12 @@ def made(project, tmp_path_factory):
             for ending in (".nc", ".csv", "_study.csv", "_coarser.csv")
         ]
         if not files[0].exists():
-            simulate_block(name, blocks.pop(1.0), 1, files[0])
-            measure_block(files[0], config["measure"], files[1])
-            study_grid(name, files[1], blocks, config["measure"], 1, *files[2:])
+            data, measured, study, coarser = files
+            settings = {"simulation": name, "measure": config["measure"], "threads": 1}
+            simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})
+            measure.run({"data": data}, {"measured": measured}, settings)
+            outputs = {"uncertainties": study, "coarser": coarser}
+            study_grid.run({"finest": measured}, outputs, settings | {"sweeps": blocks})
         return files
 
     return make
@@ -111,9 +107,13 @@ def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks)
         *(made(name, [number, chunks]) for number in range(1, chunks + 1)), strict=True
     )
     joined = [tmp_path / file.name for file in whole]
-    join_data(data, SWEEPS[name]["record"], joined[0])
-    join_measurements(measured, joined[1])
-    join_uncertainties(joined[1], studies, coarser, {"uncertainties": joined[2], "tables": joined[3]})
+    join_data.run({"chunks": data}, {"data": joined[0]}, {"record": SWEEPS[name]["record"]})
+    join_measurements.run({"chunks": measured}, {"measured": joined[1]}, {})
+    join_uncertainties.run(
+        {"finest": joined[1], "uncertainties": studies, "coarser": coarser},
+        {"uncertainties": joined[2], "coarser": joined[3]},
+        {},
+    )
     for one, other in zip(whole, joined, strict=True):
         assert one.read_bytes() == other.read_bytes(), one.name
 
@@ -122,12 +122,17 @@ def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
     whole = made("displacement")
     short, long = made("displacement", [1, 5]), made("displacement", [2, 2])
     with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
-        join_measurements([short[1], long[1]], tmp_path / "measured.csv")
+        join_measurements.run({"chunks": [short[1], long[1]]}, {"measured": tmp_path / "measured.csv"}, {})
     with pytest.raises(ChunksDiffer):
-        join_data([short[0], long[0]], SWEEPS["displacement"]["record"], tmp_path / "data.nc")
+        join_data.run(
+            {"chunks": [short[0], long[0]]},
+            {"data": tmp_path / "data.nc"},
+            {"record": SWEEPS["displacement"]["record"]},
+        )
     with pytest.raises(ChunksDiffer):
-        join_uncertainties(
-            whole[1], [short[2], long[2]], [short[3], long[3]],
-            {"uncertainties": tmp_path / "study.csv", "tables": tmp_path / "coarser.csv"},
-        )  # fmt: skip
+        join_uncertainties.run(
+            {"finest": whole[1], "uncertainties": [short[2], long[2]], "coarser": [short[3], long[3]]},
+            {"uncertainties": tmp_path / "study.csv", "coarser": tmp_path / "coarser.csv"},
+            {},
+        )
     assert not any(tmp_path.iterdir())

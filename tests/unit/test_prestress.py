@@ -94,11 +94,6 @@ def test_the_integral_is_that_of_the_profile(name, lower, upper):
     assert profile.integral(lower, upper) == pytest.approx(expected, abs=tol.QUADRATURE)
 
 
-def test_the_profile_as_builtins_makes_the_profile_again():
-    for profile in PROFILES.values():
-        assert Prestress(**profile.as_dict()) == profile
-
-
 @pytest.mark.parametrize(
     ("changes", "key", "value", "allowed"),
     [

@@ -10,8 +10,9 @@ import pytest
 
 import slippulse as sp
 from slippulse.comparison.scene_numbers import scene_numbers
+from slippulse.comparison.table import measured_table
 from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
-from slippulse.measure.table import PARAMETERS, measure
+from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.pages.scene import scene_page
 from slippulse.simulation.sweep import run_sweep
@@ -73,7 +74,7 @@ def tables(project):
         samples = [
             sp.Samples(np.linspace(0.0, scene.duration, 10), np.linspace(-20.0, 20.0, 81)) for scene in scenes
         ]
-        out.append(measure(run_sweep(scenes, samples, ("fronts", "fields", "samples")), settings))
+        out.append(measured_table(run_sweep(scenes, samples, ("fronts", "fields", "samples")), settings))
     return out
 
 

@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 import slippulse as sp
+from slippulse.comparison.table import measured_table
+from slippulse.data.points import point
+from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
 
 DISPLACEMENT = {
     "boundary": "displacement",
@@ -97,6 +100,35 @@ def test_every_parameter_is_an_attribute_of_the_data():
         assert attributes[field.name] == getattr(scene, field.name), field.name
     for name in ("left", "right", "width", "peak"):
         assert attributes[name] == getattr(scene.prestress, name), name
+
+
+UNEVEN = sp.Prestress(0.25, 0.6, 2.0, 1.05, steps=((4.0, 0.4),), bumps=((-3.0, -0.3, 0.5),))
+OTHERS = {
+    "displacement": sp.Scene(
+        **DISPLACEMENT | {"prestress": UNEVEN, "duration": 0.1}, release="elastic", half_lattice=False, order=5,
+        max_step=0.25, friction_ratio=2.0, resolved_blocks=3,
+    ),
+    "stress": sp.Scene(**STRESS | {"duration": 0.1}, scheme="fixed_step", max_step=0.3),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("boundary", OTHERS)
+def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(boundary, config, tmp_path):
+    scene = OTHERS[boundary]
+    assert sp.Scene.from_attributes(scene.attributes()) == scene
+    save_dataset(sp.run_sweep([scene], record=("fronts",)), tmp_path / "data.nc")
+    data = load_dataset(tmp_path / "data.nc")
+    assert sp.Scene.from_attributes(point(data, 0).attrs) == scene
+    save_table(measured_table(data, config["measure"]), tmp_path / "measured.csv")
+    (row,) = load_table(tmp_path / "measured.csv").to_dict("records")
+    assert sp.Scene.from_attributes(row) == scene
+
+
+def test_attributes_without_a_parameter_are_refused_by_its_name():
+    attributes = sp.Scene(**STRESS).attributes()
+    del attributes["steps_and_bumps"]
+    with pytest.raises(ValueError, match="steps_and_bumps: missing; allowed: every attribute of a run"):
+        sp.Scene.from_attributes(attributes)
 
 
 @pytest.mark.parametrize("kind", [np.float32, int])

@@ -8,7 +8,7 @@ import tomllib
 import pytest
 import yaml
 
-RULE = re.compile(r"^(?:use rule \w+ as (\w+) with|rule (\w+)):$(.*?)(?=^\S|\Z)", re.M | re.S)
+RULE = re.compile(r"^rule (\w+):$(.*?)(?=^\S|\Z)", re.M | re.S)
 
 
 @pytest.fixture(scope="module")
@@ -16,17 +16,15 @@ def rules(project) -> dict[str, str]:
     """The text of every rule that is written out, by its name."""
     found = {}
     for path in [project / "Snakefile", *sorted((project / "workflow/rules").glob("*.smk"))]:
-        for derived, plain, text in RULE.findall(path.read_text(encoding="utf-8")):
-            found[derived or plain] = text
+        found |= dict(RULE.findall(path.read_text(encoding="utf-8")))
     return found
 
 
 @pytest.fixture(scope="module")
 def drawn(project) -> set[str]:
-    """Figures: one rule each, made in a loop over two tables."""
-    text = (project / "workflow/rules/common.smk").read_text(encoding="utf-8")
-    tables = re.search(r"^FIGURES = \{(.*?)^STUDIES = \{(.*?)^\}", text, re.M | re.S)
-    return set(re.findall(r'^    "(\w+)":', "".join(tables.groups()), re.M))
+    """Rules made in a loop: one a figure."""
+    figures = project / "src/slippulse/figures"
+    return {path.stem for pattern in ("fig*.py", "study_*.py") for path in figures.glob(pattern)}
 
 
 @pytest.fixture(scope="module")
@@ -37,9 +35,7 @@ def profile(project) -> dict:
 
 
 def test_the_rules_are_found(rules, drawn):
-    assert {"all", "compile_kernels", "simulate", "simulate_scene", "study_grid", "write_report"} <= set(
-        rules
-    )
+    assert {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"} <= set(rules)
     assert {"fig01_system_sketch", "study_extremes"} <= drawn
 
 
@@ -68,10 +64,8 @@ def test_a_sweep_or_chunk_is_one_job_and_the_joining_another(profile, rules):
 
 
 def test_what_grows_with_the_configuration_asks_by_its_cost(profile, rules):
-    for name in ("simulate", "study_grid", "simulate_scene", "study_grid_of_scene"):
-        kind = "scene" if "scene" in name else "sweep"
-        assert f"runtime={kind}_minutes" in rules[name], name
-        assert f"mem_mb={kind}_megabytes" in rules[name], name
+    for name in ("simulate", "study_grid"):
+        assert "runtime=job_minutes" in rules[name] and "mem_mb=job_megabytes" in rules[name], name
         assert name not in profile["set-resources"], f"{name}: the profile would hide what the rule asks for"
 
 

@@ -10,8 +10,8 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse import theory
+from slippulse.comparison.table import measured_table
 from slippulse.measure.promise import covers
-from slippulse.measure.table import measure
 from slippulse.simulation.sweep import run_sweep
 
 SHARE = 0.95
@@ -94,7 +94,9 @@ def shares():
     asked = [(case[0], *make(*case)) for make, cases in KINDS for case in cases]
     sweep = run_sweep([scene for _, scene, _ in asked], record=("fronts", "fields"), threads=2)
     found = []
-    for (accuracy, _, exact), run in zip(asked, measure(sweep, SETTINGS).to_dict("records"), strict=True):
+    for (accuracy, _, exact), run in zip(
+        asked, measured_table(sweep, SETTINGS).to_dict("records"), strict=True
+    ):
         covered = [name for name in exact if covers(run, name, SHARE)]
         found.append({name: abs(run[name] / exact[name] - 1.0) / accuracy for name in covered})
     return found

@@ -9,7 +9,7 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.model.scene import LATTICE_SCHEMES
 from slippulse.model.stability import largest_step
-from slippulse.solver import driver
+from slippulse.solver.lattice import Lattice, run_scene
 
 PUBLISHED = {
     "boundary": "displacement",
@@ -43,8 +43,8 @@ def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
     """The published scene with -beta: modes grow at up to 2 beta/dx^2, 20 per unit of time."""
     scene = sp.Scene(**PUBLISHED, scheme=scheme, release=release)
     with pytest.raises(sp.UnstableRun, match=r"t = \d"):
-        driver.run_scene(scene, progress=at_most(40), damping_sign=-1)
-    assert driver.run_scene(scene).numbers["end_time"] == scene.duration
+        run_scene(scene, progress=at_most(40), damping_sign=-1)
+    assert run_scene(scene).numbers["end_time"] == scene.duration
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -54,7 +54,7 @@ def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
 def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     """Put into the slip or the velocity of a sliding block."""
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.4), 4.0, 0.05, gamma=0.65, beta=0.005, scheme=scheme)
-    lattice = driver.Lattice(scene, None, scene.beta)
+    lattice = Lattice(scene, None, scene.beta)
     lattice.run(None)
     object.__setattr__(scene, "duration", 8.0)
     moving = np.flatnonzero(lattice.w[1] > 0.0)

@@ -10,7 +10,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse.model.scene import LATTICE_SCHEMES
-from slippulse.solver import driver
+from slippulse.solver import lattice
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 COUNTS = ("releases", "sticks", "re_releases")
@@ -74,7 +74,7 @@ def test_half_the_lattice_gives_the_whole_result(boundary, scheme, ratio):
 def test_the_size_of_the_first_lattice_does_not_change_a_bit(monkeypatch, profile, scheme):
     whole = simulated(profile, scheme=scheme)
     for name, value in {"FIRST_BLOCKS": 16, "PAGE": 8, "BEYOND_PAGES": 3}.items():
-        monkeypatch.setattr(driver, name, value)
+        monkeypatch.setattr(lattice, name, value)
     grown = simulated(profile, scheme=scheme)
     assert grown.equals(whole)
     assert grown.attrs["block_updates"] == whole.attrs["block_updates"]
@@ -83,7 +83,7 @@ def test_the_size_of_the_first_lattice_does_not_change_a_bit(monkeypatch, profil
 def test_the_length_of_a_call_does_not_change_a_bit(monkeypatch):
     scene = sp.Scene("displacement", UNEVEN, 8.0, 0.05, gamma=0.65, beta=0.005, max_step=0.3)
     whole = sp.simulate(scene)
-    monkeypatch.setattr(driver, "CALL_STEPS", 7)
+    monkeypatch.setattr(lattice, "CALL_STEPS", 7)
     shares = []
     assert sp.simulate(scene, progress=shares.append).equals(whole)
     assert len(shares) > 10

@@ -1,5 +1,7 @@
 # What there is when everything is made, what it was made from, and the page that leads to it.
 
+from slippulse.data.provenance import source_files
+
 DRAWN = simulations_of(NEEDS)
 STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
 OWN_SCENES = scene_files(OWN_SCENE_NAMES)
@@ -21,7 +23,8 @@ RESULTS = [
 
 rule write_provenance:
     input:
-        sources("steps.write_provenance"),
+        # It notes a digest of them all.
+        [path.as_posix() for path in source_files(".")],
         LOCK,
         results=RESULTS,
         captions="manuscript/captions.yaml",

@@ -40,14 +40,13 @@ class Evidence:
     settings: Mapping[str, Mapping]
 
     def points(self, simulation: str, quantity: str, where: Callable | None = None) -> pd.DataFrame:
-        """Runs of a sweep with the value, order and uncertainty of one quantity; flagged runs are left out."""
+        """Runs of a sweep with the value and uncertainty of one quantity; flagged runs are left out."""
         study = self.uncertainties[simulation]
         study = study[study["quantity"] == quantity].set_index("point")
         table = self.measured[simulation].reset_index(drop=True)
         table = table.assign(
             value=study["value"].reindex(table.index),
             uncertainty=study["uncertainty"].reindex(table.index),
-            order=study["order"].reindex(table.index),
         )
         table = table[table["flags"].isna() | (table["flags"] == "")]
         return table[where(table)] if where is not None else table

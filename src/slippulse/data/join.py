@@ -17,7 +17,7 @@ from .chunks import dealing
 from .points import combine, point
 
 # The last columns of a grid study: what was measured, and the study of it.
-STUDY = ("quantity", "value", "extrapolated", "order", "uncertainty")
+STUDY = ("quantity", "value", "extrapolated", "observed_order", "uncertainty")
 
 
 class ChunksDiffer(ValueError):

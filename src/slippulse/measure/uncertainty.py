@@ -92,7 +92,7 @@ def grid_tables(
 
     Returns
     -------
-    long table: the keys and `point`, then quantity, value, extrapolated, order, uncertainty
+    long table: the keys and `point`, then quantity, value, extrapolated, observed_order, uncertainty
     """
     finest = tables[0]
     rows = []
@@ -107,7 +107,7 @@ def grid_tables(
                     "quantity": name,
                     "value": study.value,
                     "extrapolated": study.extrapolated,
-                    "order": study.order,
+                    "observed_order": study.order,
                     "uncertainty": study.uncertainty,
                 }
             )

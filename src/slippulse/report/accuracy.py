@@ -51,7 +51,7 @@ def grid_studies(study: Callable[[str], pd.DataFrame]) -> str:
         if relative.empty:
             rows.append([name, str(len(found)), *["—"] * 3])
             continue
-        orders = found["order"].dropna()
+        orders = found["observed_order"].dropna()
         order = number(float(orders.median()), 2) if len(orders) else "—"
         rows.append(
             [

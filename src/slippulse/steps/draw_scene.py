@@ -12,7 +12,12 @@ from ..figures import scene
 from ..figures.style import save_figure
 from ..pages.scene import scene_page
 
-FILES = ("pages/templates/*",)
+FILES = (
+    "pages/templates/base.html",
+    "pages/templates/parts.html",
+    "pages/templates/scene.html",
+    "pages/templates/style.css",
+)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

@@ -14,7 +14,12 @@ from ..data.files import write_text
 from ..data.store import load_table
 from ..pages.claims import claims_page
 
-FILES = ("pages/templates/*",)
+FILES = (
+    "pages/templates/base.html",
+    "pages/templates/claims.html",
+    "pages/templates/parts.html",
+    "pages/templates/style.css",
+)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

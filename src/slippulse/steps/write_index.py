@@ -8,7 +8,12 @@ from pathlib import Path
 from ..data.files import write_text
 from ..pages.index import index_page
 
-FILES = ("pages/templates/*",)
+FILES = (
+    "pages/templates/base.html",
+    "pages/templates/index.html",
+    "pages/templates/parts.html",
+    "pages/templates/style.css",
+)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

@@ -7,7 +7,11 @@ from collections.abc import Mapping
 from ..data.files import write_text
 from ..pages.scene import scenes_page
 
-FILES = ("pages/templates/*",)
+FILES = (
+    "pages/templates/base.html",
+    "pages/templates/scenes.html",
+    "pages/templates/style.css",
+)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
