@@ -20,6 +20,7 @@ START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.7e-3, 3e-7, 0.75e-9, (1.0e-6, 0.07e-
 EVENTS_OF_A_STEP, FIRST_BLOCKS = 64, 512
 # The run in so many parts, short ones at first.
 PARTS = np.linspace(0.0, 1.0, 33) ** 2
+LENGTHS = np.diff(PARTS)
 # What runs without being asked twice: a night on one core, the memory of a small machine, a large sweep.
 LARGEST_HOURS = 12.0
 LARGEST_BYTES = 4e9
@@ -106,14 +107,14 @@ def _scene_cost(scene: Scene) -> tuple[float, float]:
     times = scene.duration * PARTS
     released = _passed(paths.release, weight, times)
     stuck = _passed(paths.release + sliding_times(scene, paths), weight, times)
-    sliding = np.maximum(released - stuck, 0.0)
+    sliding = released - stuck
     sliding = 0.5 * (sliding[1:] + sliding[:-1])
-    events = np.diff(released) + np.diff(stuck)
+    events = released[1:] - released[:-1] + stuck[1:] - stuck[:-1]
     blocks = max(smallest, float(released[-1]))
     seconds = START + BLOCK * blocks
     if scene.scheme == "continuum":
         return seconds, blocks
-    steps = np.where(sliding > 0.5, np.diff(times) / step, 0.0)
+    steps = np.where(sliding > 0.5, scene.duration / step * LENGTHS, 0.0)
     if scene.scheme == "fixed_step":
         lattice = smallest * 2.0 ** np.ceil(np.log2(np.maximum(released[1:] / smallest, 1.0)))
         return seconds + float(np.sum(steps * (STEP + LOOK * lattice))), blocks

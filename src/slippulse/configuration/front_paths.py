@@ -106,11 +106,14 @@ def _cells(profile: Prestress, ratio: float, release: str, fastest: float, reach
     """Paths of fronts that arrest nowhere, as far as they may come."""
     near = NEAREST * min(profile.width, 1.0)
     outwards = near * RATIO ** np.arange(math.ceil(math.log(reach / near) / math.log(RATIO)))
-    places = [[0.0], outwards, -outwards]
+    places = [-outwards[::-1], [0.0], outwards]
     places += [centre + width * AROUND for centre, _, width in profile.bumps]
     places += [[math.nextafter(position, 0.0), position] for position, _ in profile.steps]
-    edges = np.unique(np.concatenate(places))
-    x, size = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    edges = np.concatenate(places)
+    if len(places) > 3:
+        edges.sort()
+        edges = edges[np.concatenate([[True], edges[1:] > edges[:-1]])]
+    x, size = 0.5 * (edges[1:] + edges[:-1]), edges[1:] - edges[:-1]
     level = profile(x)
     start = np.where(level >= 1.0, 0.0, math.inf)
     if float(profile(0.0)) >= 1.0:

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 
 from .checks import check_choice, check_number, short_repr
 from .prestress import Prestress
@@ -104,11 +105,10 @@ class Scene:
         check_number("beta", self.beta, at_least=0.0)
         check_number("friction_ratio", self.friction_ratio, at_least=0.0)
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
-        check_number("gamma", self.gamma, at_least=0.0)
         if self.boundary == "stress":
-            if self.gamma != 0.0:
+            if not (isinstance(self.gamma, Real) and self.gamma == 0.0) or isinstance(self.gamma, bool):
                 raise ValueError(
-                    f"gamma: {self.gamma!r}; allowed: 0 or left out under boundary 'stress' (no leaf springs)"
+                    f"gamma: {short_repr(self.gamma)}; allowed: 0 or left out under boundary 'stress' (no leaf springs)"
                 )
         else:
             check_number("gamma", self.gamma, above=0.0)
@@ -130,14 +130,13 @@ class Scene:
     def _largest_step(self) -> float:
         """The stability bound, refused where there is none."""
         stiffness = float(self.gamma) * float(self.dx) ** 2
-        if not (
-            math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and self.largest_stable_step > 0.0
-        ):
+        bound = self.largest_stable_step
+        if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
             raise ValueError(
                 f"gamma: {self.gamma!r}, at beta/dx = {self.damping_ratio:.4g} and gamma dx^2 = {stiffness:.4g};"
                 " allowed: numbers for which a stable step can be computed"
             )
-        return self.largest_stable_step
+        return bound
 
     @property
     def damping_ratio(self) -> float:
