@@ -10,6 +10,7 @@ import pandas as pd
 from ..texts.numerals import number, percent, setting
 from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
+from ..theory.rupture import Rupture
 from .markdown import table
 
 # What the grid table shows: simulation, column, name.
@@ -83,6 +84,20 @@ def presets(settings: Mapping[str, Mapping], chosen: str) -> str:
         "grid study, times coarser",
     ]
     return table(head, rows, [18, 18, 24, 12, 28], "lrrrr")
+
+
+def sticking(rupture: Rupture | None, positions: Sequence[float]) -> str:
+    """When positions of an exact rupture are released and stick, and how far they slip; empty without a rupture."""
+    if rupture is None:
+        return ""
+    x = np.array(positions, dtype=float)
+    columns = x, rupture.release_time(x), rupture.stick_time(x), rupture.final_slip(x)
+    rows = [
+        [setting(place), *(number(value, 5) for value in values)]
+        for place, *values in zip(*columns, strict=True)
+    ]
+    head = ["$x$", r"release $T$", r"stick $t_\mathrm{s}$", r"slip $u(x,t_\mathrm{s})$"]
+    return table(head, rows, [10, 15, 15, 15], "rrrr")
 
 
 def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
