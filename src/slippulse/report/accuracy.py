@@ -91,8 +91,12 @@ def sticking(rupture: Rupture | None, positions: Sequence[float]) -> str:
     if rupture is None:
         return ""
     x = np.array(positions, dtype=float)
-    columns = x, rupture.release_time(x), rupture.stick_time(x), rupture.final_slip(x)
-    rows = [[setting(place), *(number(value, 5) for value in values)] for place, *values in zip(*columns, strict=True)]
+    # Nothing is known to more than this many places, the release at a nucleation point among them.
+    columns = x, *np.round([rupture.release_time(x), rupture.stick_time(x), rupture.final_slip(x)], 8)
+    rows = [
+        [setting(place), *(number(value, 5) for value in values)]
+        for place, *values in zip(*columns, strict=True)
+    ]
     head = ["$x$", r"release $T$", r"stick $t_\mathrm{s}$", r"slip $u(x,t_\mathrm{s})$"]
     return table(head, rows, [10, 15, 15, 15], "rrrr")
 
