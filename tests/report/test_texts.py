@@ -7,9 +7,12 @@ import re
 import pytest
 import yaml
 
+from slippulse import Prestress
+from slippulse.report.accuracy import sticking
 from slippulse.report.errata import KEYS, check_errata
 from slippulse.report.figures import Gallery, placed_figures
 from slippulse.texts.captions import PARTS, Caption, read_captions
+from slippulse.theory import Rupture
 
 EXPRESSION = re.compile(r"\{\{.+?\}\}", re.S)
 
@@ -124,3 +127,9 @@ def test_figures_are_numbered_in_the_order_of_the_text():
 
 def caption(title: str) -> Caption:
     return Caption(title, "alt", "finding", "what")
+
+
+def test_the_table_of_stick_times():
+    rows = sticking(Rupture(Prestress(0.25, 0.25), 0.55, 0.1, duration=5.0), [0, 9]).splitlines()[2:]
+    assert rows == ["| 0 | 0 | 3.9312 | 1.9417 |", "| 9 | not measured | not measured | 0 |"]
+    assert sticking(None, [0]) == ""

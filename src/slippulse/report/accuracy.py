@@ -91,7 +91,8 @@ def sticking(rupture: Rupture | None, positions: Sequence[float]) -> str:
     if rupture is None:
         return ""
     x = np.array(positions, dtype=float)
-    columns = x, rupture.release_time(x), rupture.stick_time(x), rupture.final_slip(x)
+    # Nothing is known to more than this many places, the release at a nucleation point among them.
+    columns = x, *np.round([rupture.release_time(x), rupture.stick_time(x), rupture.final_slip(x)], 8)
     rows = [
         [setting(place), *(number(value, 5) for value in values)]
         for place, *values in zip(*columns, strict=True)
