@@ -19,7 +19,13 @@ rule write_claims:
         claims=plain(config["claims"]),
         published=plain(config["published"]),
         share=config["measure"]["share"],
-        configuration=digest_of(config),
+        configuration=configuration(
+            CLAIM_SIMULATIONS,
+            measure=config["measure"],
+            coarser=ACCURACY["coarser"],
+            claims=config["claims"],
+            published=config["published"],
+        ),
     message:
         "Judging the claims"
     script:
