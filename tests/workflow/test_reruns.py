@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from dependencies import DRAWN, FILES, LOCK, OVERLAY, STUDIED, rules_of
-from pipeline_copy import copy_project, edges, planned, snakemake
+from dependencies import DRAWN, FILES, LOCK, OVERLAY, RULES, STUDIED, rules_of
+from pipeline_copy import copy_project, edges, merged, planned, snakemake
 
 pytestmark = pytest.mark.workflow
 
@@ -101,7 +101,7 @@ def test_no_quick_edit_is_of_a_file_that_is_gone():
     assert {*FILES, LOCK} >= QUICK
 
 
-# The whole configuration stands in the report and in the provenance, and what differs from the shipped one on the index.
+# The whole configuration stands in the report and in the provenance, what differs from the shipped one on the index.
 ALWAYS = {"write_report": 1, "write_provenance": 1, "write_index": 1}
 CHAIN = {"simulate": 1, "measure": 1, "study_grid": 1}
 JOINED = {"join_data": 1, "join_measurements": 1, "join_uncertainties": 1}
