@@ -38,7 +38,9 @@ def share_kernels(folder: Path) -> None:
     compiled = cache / Path(_CacheLocator.get_suitable_cache_subpath(jit.__file__))
     copied = folder / Path(jit.__file__).relative_to(Path(__file__).resolve().parents[1])
     if compiled.exists():
-        shutil.copytree(compiled, cache / _CacheLocator.get_suitable_cache_subpath(str(copied)))
+        shutil.copytree(
+            compiled, cache / _CacheLocator.get_suitable_cache_subpath(str(copied)), dirs_exist_ok=True
+        )
 
 
 def snakemake(
@@ -75,3 +77,17 @@ def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
         assert "Nothing to be done" in text
         return {}
     return {row.split()[0]: int(row.split()[1]) for row in table.group(1).splitlines()}
+
+
+def edges(graph: str) -> set[tuple[str, str]]:
+    """Which rule feeds which, by name, in a mermaid graph."""
+    names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
+    return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}
+
+
+def merged(base: dict, change: dict) -> dict:
+    """A configuration with another one laid over it."""
+    out = dict(base)
+    for key, value in change.items():
+        out[key] = merged(base[key], value) if isinstance(value, dict) and key in base else value
+    return out

@@ -1,127 +1,178 @@
-"""An alteration re-runs exactly what depends on it: dry runs in a copy that has just been finished."""
+"""An alteration runs again exactly what depends on it: dry runs in a copy in which everything is finished."""
 
 from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
 import yaml
-from pipeline_copy import copy_project, planned, snakemake
+from dependencies import DRAWN, FILES, LOCK, OVERLAY, RULES, STUDIED, rules_of
+from pipeline_copy import copy_project, edges, merged, planned, snakemake
 
 pytestmark = pytest.mark.workflow
 
-TARGETS = (
-    "results/figures/fig07_damage_zone.png",
-    "results/uncertainties/space_time_displacement.csv",
-    "results/scenes/one.html",
-    "results/scenes/one.gif",
-    "results/scenes/data/two.csv",
-)
-KEPT = ("space_time_displacement", "space_time_stress")
-SCENE = {
-    "title": "One",
-    "boundary": "displacement",
-    "left": 0.5,
-    "right": 0.6,
-    "gamma": 0.65,
-    "dx": 0.1,
-    "duration": 6.0,
-}
-OVERLAY = {
-    "preset": "draft",
-    "simulations": {"space_time_displacement": {"duration": {"time": 5.0}, "samples": {"times": 11, "positions": 21}}},
-    "scenes": {"one": SCENE, "two": SCENE | {"title": "Two", "left": 0.6, "right": 0.5}},
-}  # fmt: skip
-CHAIN = {"simulate": 1, "measure": 1, "study_grid": 1}
-ONE = {"simulate_scene": 1, "measure_scene": 1, "study_grid_of_scene": 1, "draw_scene": 1, "animate_scene": 1}
-# The second scene is asked for its measured numbers only.
-BOTH = ONE | {"simulate_scene": 2, "measure_scene": 2}
-MEASURED = {"measure": 1, "study_grid": 1, "measure_scene": 2, "study_grid_of_scene": 1, "draw_scene": 1}
+TARGETS = ("everything", "scenes")
+# Rules that only name targets.
+NAMES = {"all", *TARGETS}
 
 
 @pytest.fixture(scope="module")
 def finished(project, tmp_path_factory) -> Path:
+    """A copy whose results are there, as Snakemake sees it: empty files, noted as made."""
     folder = copy_project(project, tmp_path_factory.mktemp("reruns"))
-    # Without the simulations that are not asked for, each start checks less.
-    shipped = yaml.safe_load((folder / "config/config.yaml").read_text(encoding="utf-8"))
-    shipped["simulations"] = {name: shipped["simulations"][name] for name in KEPT}
-    (folder / "config/config.yaml").write_text(yaml.safe_dump(shipped), encoding="utf-8")
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
-    result = snakemake(folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2)
-    assert result.returncode == 0, result.stderr
+    summary = snakemake(folder, "--summary", "--", *TARGETS, overlay="overlay.yaml")
+    assert summary.returncode == 0, summary.stderr
+    for name in re.findall(r"^results/\S+", summary.stdout, re.M):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).touch()
+    touched = snakemake(folder, "--touch", "--forceall", "--quiet", "--", *TARGETS, overlay="overlay.yaml")
+    assert touched.returncode == 0, touched.stderr
     assert planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")) == {}
     return folder
 
 
-def merged(base: dict, change: dict) -> dict:
-    out = dict(base)
-    for key, value in change.items():
-        out[key] = merged(base[key], value) if isinstance(value, dict) and key in base else value
-    return out
+@pytest.fixture(scope="module")
+def fed_by(finished) -> dict[str, set[str]]:
+    """Rules that take what a rule makes."""
+    graph = snakemake(finished, "--rulegraph", "mermaid-js", "--", *TARGETS, overlay="overlay.yaml").stdout
+    found: dict[str, set[str]] = {}
+    for feeding, fed in edges(graph):
+        found.setdefault(feeding, set()).add(fed)
+    return found
 
 
+def downstream(rules: Iterable[str], fed_by: dict[str, set[str]]) -> set[str]:
+    """Some rules and all that takes what they make, directly or not."""
+    found, pending = set(), [*rules]
+    while pending:
+        rule = pending.pop()
+        if rule not in found:
+            found.add(rule)
+            pending += fed_by.get(rule, ())
+    return found - NAMES
+
+
+def jobs_after(folder: Path, overlay: str = "overlay.yaml") -> dict[str, int]:
+    """Jobs of a dry run, without those that only name targets."""
+    jobs = planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay=overlay))
+    return {rule: count for rule, count in jobs.items() if rule not in NAMES}
+
+
+# One of each kind; the others are slow only because there are so many.
+QUICK = {
+    "manuscript/captions.yaml",
+    "src/slippulse/configuration/expand.py",
+    "src/slippulse/data/store.py",
+    "src/slippulse/figures/fig05_scaling.py",
+    "src/slippulse/measure/fronts.py",
+    "src/slippulse/pages/templates/index.html",
+    "src/slippulse/solver/stencils.py",
+    LOCK,
+}
+
+
+@pytest.mark.parametrize(
+    "file", [pytest.param(file, marks=() if file in QUICK else pytest.mark.slow) for file in (*FILES, LOCK)]
+)
+def test_an_edit_runs_what_depends_on_the_file(finished, fed_by, file):
+    computing = {"compile_kernels", "simulate", "study_grid", "write_report", "write_provenance", *STUDIED}
+    path = finished / file
+    before, stat = path.read_bytes(), path.stat()
+    try:
+        path.write_bytes(before + b"\n# edited\n")
+        jobs = jobs_after(finished)
+    finally:
+        path.write_bytes(before)
+        os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    assert set(jobs) == downstream(computing if file == LOCK else rules_of(file), fed_by)
+
+
+def test_an_edited_figure_redraws_that_figure_alone():
+    """Predictions that two figures share do not stand in the module of one of them."""
+    for name in DRAWN:
+        assert rules_of(f"src/slippulse/figures/{name}.py") - {"write_provenance"} == {name}
+
+
+def test_no_quick_edit_is_of_a_file_that_is_gone():
+    assert {*FILES, LOCK} >= QUICK
+
+
+# The whole configuration stands in the report and in the provenance, what differs from the shipped one on the index.
+ALWAYS = {"write_report": 1, "write_provenance": 1, "write_index": 1}
+CHAIN = {"simulate": 1, "measure": 1, "study_grid": 1}
+JOINED = {"join_data": 1, "join_measurements": 1, "join_uncertainties": 1}
 CONFIGURATIONS = {
-    "another level": ({"simulations": {"space_time_displacement": {"left": [0.3]}}}, CHAIN),
-    "another measure": (
-        {"measure": {"front_window": 0.4}},
-        MEASURED | {"fig07_damage_zone": 1},
+    "another level": (
+        {"simulations": {"space_time_displacement": {"left": [0.3]}}},
+        CHAIN | {"fig04_space_time": 1, "write_claims": 1},
     ),
-    "another coarser lattice": (
-        {"presets": {"draft": {"coarser": [1.5, 2.5]}}},
-        {"study_grid": 1, "study_grid_of_scene": 1, "draw_scene": 1},
-    ),
-    "another release rule": ({"model": {"release": "elastic"}}, CHAIN | BOTH),
-    "another damping": ({"model": {"damping_ratio": 0.2}}, CHAIN | BOTH | {"fig07_damage_zone": 1}),
+    "swapped values": ({"simulations": {"own": {"left": [0.5, 0.3]}}}, dict.fromkeys(CHAIN, 2) | JOINED),
+    "without chunks": ({"simulations": {"own": {"chunks": 1}}}, CHAIN),
     "another sketch": (
-        {"figures": {"fig07_damage_zone": {"thickness_ratios": [0.3, 1.0]}}},
-        {"fig07_damage_zone": 1},
+        {"figures": {"fig07_damage_zone": {"thickness_ratios": [0.3, 1.0]}}}, {"fig07_damage_zone": 1},
     ),
-    "another title": ({"scenes": {"one": {"title": "Uno"}}}, {"draw_scene": 1, "animate_scene": 1}),
-    "swapped values": ({"scenes": {"one": {"left": 0.6, "right": 0.5}}}, ONE),
-    "swapped scenes": ({"scenes": {"one": {"left": 0.6, "right": 0.5}, "two": {"left": 0.5, "right": 0.6}}}, BOTH),
-    "what nobody asked for": ({"simulations": {"space_time_stress": {"left": [-0.5]}}}, {}),
+    "another title": (
+        {"scenes": {"barrier": {"title": "Uno"}}}, {"draw_scene": 1, "animate_scene": 1, "write_scenes_page": 1},
+    ),
+    "another tolerance": ({"claims": {"front_speed_undamped": {"tolerance": 0.5}}}, {"write_claims": 1}),
     "permission for large sweeps": ({"allow_large": True}, {}),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("case", CONFIGURATIONS)
-def test_another_configuration_runs_only_its_chain(finished, case):
+@pytest.fixture
+def jobs_with(finished):
+    """A function that gives the jobs of a dry run with some values altered."""
+
+    def jobs(change: dict) -> dict[str, int]:
+        (finished / "changed.yaml").write_text(yaml.safe_dump(merged(OVERLAY, change)), encoding="utf-8")
+        return jobs_after(finished, "changed.yaml")
+
+    return jobs
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, marks=() if case == "another level" else pytest.mark.slow)
+        for case in CONFIGURATIONS
+    ],
+)
+def test_another_configuration_runs_only_its_chain(jobs_with, case):
     change, expected = CONFIGURATIONS[case]
-    (finished / "changed.yaml").write_text(yaml.safe_dump(merged(OVERLAY, change)), encoding="utf-8")
-    result = snakemake(finished, "--dry-run", "--", *TARGETS, overlay="changed.yaml")
-    assert planned(result) == expected
-    if expected:
-        assert re.search(
-            r"Params have changed|Missing output files|Set of input files has changed", result.stdout
-        )
+    assert jobs_with(change) == expected | ALWAYS
 
 
-EVERY_DATA = {"compile_kernels": 1} | CHAIN | BOTH
-EDITS = {
-    "src/slippulse/figures/fig07_damage_zone.py": {"fig07_damage_zone": 1},
-    "src/slippulse/figures/scene.py": {"draw_scene": 1},
-    "src/slippulse/figures/scene_animation.py": {"animate_scene": 1},
-    "src/slippulse/figures/style.py": {"fig07_damage_zone": 1, "draw_scene": 1, "animate_scene": 1},
-    "src/slippulse/lattice/localised.py": EVERY_DATA,
-    "src/slippulse/sweep.py": {key: count for key, count in EVERY_DATA.items() if key != "compile_kernels"},
-    "src/slippulse/measure/fronts.py": MEASURED,
-    "src/slippulse/claims/pulse.py": {},
-    "requirements.lock": EVERY_DATA,
+# Shared values, with rules that read them and rules that must not run for them.
+SKETCHES = {"fig01_system_sketch", "fig07_damage_zone", "study_stability", "compile_kernels"}
+DATA = {"simulate", "join_data", "animate_scene", "fig06_burridge_knopoff", *STUDIED}
+SHARED = {
+    "share": ({"measure": {"share": 0.9}}, {"measure", "study_grid", "draw_scene", "write_claims"}, SKETCHES | DATA),
+    "damping": (
+        {"model": {"damping_ratio": 0.2}},
+        {"simulate", "measure", "study_grid", "animate_scene", "fig04_space_time"},
+        # Their simulations have damping ratios of their own.
+        SKETCHES | set(STUDIED) | {"fig08_steady_state_displacement", "fig10_damping_displacement"},
+    ),
+    "front window": (
+        {"measure": {"front_window": 0.4}},
+        {"measure", "study_of_extremes", "fig03_steady_state", "study_stability_of_pulses"},
+        SKETCHES | DATA - {"study_of_extremes", "study_of_accuracy_cost"},
+    ),
+    "release": ({"model": {"release": "elastic"}}, {"simulate", "draw_scene"}, SKETCHES | set(STUDIED)),
+    "coarser": ({"presets": {"paper": {"coarser": [2.0, 3.0]}}}, {"study_grid", "draw_scene"}, {"simulate", "measure"}),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("source", EDITS)
-def test_an_edit_runs_exactly_its_chain(finished, source):
-    path = finished / source
-    before, stat = path.read_bytes(), path.stat()
-    try:
-        path.write_bytes(before + b"\n# edited\n")
-        result = snakemake(finished, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")
-        assert planned(result) == EDITS[source]
-        if EDITS[source]:
-            assert f"Updated input files: {source}" in result.stdout
-    finally:
-        path.write_bytes(before)
-        os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, marks=() if case in ("share", "damping") else pytest.mark.slow) for case in SHARED],
+)
+def test_a_shared_value_runs_what_reads_it_and_no_more(jobs_with, case):
+    change, read_by, untouched = SHARED[case]
+    jobs = jobs_with(change)
+    assert read_by | set(ALWAYS) <= set(jobs)
+    assert not untouched & set(jobs) and untouched <= RULES

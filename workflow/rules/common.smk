@@ -108,8 +108,14 @@ def configuration(simulations=(), **settings):
 
 
 @cache
-def configuration_of_job(job):
-    """The same for what is made from one simulation alone, chunks or not."""
+def configuration_of_data(job):
+    """The same for the data of one simulation, chunks or not."""
+    return configuration([job.partition("/")[0]])
+
+
+@cache
+def configuration_of_numbers(job):
+    """The same for what is measured in the data of one simulation."""
     return configuration([job.partition("/")[0]], measure=config["measure"])
 
 

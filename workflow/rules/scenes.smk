@@ -33,7 +33,7 @@ rule draw_scene:
         scene=lambda wildcards: wildcards.scene,
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
         share=config["measure"]["share"],
-        configuration=lambda wildcards: configuration_of_job(wildcards.scene),
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.scene),
     message:
         "Drawing scene {wildcards.scene}"
     script:
@@ -55,7 +55,7 @@ rule animate_scene:
     params:
         step="animate_scene",
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
-        configuration=lambda wildcards: configuration_of_job(wildcards.scene),
+        configuration=lambda wildcards: configuration_of_data(wildcards.scene),
     message:
         "Animating scene {wildcards.scene}"
     script:
@@ -75,6 +75,7 @@ rule write_scenes_page:
     params:
         step="write_scenes_page",
         scenes={name: scene["title"] for name, scene in SCENES.items()},
+        configuration=configuration(SCENES, measure=config["measure"]),
     message:
         "Writing the list of scenes"
     script:

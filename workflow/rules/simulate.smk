@@ -48,7 +48,7 @@ rule simulate:
         step="simulate",
         simulation=lambda wildcards: wildcards.simulation,
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
-        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_data(wildcards.simulation),
     message:
         "Simulating {wildcards.simulation}"
     script:
@@ -69,7 +69,7 @@ rule measure:
     params:
         step="measure",
         measure=plain(config["measure"]),
-        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Measuring {wildcards.simulation}"
     script:
@@ -98,7 +98,7 @@ rule study_grid:
         simulation=lambda wildcards: wildcards.simulation,
         sweeps=lambda wildcards: coarser_sweeps(wildcards.simulation),
         measure=plain(config["measure"]),
-        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     script:
@@ -122,7 +122,7 @@ rule join_data:
     params:
         step="join_data",
         record=lambda wildcards: SIMULATIONS[wildcards.simulation]["record"],
-        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_data(wildcards.simulation),
     message:
         "Putting the data of {wildcards.simulation} together"
     script:
@@ -144,7 +144,7 @@ rule join_measurements:
     priority: 1
     params:
         step="join_measurements",
-        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Putting the measurements of {wildcards.simulation} together"
     script:
@@ -172,7 +172,7 @@ rule join_uncertainties:
         mem_mb=lambda wildcards, attempt: attempt * joining(wildcards).megabytes,
     params:
         step="join_uncertainties",
-        configuration=lambda wildcards: configuration_of_job(wildcards.simulation),
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Putting the grid studies of {wildcards.simulation} together"
     script:

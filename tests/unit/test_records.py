@@ -1,0 +1,120 @@
+"""What each job made from what: what was changed by hand, what is out of date, and pages that say so."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+
+from slippulse.data.files import write_text
+from slippulse.data.records import (
+    NOTE,
+    changed_since_made,
+    digest_of,
+    mark_outdated,
+    outdated,
+    read_records,
+    remove_changed,
+    write_record,
+)
+
+PAGE = "<html><body class='wide'><p>All well.</p></body></html>"
+
+
+def make(results: Path, name: str, content: str, *sources: str) -> Path:
+    """A job that writes one file from others."""
+    path = results / name
+    write_text(content, path)
+    files = {"sources": [str(results / source) for source in sources]}
+    write_record("some_step", files, {"made": str(path)}, {"configuration": "abc"})
+    return path
+
+
+@pytest.fixture
+def results(tmp_path) -> Path:
+    """Data, numbers measured in them, and two pages and a document that show the numbers."""
+    folder = tmp_path / "results"
+    make(folder, "data/a.nc", "data")
+    make(folder, "measurements/a.csv", "x\n1\n", "data/a.nc")
+    make(folder, "index.html", PAGE, "measurements/a.csv")
+    make(folder, "manuscript/report.pdf", "%PDF", "measurements/a.csv")
+    make(folder, "scenes/other.html", PAGE)
+    return folder
+
+
+def later(path: Path) -> None:
+    """Let a file be newer than its record, as an edit makes it."""
+    moment = time.time_ns() + 10**9
+    os.utime(path, ns=(moment, moment))
+
+
+def test_a_record_says_what_was_made_by_which_configuration_from_what(results):
+    (record,) = (record for record in read_records(results) if "measurements/a.csv" in record.outputs)
+    assert (record.step, record.configuration) == ("some_step", "abc")
+    assert list(record.inputs) == ["data/a.nc"]
+    assert changed_since_made(results) == changed_since_made(results, quick=False) == []
+    assert outdated(results) == mark_outdated(results) == {}
+
+
+def test_a_file_edited_by_hand_is_found_and_removed(results):
+    path = results / "measurements/a.csv"
+    path.write_text("x\n2\n")
+    later(path)
+    assert changed_since_made(results) == ["measurements/a.csv"]
+    assert remove_changed(results) == ["measurements/a.csv"] and not path.exists()
+    assert changed_since_made(results) == []
+
+
+def test_a_file_that_is_only_touched_stays(results):
+    later(results / "measurements/a.csv")
+    assert remove_changed(results) == [] and (results / "measurements/a.csv").exists()
+
+
+def test_a_thorough_look_does_not_trust_times(results):
+    path = results / "data/a.nc"
+    path.write_text("datA")
+    os.utime(path, ns=(0, 0))
+    assert changed_since_made(results) == []
+    assert changed_since_made(results, quick=False) == ["data/a.nc"]
+
+
+def test_what_is_made_from_something_outdated_is_outdated_too(results):
+    make(results, "data/a.nc", "other data")
+    assert outdated(results) == {
+        "measurements/a.csv": "data/a.nc",
+        "index.html": "measurements/a.csv",
+        "manuscript/report.pdf": "measurements/a.csv",
+    }
+
+
+def test_outdated_pages_are_marked_once_and_documents_go(results):
+    page, other = results / "index.html", results / "scenes/other.html"
+    before = page.stat().st_mtime_ns
+    make(results, "data/a.nc", "other data")
+    for _ in range(2):
+        assert set(mark_outdated(results)) >= {"index.html", "measurements/a.csv"}
+        assert page.read_text().count("Out of date") == page.read_text().count(NOTE) == 1
+    assert page.read_text().startswith("<html><body class='wide'>" + NOTE)
+    # Older than what it is made from, so that the next run renews it; the mark is not an edit by hand.
+    assert page.stat().st_mtime_ns == before and changed_since_made(results, quick=False) == []
+    assert other.read_text() == PAGE and not (results / "manuscript/report.pdf").exists()
+
+
+def test_a_page_that_is_made_anew_is_no_longer_outdated(results):
+    make(results, "data/a.nc", "other data")
+    make(results, "measurements/a.csv", "x\n3\n", "data/a.nc")
+    make(results, "index.html", PAGE, "measurements/a.csv")
+    assert "index.html" not in mark_outdated(results)
+    assert (results / "index.html").read_text() == PAGE
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"step": 1}'])
+def test_a_record_that_cannot_be_read_is_as_none(results, text):
+    (results / "records/data/a.nc.json").write_text(text)
+    assert "data/a.nc" not in [name for record in read_records(results) for name in record.outputs]
+
+
+def test_the_digest_does_not_depend_on_the_order_of_keys():
+    assert digest_of({"a": 1, "b": [2]}) == digest_of({"b": [2], "a": 1}) != digest_of({"a": 1, "b": [3]})
