@@ -128,6 +128,8 @@ VARIABLES = {
     "x_end": ("1", "end of an arrow or bar, horizontal"),
     "y_end": ("1", "end of an arrow or bar, vertical"),
     "time": ("1", "time, in units of H over the wave speed"),
+    "source": ("text", "exact, lattice, or whose formula"),
+    "places": ("count", "points that a mean is over"),
     "position": ("1", "position, in units of H"),
     "field": ("text", "which field is drawn"),
     "state": ("text", "sliding, stuck or untouched"),
