@@ -181,6 +181,8 @@ VARIABLES = {
     "arrest_position": ("1", "relative error of the arrest position"),
     "arresting_block": ("count", "block at which the left front stops"),
     "before": ("1", "level before the step"),
+    "barrier": ("1", "pre-stress in the barrier"),
+    "length": ("1", "length of a barrier over the exact depth of the pulse in it"),
     "steady": ("1", "the steady pulse's number"),
     "steady_before": ("1", "the same before the step"),
     "beta_from": ("1", "least damping of a range"),
