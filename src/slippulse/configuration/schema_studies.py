@@ -24,6 +24,7 @@ from .keys import (
 )
 
 Shares, Orders = different(Share), different(Order)
+Negatives = different(number(below=0.0))
 AtLeast50 = number(at_least=50, whole=True)
 
 
@@ -216,6 +217,32 @@ class AccuracyCost(Block):
     locking: Locking = key("front speed of the textbook scheme against its step")
 
 
+class BarrierMap(Block):
+    """Where exact depths are mapped."""
+
+    levels: Shares = key("tau_0", STRESS)
+    barriers: Negatives = key("tau_b", STRESS)
+
+
+class Passing(Block):
+    """Barriers shorter and longer than the exact depth."""
+
+    shares: Positives = key("length of the barrier over the exact depth")
+    dx: Positive = key("block spacing", LENGTH)
+
+
+class Barriers(Block):
+    """Pulses sent into negative pre-stress, by exact theory and on lattices."""
+
+    damping_ratios: NonNegatives = key("beta/dx, all for each pair of levels")
+    levels: Shares = key("tau_0, where the pulse is steady", STRESS)
+    barriers: Negatives = key("tau_b; every pair with a level", STRESS)
+    gamma: Positives = key("elasticity ratios, one after the other over the pairs")
+    dx: Positives = key("block spacings at which the depth is measured", LENGTH)
+    map: BarrierMap = key("the map of exact depths")
+    passing: Passing = key("both sides of passing")
+
+
 class Requirements(Block):
     """Work a sliding block, bytes a block, and how the work grows."""
 
@@ -233,4 +260,5 @@ class Studies(Block):
     extremes: Extremes = key("the edges of the solver's domain")
     stability: Stability = key("where a step blows up")
     accuracy_cost: AccuracyCost = key("error against cost")
+    barriers: Barriers = key("how deep a pulse enters negative pre-stress")
     requirements: Requirements = key("work and memory")
