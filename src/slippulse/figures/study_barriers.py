@@ -193,8 +193,8 @@ def _draw_passing(axes, rows: pd.DataFrame, ratios: np.ndarray) -> None:
         for passed, face in ((1.0, colour), (0.0, "white")):
             kept = (chosen["measured"] == passed).to_numpy()
             axes.plot(
-                chosen["length"][kept], np.asarray(height)[kept], "o", color=colour, markerfacecolor=face, markersize=3.0,
-                markeredgewidth=0.7, gid=f"{'passed' if passed else 'stopped'} {ratio:g}",
+                chosen["length"][kept], np.asarray(height)[kept], "o", color=colour, markerfacecolor=face,
+                markersize=3.0, markeredgewidth=0.7, gid=f"{'passed' if passed else 'stopped'} {ratio:g}",
             )  # fmt: skip
     axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     axes.set_yticks(

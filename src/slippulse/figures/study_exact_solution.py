@@ -139,8 +139,8 @@ def _draw_map(figure: Figure, axes, rows: pd.DataFrame) -> None:
         grid = samples[samples["source"] == source].pivot(index="time", columns="position", values="value")
         # What does not slide stays white.
         image = axes.pcolormesh(
-            grid.columns, grid.index, grid.where(grid > 0.0).to_numpy(), shading="nearest", cmap=matplotlib.colormaps[VELOCITY_MAP],
-            vmin=0.0, vmax=float(samples["value"].max()), rasterized=True,
+            grid.columns, grid.index, grid.where(grid > 0.0).to_numpy(), shading="nearest",
+            cmap=matplotlib.colormaps[VELOCITY_MAP], vmin=0.0, vmax=float(samples["value"].max()), rasterized=True,
         )  # fmt: skip
     for quantity, style in (("release", "-"), ("stick", "--")):
         line = _edge(rows, quantity, "exact")

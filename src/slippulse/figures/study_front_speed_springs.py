@@ -40,8 +40,8 @@ def table(
 
     Returns
     -------
-    DataFrame of part (springs or fixed_beta) and role simulation (speed, theory, flags: why theory may not hold), theory
-    (lines, over springs = gamma dx^2 or over dx) and continuum (fixed_beta: the closed form for dx -> 0)
+    DataFrame of part (springs or fixed_beta) and role simulation (speed, theory, flags: why theory may not hold),
+    theory (lines, over springs = gamma dx^2 or over dx) and continuum (fixed_beta: the closed form for dx -> 0)
     """
     runs = measured["front_speed_springs"]
     parts = [_simulations(runs).assign(part="springs")]
@@ -178,7 +178,8 @@ def _draw_fixed_beta(axes, rest, rows: pd.DataFrame) -> None:
     axes.set(xscale="log", yscale="log")
     _speed_axis(axes, float(np.nanmax(rows["speed"])))
     axes.legend(
-        title=r"$\bar\tau_0,\ \bar\beta$ ($\bar\gamma = 1$)", loc="upper right", ncols=2, columnspacing=0.8, labelspacing=0.2,
+        title=r"$\bar\tau_0,\ \bar\beta$ ($\bar\gamma = 1$)", loc="upper right", ncols=2, columnspacing=0.8,
+        labelspacing=0.2,
     )  # fmt: skip
     ticks = [0.01, 0.02, 0.05, 0.1]
     rest.set_xticks(ticks, [f"{tick:g}" for tick in ticks])

@@ -15,6 +15,7 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.lattice import LatticeRun, UnstableRun, run_scene
 from .continuum import ContinuumRun, solve_scene
+from .progress import bar
 
 # A velocity this far below zero, as a share of the largest, means that a stick was stepped over.
 NEGATIVE_VELOCITY = 1e-9
@@ -29,7 +30,7 @@ class UnresolvedRun(RuntimeError):
 def simulate(
     scene: Scene,
     samples: Samples | None = None,
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[float], None] | bool | None = None,
     strict: bool = False,
 ) -> xr.Dataset:
     """Simulate one scene.
@@ -38,7 +39,7 @@ def simulate(
     ----------
     scene : the scene
     samples : where and when to record slip and slip velocity during the run; nothing when left out
-    progress : called with the share of the duration done
+    progress : called with the share of the duration done; True draws a bar with the time that is left
     strict : raise instead of flagging a run that meets the reverse-sliding threshold or does not resolve its pulse
 
     Returns
@@ -60,8 +61,12 @@ def simulate(
         raise TypeError(f"scene: {short_repr(scene)}; allowed: a Scene")
     if samples is not None and not isinstance(samples, Samples):
         raise TypeError(f"samples: {short_repr(samples)}; allowed: Samples, or None")
-    if progress is not None and not callable(progress):
-        raise TypeError(f"progress: {short_repr(progress)}; allowed: a function of the share done, or None")
+    if not isinstance(progress, bool) and progress is not None and not callable(progress):
+        raise TypeError(
+            f"progress: {short_repr(progress)}; allowed: a function of the share done, True, or None"
+        )
+    if isinstance(progress, bool):
+        progress = bar() if progress else None
     exact = scene.scheme == "continuum"
     run = solve_scene(scene, samples) if exact else run_scene(scene, samples, progress)
     numbers = run.numbers | judge(scene, run)

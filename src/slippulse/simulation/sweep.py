@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from threading import Event
 from warnings import warn
 
 import xarray as xr
@@ -16,12 +17,16 @@ from ..model.scene import Scene
 from .simulate import simulate
 
 
+class Stopped(Exception):
+    """Another scene of the sweep failed, or the user stopped it."""
+
+
 def run_sweep(
     scenes: Sequence[Scene],
     samples: Sequence[Samples | None] | None = None,
     record: Sequence[str] = ("fronts",),
     threads: int = 1,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[float, int], None] | None = None,
 ) -> xr.Dataset:
     """Run scenes in a pool of threads, the most expensive first.
 
@@ -32,7 +37,7 @@ def run_sweep(
     record : what is kept per block: "fronts" (release and stick times), "fields" (slip, velocity, acceleration at
         the end); "samples" (the recorded samples)
     threads : how many run at once; the result does not depend on it
-    progress : called with (done, all) after each scene
+    progress : called with (done, all) after each scene; of a single one, with the share done as it goes
 
     Returns
     -------
@@ -50,10 +55,19 @@ def run_sweep(
     results: list[xr.Dataset | None] = [None] * len(scenes)
     order = sorted(range(len(scenes)), key=lambda i: -expected_seconds(scenes[i]))
 
+    stopped = Event()
+
     def run(i: int) -> xr.Dataset:
-        return simulate(
-            scenes[i], samples[i], overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2))
-        )
+        watch = overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2))
+
+        def check(share: float) -> None:
+            if stopped.is_set():
+                raise Stopped
+            if progress is not None and len(scenes) == 1:
+                progress(share, 1)
+            watch(share)
+
+        return simulate(scenes[i], samples[i], check)
 
     with ThreadPoolExecutor(max_workers=int(threads)) as pool:
         futures = {pool.submit(run, i): i for i in order}
@@ -63,6 +77,7 @@ def run_sweep(
                 if progress is not None:
                     progress(done, len(scenes))
         except BaseException:
+            stopped.set()
             pool.shutdown(cancel_futures=True)
             raise
     return combine([result for result in results if result is not None], record)

@@ -12,8 +12,9 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from . import fixed_step, taylor
 
-# Steps between two returns to Python: progress, interruption.
-CALL_STEPS = 20_000
+# Steps between two returns to Python, for progress and interruption, at most; and sliding blocks times steps, about a
+# tenth of a second.
+CALL_STEPS, CALL_WORK = 20_000, 1e7
 # Blocks on each side at first; the lattice doubles whenever a front comes near its end.
 FIRST_BLOCKS = 512
 # Length of a row modulo a page of memory, in blocks. Rows that begin at one place of their pages compete for the same
@@ -53,7 +54,6 @@ class Lattice:
 
     def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
         self.scene = scene
-        self.call_steps = CALL_STEPS
         self.beta = beta
         self.leaf = scene.gamma if scene.boundary == "displacement" else 0.0
         self.mirror = scene.symmetric
@@ -166,9 +166,12 @@ class Lattice:
 
     def run(self, progress: Callable[[float], None] | None) -> int:
         """Advance to the end of the scene. Returns why the kernel stopped."""
-        least = self.call_steps * taylor.SIMULTANEOUS * self.scene.max_step * self.scene.dx
         while True:
             before = float(self.totals[taylor.TIME])
+            n = self.counts[taylor.RUNS]
+            sliding = max(int(np.sum(self.ends[:n] - self.starts[:n])), 1)
+            self.call_steps = int(min(max(CALL_WORK / sliding, 10), CALL_STEPS))
+            least = self.call_steps * taylor.SIMULTANEOUS * self.scene.max_step * self.scene.dx
             status = self._advance()
             if status == taylor.GROW:
                 self._grow()

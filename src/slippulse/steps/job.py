@@ -44,11 +44,11 @@ def run_job(
     leave()
 
 
-def leave() -> None:
+def leave(code: int = 0) -> None:
     """Exit without interpreter teardown; saves 0.2 s."""
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(0)
+    os._exit(code)
 
 
 @contextlib.contextmanager
@@ -66,7 +66,8 @@ def logged(path: str | Path) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        raise SystemExit(130) from None
+        terminal.write("stopped\n")
+        leave(130)
     except Exception as error:
         # A disk that is full has no room for the log either.
         with contextlib.suppress(OSError):

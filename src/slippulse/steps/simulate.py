@@ -18,13 +18,16 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     """Outputs: data. Settings: simulation (its name), sweep (resolved), threads."""
     name, sweep = settings["simulation"], settings["sweep"]
     scenes, samples = expand(sweep)
-    shown = time.monotonic()
+    began = shown = time.monotonic()
 
-    def progress(done: int, total: int) -> None:
+    def progress(done: float, total: int) -> None:
         nonlocal shown
-        if done < total and time.monotonic() - shown > BETWEEN_LINES:
-            shown = time.monotonic()
-            sys.stderr.write(f"  {name}: {done} of {total} runs\n")
+        now = time.monotonic()
+        if 0 < done < total and now - shown > BETWEEN_LINES:
+            shown = now
+            left = (now - began) * (total / done - 1.0)
+            part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
+            sys.stderr.write(f"  {name}: {part}, about {left:.0f} s left\n")
             sys.stderr.flush()
 
     data = run_sweep(scenes, samples, sweep["record"], settings["threads"], progress)
