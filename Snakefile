@@ -31,7 +31,7 @@ EVERYTHING = [
 rule all:
     default_target: True
     input:
-        EVERYTHING if ACCURACY.get("whole", True) else figure_files(FIGURES),
+        EVERYTHING if ACCURACY.get("whole", True) else FIRST,
     message:
         "Done: {}".format(
             "open results/index.html"

@@ -40,6 +40,7 @@ SIMULATIONS = config["simulations"] | {
 }
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED["simulations"]]
+OWN_SCENES = [name for name in SCENES if name not in SHIPPED["scenes"]]
 
 # Each figure by name; what it draws stands in its module.
 FIGURES, STUDIES = (

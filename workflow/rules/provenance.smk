@@ -16,6 +16,19 @@ RESULTS = [
     "results/manuscript/replication.html",
     "results/manuscript/replication.pdf",
 ]
+# What a draft makes unless everything is asked for: the figures of the paper with what they are drawn from, and what
+# an overlay adds.
+FIRST = [
+    *figure_files(FIGURES),
+    *(f"results/data/{name}.nc" for name in simulations_of(FIGURES)),
+    *tables(
+        "measurements",
+        sorted(
+            {*OWN_SIMULATIONS, *(name for figure in FIGURES for name in NEEDS[figure].get("measured", []))}
+        ),
+    ),
+    *scene_files(OWN_SCENES),
+]
 
 
 rule write_provenance:
