@@ -26,13 +26,14 @@ CHECK_OPTIONS = $(CHECK_PLACE); \
     case "$$CORES" in ""|*[!0-9]*|0|0[0-9]*) echo "CORES: $$CORES; allowed: a whole number from 1 on, such as CORES=2" >&2; exit 1;; esac; \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe replicate rulegraph verify faults test slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe replicate rulegraph verify test test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
+	@echo "make test-all    these and the slow ones: every file and example, kills, Slurm"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
 	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
@@ -94,7 +95,13 @@ faults: $(READY)
 	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
 
 test: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n $(CORES) --dist loadfile --no-loadscope-reorder
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
+
+test-slow: $(READY)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow
+	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
+
+test-all: test test-slow slurm-test
 
 slurm-test: $(VENV)/.slurm
 	@"$(BIN)/python" tests/slurm_cluster.py

@@ -31,7 +31,7 @@ EVERYTHING = [
 rule all:
     default_target: True
     input:
-        EVERYTHING if ACCURACY.get("whole", True) else [figure_files(FIGURES), OWN_SWEEPS, OWN_SCENES],
+        EVERYTHING if ACCURACY.get("whole", True) else FIRST,
     message:
         "Done: {}".format(
             "open results/index.html"

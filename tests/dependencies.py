@@ -15,14 +15,20 @@ PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE = PROJECT / "src/slippulse"
 TEXTS = PROJECT / "manuscript"
 LOCK = "requirements.lock"
-# A sweep in chunks, so that there are the rules that join them.
+# A sweep of one's own, in chunks so that there are the rules that join them, and a scene.
 OVERLAY = {
     "simulations": {
         "own": {
             "boundary": "displacement", "left": [0.3, 0.5], "right": "same", "gamma": [0.65], "duration": {"time": 6.0},
             "spacing": {"scale": 4.0}, "record": ["fronts"], "chunks": 2,
         }
-    }
+    },
+    "scenes": {
+        "mine": {
+            "title": "Mine", "boundary": "displacement", "left": 0.5, "right": 0.6, "gamma": 0.65, "dx": 0.1,
+            "duration": 6.0,
+        }
+    },
 }  # fmt: skip
 # Rules whose step takes a module by name: one a figure, one a study of the solver.
 DRAWN = {path.stem for pattern in ("fig*.py", "study_*.py") for path in (PACKAGE / "figures").glob(pattern)}

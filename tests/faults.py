@@ -67,8 +67,8 @@ def prepare(folder: Path) -> Path:
 
 def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
     """A run in a process group of its own."""
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--configfile", "overlay.yaml"]
-    command += ["--", *targets]
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
+    command += ["--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
     with open(folder / "said.txt", "a", encoding="utf-8") as said:
         return subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, start_new_session=True)
 
@@ -86,14 +86,14 @@ def unlock(folder: Path) -> bool:
 
 
 def digests(folder: Path) -> dict[str, str]:
-    """Every result but logs and times; a hidden name is a file that its writer was killed over."""
+    """Every result but logs, times and notes; a hidden name is a file that its writer was killed over."""
     results = folder / "results"
     return {
         str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(results.rglob("*"))
         if path.is_file()
         and not path.name.startswith(".")
-        and path.relative_to(results).parts[0] not in ("logs", "benchmarks")
+        and path.relative_to(results).parts[0] not in ("logs", "benchmarks", "records")
     }
 
 

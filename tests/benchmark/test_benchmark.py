@@ -13,7 +13,6 @@ import slippulse as sp
 from benchmarks import __main__ as command
 from benchmarks import measure, stencils
 from slippulse.data.job_times import read_job_records
-from slippulse.figures import pipeline_time
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
 
@@ -92,17 +91,6 @@ def test_records_are_read_by_rule(tmp_path):
     assert records["processor_seconds"].sum() == 10.0
     assert records["memory"].max() == 150.0
     assert measure.pipeline(tmp_path)["by_rule"] == {"simulate": 4.0, "write_claims": 1.0}
-
-    (tmp_path / "data").mkdir()
-    (tmp_path / "figures").mkdir()
-    (tmp_path / "data/a.nc").write_bytes(b"x" * 1000)
-    (tmp_path / "figures/a.csv").write_bytes(b"x" * 10)
-    table = pipeline_time.table(tmp_path, tmp_path)
-    sizes = table[table["part"] == "bytes"].set_index("rule")["bytes"]
-    assert (sizes["recorded"], sizes["drawn"]) == (1000, 10)
-    left, right = pipeline_time.plot(table).axes
-    assert [patch.get_width() for patch in left.patches] == [4.0, 1.0]
-    assert [patch.get_width() for patch in right.patches if patch.get_gid() == "job"] == [2.5, 1.5, 1.0]
 
 
 def test_without_records_there_is_nothing_to_say(tmp_path):

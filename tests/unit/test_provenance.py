@@ -8,6 +8,7 @@ import socket
 
 import yaml
 
+from slippulse.data.alterations import changes
 from slippulse.data.provenance import (
     job_times,
     machine_class,

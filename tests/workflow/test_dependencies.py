@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 
 import pytest
@@ -25,8 +26,8 @@ pytestmark = pytest.mark.workflow
 
 
 @pytest.fixture(scope="module")
-def seen(tmp_path_factory) -> dict[str, set[str]]:
-    """Files that each rule has as inputs, results apart: all rules, from one look of Snakemake."""
+def inputs(tmp_path_factory) -> dict[str, set[str]]:
+    """Files that each rule takes, from one look of Snakemake at everything."""
     folder = copy_project(PROJECT, tmp_path_factory.mktemp("dependencies"), link=True)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
     result = snakemake(
@@ -37,10 +38,19 @@ def seen(tmp_path_factory) -> dict[str, set[str]]:
     for name, text in re.findall(
         r'point-size="18">(\w+)</font>(.*?)(?=point-size="18"|\Z)', result.stdout, re.S
     ):
-        inputs = text.partition("&#8618; input")[2].partition("output &rarr;")[0]
-        files = re.findall(r">((?:src|manuscript|workflow)/[^<]+|Snakefile|requirements\.lock)<", inputs)
-        found[name] = {file.replace("&#45;", "-") for file in files}
-    return {name: files for name, files in found.items() if name not in ("all", "everything", "scenes")}
+        taken = text.partition("&#8618; input")[2].partition("output &rarr;")[0]
+        found[name] = {html.unescape(file) for file in re.findall(r'"monospace">([^<]+)<', taken)}
+    return found
+
+
+@pytest.fixture(scope="module")
+def seen(inputs) -> dict[str, set[str]]:
+    """Sources that each rule depends on."""
+    return {
+        name: {file for file in files if not file.startswith(("results/", "<"))}
+        for name, files in inputs.items()
+        if name not in ("all", "everything", "scenes")
+    }
 
 
 def test_the_rules_are_one_a_step_a_figure_and_a_study(seen):
@@ -66,7 +76,8 @@ def test_no_rule_depends_on_another_file_of_the_sources(seen):
         for rule, inputs in seen.items()
         if rule not in EVERY_SOURCE and (extra := inputs - set(FILES) - {LOCK})
     }
-    assert not others
+    # The report says what differs from the shipped configuration.
+    assert others == {"write_report": {"config/config.yaml"}}
     workflow = {"Snakefile", "workflow/scripts/step.py", "workflow/rules/common.smk"}
     assert workflow <= seen["write_provenance"]
 
@@ -91,3 +102,15 @@ def test_a_module_is_taken_by_name_only_where_the_rule_names_it():
     assert found == {
         "__init__.py", "lazy.py", "steps/draw_figure.py", "steps/job.py", "steps/run_study.py", "theory/__init__.py",
     }  # fmt: skip
+
+
+def test_checksums_and_manifest_cover_what_everything_makes_and_what_is_ones_own(inputs):
+    listed = {file for file in inputs["write_provenance"] if file.startswith("results/")}
+    about_itself = {"results/provenance.json", "results/index.html"}
+    assert inputs["everything"] == listed | about_itself
+    for name in ("own", "mine", "barrier"):
+        assert f"results/data/{name}.nc" in listed
+        assert {f"results/{kind}/{name}.csv" for kind in ("measurements", "uncertainties")} <= listed
+    assert {f"results/scenes/mine.{ending}" for ending in ("html", "png", "pdf", "csv")} <= listed
+    # Data of a figure and of a claim.
+    assert {"results/data/steady_stress.nc", "results/measurements/scaling_stress.csv"} <= listed

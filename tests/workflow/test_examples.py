@@ -18,9 +18,9 @@ pytestmark = pytest.mark.workflow
 # A small target of each example: cheap, and enough to see what it promises.
 TARGETS = {
     "another_gamma": "results/measurements/steady_displacement.csv",
-    "asymmetric_levels": "results/scenes/data/asymmetric_levels.csv",
+    "asymmetric_levels": "results/measurements/asymmetric_levels.csv",
     "stress_barrier": "results/scenes/stress_barrier.html",
-    "two_nucleation_sites": "results/scenes/data/two_sites.csv",
+    "two_nucleation_sites": "results/measurements/two_sites.csv",
     "elastic_release": "results/measurements/space_time_displacement.csv",
     "fixed_beta": "results/measurements/continuum_fixed_ratio.csv",
     "halved_spacing": "results/measurements/space_time_displacement.csv",
@@ -41,7 +41,7 @@ def run(project, tmp_path_factory):
         )
         assert result.returncode == 0, result.stderr
         path = folder / TARGETS[name]
-        table = path if path.suffix == ".csv" else path.parent / f"data/{path.stem}.csv"
+        table = path if path.suffix == ".csv" else folder / f"results/measurements/{path.stem}.csv"
         return pd.read_csv(table), path
 
     return make
@@ -56,6 +56,7 @@ def test_every_example_is_tested_and_explained(project):
         assert text.startswith("# ") and f"OVERLAY=config/examples/{path.name}" in text
 
 
+@pytest.mark.slow
 def test_another_gamma_changes_the_size_and_not_the_speed(run):
     table, _ = run("another_gamma")
     assert set(table["gamma"]) == {0.3}
@@ -66,6 +67,7 @@ def test_another_gamma_changes_the_size_and_not_the_speed(run):
     )
 
 
+@pytest.mark.slow
 def test_asymmetric_levels_have_each_sides_speed(run):
     table, _ = run("asymmetric_levels")
     for side, level in (("left", 0.3), ("right", 0.7)):
@@ -74,6 +76,7 @@ def test_asymmetric_levels_have_each_sides_speed(run):
         )
 
 
+@pytest.mark.slow
 def test_a_wide_barrier_stops_a_pulse(run):
     table, page = run("stress_barrier")
     assert table["front_speed_left"][0] == pytest.approx(theory.front_speed(0.5, 0.1), rel=tol.DRAFT_SPEED)
@@ -84,6 +87,7 @@ def test_a_wide_barrier_stops_a_pulse(run):
     assert "A pulse dies in a wide barrier" in page.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_two_sites_send_two_pulses(run):
     table, _ = run("two_nucleation_sites")
     speed = theory.front_speed(0.5, 0.1)
@@ -91,6 +95,7 @@ def test_two_sites_send_two_pulses(run):
     assert table["front_speed_right"][0] == pytest.approx(speed, rel=tol.DRAFT_SPEED)
 
 
+@pytest.mark.slow
 def test_the_elastic_rule_is_slower(run):
     table, _ = run("elastic_release")
     assert set(table["release"]) == {"elastic"}
@@ -106,18 +111,21 @@ def test_null_removes_a_key_and_beta_stays(run):
     assert by_spacing.is_monotonic_decreasing
 
 
+@pytest.mark.slow
 def test_halved_spacing_is_half_of_the_presets(run):
     table, _ = run("halved_spacing")
     assert set(table["dx"]) == {0.02}
     assert table["beta"][0] == pytest.approx(0.002)
 
 
+@pytest.mark.slow
 def test_a_sweep_of_ones_own_is_the_product_of_its_lists(run):
     table, _ = run("own_sweep")
     assert len(table) == 12
     assert np.isfinite(table["pulse_slip"]).all()
 
 
+@pytest.mark.slow
 def test_a_sweep_in_chunks_is_in_the_order_of_its_lists(run):
     table, path = run("chunked_sweep")
     levels, widths = table["left"].unique(), table["width"].unique()
@@ -128,6 +136,7 @@ def test_a_sweep_in_chunks_is_in_the_order_of_its_lists(run):
     assert np.isfinite(table["transition_time"]).all()
 
 
+@pytest.mark.slow
 def test_a_target_error_is_kept_and_said(run):
     table, path = run("target_error")
     promised = table[table["promised"].notna()]
@@ -143,6 +152,7 @@ def test_a_target_error_is_kept_and_said(run):
     assert "target_error: accuracy 0.01 kept by 12 of 12 runs" in log.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_without_a_target_error_a_grid_study_says_nothing_of_it(run):
     _, path = run("own_sweep")
     folder = path.parents[2]
@@ -152,6 +162,6 @@ def test_without_a_target_error_a_grid_study_says_nothing_of_it(run):
     )
     assert result.returncode == 0, result.stderr
     assert list(pd.read_csv(folder / target).columns[-5:]) == [
-        "quantity", "value", "extrapolated", "order", "uncertainty",
+        "quantity", "value", "extrapolated", "observed_order", "uncertainty",
     ]  # fmt: skip
     assert "accuracy" not in (folder / "results/logs/study_grid/own_sweep.log").read_text(encoding="utf-8")

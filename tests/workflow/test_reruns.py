@@ -91,6 +91,33 @@ def test_an_edit_runs_what_depends_on_the_file(finished, fed_by, file):
     assert set(jobs) == downstream(computing if file == LOCK else rules_of(file), fed_by)
 
 
+# What is removed, and the jobs that make it again: no others, since what they make is the same as before.
+REMOVED = {
+    "results/data/steady_stress.nc": "simulate",
+    "results/measurements/scaling_stress.csv": "measure",
+    "results/uncertainties/mine.csv": "study_grid",
+    "results/data/own.nc": "join_data",
+    "results/scenes/mine.pdf": "draw_scene",
+    "results/figures/fig07_damage_zone.csv": "fig07_damage_zone",
+    "results/studies/extremes.csv": "study_of_extremes",
+}
+
+
+def test_what_is_removed_is_made_by_the_default_target(finished):
+    stats = {name: (finished / name).stat() for name in REMOVED}
+    try:
+        for name in REMOVED:
+            (finished / name).unlink()
+        jobs = planned(snakemake(finished, "--dry-run", overlay="overlay.yaml"))
+    finally:
+        for name, stat in stats.items():
+            (finished / name).touch()
+            os.utime(finished / name, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    assert set(REMOVED.values()) | {"write_provenance", "write_index"} <= set(jobs)
+    # A chunk of another sweep is not simulated again.
+    assert jobs["simulate"] == jobs["join_data"] == jobs["fig07_damage_zone"] == 1
+
+
 def test_an_edited_figure_redraws_that_figure_alone():
     """Predictions that two figures share do not stand in the module of one of them."""
     for name in DRAWN:

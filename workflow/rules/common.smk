@@ -36,7 +36,7 @@ SCENES = config.get("scenes", {})
 SIMULATIONS = all_simulations(config)
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED["simulations"]]
-OWN_SCENE_NAMES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
+OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 # Each figure by name; what it draws stands in its module.
 FIGURES, STUDIES = (

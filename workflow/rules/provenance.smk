@@ -4,7 +4,6 @@ from slippulse.data.provenance import source_files
 
 DRAWN = simulations_of(NEEDS)
 STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
-OWN_SCENES = scene_files(OWN_SCENE_NAMES)
 OWN_SWEEPS = figure_files(f"sweep_{name}" for name in OWN_SIMULATIONS)
 RESULTS = [
     *figure_files(NEEDS),
@@ -18,6 +17,20 @@ RESULTS = [
     "results/claims.html",
     "results/manuscript/replication.html",
     "results/manuscript/replication.pdf",
+]
+# What a draft makes unless everything is asked for: the figures of the paper with what they are drawn from, and what
+# an overlay adds.
+FIRST = [
+    *figure_files(FIGURES),
+    *(f"results/data/{name}.nc" for name in simulations_of(FIGURES)),
+    *tables(
+        "measurements",
+        sorted(
+            {*OWN_SIMULATIONS, *(name for figure in FIGURES for name in NEEDS[figure].get("measured", []))}
+        ),
+    ),
+    *scene_files(OWN_SCENES),
+    *OWN_SWEEPS,
 ]
 
 

@@ -40,7 +40,7 @@ def refuse_dear_targets():
     if not files and "scenes" in sys.argv[1:]:
         files = ["results/scenes/index.html"]
     elif not files and not ACCURACY.get("whole", True) and "everything" not in sys.argv[1:]:
-        files = figure_files(FIGURES)
+        files = FIRST
     names = {name for file in files or [""] for name in simulations_behind(file)}
     check_affordable({f"simulations.{name}": expand_sweep(sweep_of(name)) for name in sorted(names)})
 
