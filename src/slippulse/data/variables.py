@@ -181,6 +181,7 @@ VARIABLES = {
     "arrest_position": ("1", "relative error of the arrest position"),
     "arresting_block": ("count", "block at which the left front stops"),
     "before": ("1", "level before the step"),
+    "memory": ("1", "distance beyond a change of level after which a pulse is exactly steady, in units of H"),
     "springs": ("1", "leaf springs of the lattice, gamma dx^2"),
     "barrier": ("1", "pre-stress in the barrier"),
     "length": ("1", "length of a barrier over the exact depth of the pulse in it"),

@@ -10,10 +10,11 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ..comparison.exact_rupture import exact_rupture
 from ..data.points import point
 from ..measure.fronts import position_at
 from .shared.space_time import draw_map, draw_profile, edges, prestress_profile, velocity_map
-from .style import BLACK, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, ORANGE, PAGE, PURPLE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {
@@ -23,6 +24,7 @@ NEEDS = {
 
 PANELS = (("displacement", "a", 1), ("stress", "b", 0))
 PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
+EXACT_POINTS = 241
 HALO = [effects.withStroke(linewidth=2.2, foreground="white")]
 
 
@@ -42,7 +44,8 @@ def table(
     DataFrame with panel ("displacement" or "stress"), role, series, time, position, value. Roles: map (value: slip
     velocity), prestress (value: tau), front and trailing (time of first release and last stick, NaN where never),
     measured, paper and last_release (transition: its time, where the left and right fronts are then; value: the
-    length), parameter (value), largest (value: largest slip velocity; where and when), flag (series: the flags).
+    length), exact_front and exact_trailing (of the continuum limit, where it has a trailing edge), limit (where that
+    construction ends, if it does), parameter (value), largest (value: largest slip velocity; where and when), flag (series: the flags).
     """
     parts = []
     for panel, *_ in PANELS:
@@ -56,6 +59,7 @@ def table(
                 prestress_profile(run),
                 *edges(run),
                 _transition(run, numbers),
+                _exact_edges(run),
             )
         ]
     columns = ["panel", "role", "series", "time", "position", "value"]
@@ -67,6 +71,22 @@ def _parameters(run: xr.Dataset) -> pd.DataFrame:
     if run.attrs["flags"]:
         rows.append({"role": "flag", "series": run.attrs["flags"]})
     return pd.DataFrame(rows)
+
+
+def _exact_edges(run: xr.Dataset) -> pd.DataFrame:
+    """Fronts and trailing edge of the exact solution; nothing where nothing sticks."""
+    if run.attrs["boundary"] == "stress":
+        return pd.DataFrame({"role": []})
+    rupture = exact_rupture(run.attrs)
+    ends = rupture.front_ends
+    x = np.linspace(ends[0][0].x, ends[-1][1].x, EXACT_POINTS)[1:-1]
+    parts = [
+        pd.DataFrame({"role": role, "position": x, "time": time}).dropna()
+        for role, time in (("exact_front", rupture.release_time(x)), ("exact_trailing", rupture.stick_time(x)))
+    ]
+    if rupture.limit:
+        parts.append(pd.DataFrame([{"role": "limit", "position": rupture.limit.x, "time": rupture.limit.time}]))
+    return pd.concat(parts)
 
 
 def _transition(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
@@ -98,6 +118,7 @@ def plot(table: pd.DataFrame) -> Figure:
         roles = {role: rows for role, rows in chosen.groupby("role")}
         draw_profile(profile, roles["prestress"])
         image = draw_map(space_time, roles)
+        _draw_exact(space_time, roles)
         _draw_transition(space_time, roles)
         largest = roles["largest"]["value"].iloc[0]
         bar = side.colorbar(image, ax=space_time, location="top", aspect=32, pad=0.02)
@@ -121,6 +142,18 @@ def _title(roles: Mapping[str, pd.DataFrame], boundary: int) -> str:
     if "flag" in roles:
         parts.append(f"flagged: {roles['flag']['series'].iloc[0]}")
     return ", ".join(parts)
+
+
+def _draw_exact(axes, roles: Mapping[str, pd.DataFrame]) -> None:
+    for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
+        if role in roles:
+            rows = roles[role].sort_values("position")
+            axes.plot(
+                rows["time"], rows["position"], color=PURPLE, linewidth=1.1, linestyle=(0, (1, 1)), zorder=2.5,
+                label=label, gid=role,
+            )  # fmt: skip
+    if "limit" in roles:
+        axes.text(0.98, 0.02, "exact solution ends early", transform=axes.transAxes, ha="right", fontsize=6.0)
 
 
 def _draw_transition(axes, roles: Mapping[str, pd.DataFrame]) -> None:

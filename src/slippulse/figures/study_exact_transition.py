@@ -10,13 +10,14 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..comparison.exact_transition import exact_transition
+from .shared.exact_transitions import draw_one_way, draw_peak, one_way_rows, peak_rows
 from .shared.scaling import SYMBOLS
 from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress", "transition_convergence"],
-    "settings": ["measure.share"],
+    "settings": ["measure.share", "model.damping_ratio"],
 }
 
 MARKERS = {"displacement": ("o", BLUE, r"$\Gamma = 1$"), "stress": ("s", ORANGE, r"$\Gamma = 0$")}
@@ -32,17 +33,19 @@ def table(
     ----------
     data : not used
     measured : scaling_displacement, scaling_stress, transition_convergence
-    settings : measure (share)
+    settings : measure (share), model (damping_ratio)
 
     Returns
     -------
-    DataFrame of role sweep and role refinement
+    DataFrame of role sweep and role refinement, and of exact transitions alone: roles uniform, peak and one_way, and
+    limit where the construction of one ends early
     """
     share = settings["measure"]["share"]
     parts = []
     for name, boundary in (("scaling_displacement", "displacement"), ("scaling_stress", "stress")):
         parts.append(_rows(measured[name], boundary, share).assign(role="sweep"))
     parts.append(_rows(measured["transition_convergence"], "displacement", share).assign(role="refinement"))
+    parts += [peak_rows(), one_way_rows(settings["model"]["damping_ratio"])]
     return pd.concat(parts, ignore_index=True)
 
 
@@ -71,9 +74,14 @@ def _rows(runs: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Rows: T_trans, L_trans. Columns: over the paper's prediction, over the exact theory, residuals against dx."""
-    figure = new_figure(PAGE, 4.4)
-    grid = figure.subplots(2, 3)
+    """T_trans and L_trans over the paper's prediction, over the exact theory, and residuals against dx; theory alone below."""
+    figure = new_figure(PAGE, 6.4)
+    above, beneath = figure.subfigures(2, 1, height_ratios=(4.5, 2.0))
+    grid, below = above.subplots(2, 3), beneath.subplots(1, 4)
+    draw_peak(below[0], table)
+    draw_one_way(below[1:], table)
+    for axes, letter in zip(below, "ghij", strict=True):
+        panel_letter(axes, letter)
     sweep = table[table["role"] == "sweep"]
     for row, quantity in enumerate(COLUMNS):
         for column, reference in enumerate(("paper", "exact")):
@@ -140,5 +148,5 @@ def _draw_refinement(axes, rows: pd.DataFrame, quantity: str) -> None:
     axes.set_ylim(1e-6, 0.3)
     if quantity == "time":
         axes.legend(
-            title=r"$\Gamma = 1$: $\bar\tau_0,\ \bar\gamma$", fontsize=5.5, ncols=2, loc="lower right"
+            title=r"$\Gamma = 1$: $\bar\tau_0,\ \bar\gamma$", fontsize=6.0, ncols=2, loc="lower right"
         )

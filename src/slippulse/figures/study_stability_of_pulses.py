@@ -10,18 +10,22 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ..comparison.exact_rupture import exact_rupture
 from ..data.points import point
 from ..measure.pulses import leading_pulse
 from ..model.scene import prestress_from
 from ..texts.numerals import setting
 from ..theory.front_law import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import SteadyPulse, steady_pulse
+from ..theory.rupture import Rupture
 from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "settings": ["measure.front_window"]}
 
 POINTS = 400
+# Points of an exact curve, how far behind the step and beyond the finite memory it is drawn, and its rounding.
+EXACT_POINTS, BEHIND, BEYOND, ROUNDING = 121, 10.0, 1.4, 2e-9
 
 
 def table(
@@ -37,8 +41,10 @@ def table(
 
     Returns
     -------
-    DataFrame of role slip (x: distance beyond the step, y: slip, steady: the new pulse's exact slip), width (of the new
-    steady pulse) and velocity (x: time, y: largest slip velocity ahead of the step)
+    DataFrame of role slip (lattice; x: distance beyond the step, y: slip, steady: the new pulse's exact slip, width: its
+    width, memory: the distance W_p/(v - 1) beyond which it is exactly steady), exact (the same of the exact solution),
+    limit (x, y: where and when its construction ends, if it does) and velocity (x: time, y: largest slip velocity ahead
+    of the step)
     """
     window = settings["measure"]["front_window"]
     parts = []
@@ -48,12 +54,11 @@ def table(
         profile = prestress_from(run.attrs)
         place, level = profile.steps[-1]
         ratio, gamma = run.attrs["damping_ratio"], run.attrs["gamma"]
-        new = steady_pulse(
-            level, gamma, run.attrs["beta"], float(front_speed(level, ratio, run.attrs["release"]))
-        )
         old_level = run.attrs["right"]
-        old = steady_pulse(
-            old_level, gamma, run.attrs["beta"], float(front_speed(old_level, ratio, run.attrs["release"]))
+        # In the limit dx -> 0 damping acts through the speed alone.
+        old, new = (
+            steady_pulse(each, gamma, 0.0, float(front_speed(each, ratio, run.attrs["release"])))
+            for each in (old_level, level)
         )
         pulse = leading_pulse(run, window)
         x = run["x"].values
@@ -61,11 +66,10 @@ def table(
         inside = np.flatnonzero((x > place - 10.0) & (x < pulse.front - 1.05 * pulse.width))
         kept = inside[:: max(1, inside.size // POINTS)]
         common = {"before": old_level, "level": level, "gamma": gamma, "flags": run.attrs["flags"]}
-        parts.append(
-            pd.DataFrame({"x": x[kept] - place, "y": run["slip"].values[kept]}).assign(
-                role="slip", steady=new.slip, steady_before=old.slip, width=new.width, **common
-            )
-        )
+        common |= {"steady": new.slip, "steady_before": old.slip, "width": new.width, "memory": memory(new)}
+        rows = pd.DataFrame({"x": x[kept] - place, "y": run["slip"].values[kept]})
+        parts.append(rows.assign(role="slip", dx=run.attrs["dx"], **common))
+        parts.append(_exact(exact_rupture(run.attrs), place, memory(new)).assign(**common))
     sweep = data["regimes_beyond"]
     for index in range(sweep.sizes["point"]):
         run = point(sweep, index)
@@ -82,6 +86,23 @@ def table(
     return pd.concat(parts, ignore_index=True)
 
 
+def memory(pulse: SteadyPulse) -> float:
+    """How far beyond a change of level a pulse is still another one: the past of its trailing edge reaches no farther."""
+    return pulse.width / (pulse.speed - 1.0)
+
+
+def _exact(rupture: Rupture, place: float, reach: float) -> pd.DataFrame:
+    """Final slip of the exact solution around a step, and where its construction ends."""
+    x = np.concatenate(
+        [np.linspace(-BEHIND, 0.0, 21), np.linspace(0.0, reach, EXACT_POINTS)[1:], np.linspace(reach, BEYOND * reach, 21)[1:]]
+    )  # fmt: skip
+    rows = pd.DataFrame({"x": x, "y": rupture.final_slip(place + x), "role": "exact"}).dropna(subset="y")
+    if rupture.limit:
+        end = {"x": rupture.limit.x - place, "y": rupture.limit.time, "role": "limit"}
+        rows = pd.concat([rows, pd.DataFrame([end])])
+    return rows
+
+
 def relaxation_length(x: np.ndarray, y: np.ndarray, steady: float) -> float:
     """Distance beyond a step after which the slip stays within 1 % of the new pulse's; NaN if it never does."""
     beyond = x > 0.0
@@ -92,40 +113,52 @@ def relaxation_length(x: np.ndarray, y: np.ndarray, steady: float) -> float:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) slip across the step, (b) how far from the new steady pulse, (c) largest velocity under imposed stress."""
+    """(a) slip across the step, (b) its distance from the new steady pulse, (c) largest velocity under imposed stress."""
     figure = new_figure(PAGE, 2.9)
     slip_axes, rest_axes, velocity_axes = figure.subplots(1, 3)
     slip = table[table["role"] == "slip"]
+    exact = table[table["role"] == "exact"]
     for colour, (level, rows) in zip(CYCLE, slip.groupby("level"), strict=False):
-        steady = rows["steady"].iloc[0]
-        settled = relaxation_length(rows["x"].to_numpy(), rows["y"].to_numpy(), steady)
-        slip_axes.plot(rows["x"], rows["y"], color=colour, label=f"{level:g}", gid=f"slip {level:g}")
+        steady, reach = rows["steady"].iloc[0], rows["memory"].iloc[0]
+        line = exact[exact["level"] == level].sort_values("x")
+        slip_axes.plot(line["x"], line["y"], color=colour, label=f"{level:g}", gid=f"exact {level:g}")
+        shown = rows[rows["x"] < line["x"].max()].iloc[::5]
         slip_axes.plot(
-            [0.0, rows["x"].max()],
-            [steady] * 2,
-            color=colour,
-            linewidth=0.7,
-            linestyle="--",
-            gid=f"steady {level:g}",
-        )
-        beyond = rows[rows["x"] > 0.0]
-        rest_axes.plot(
-            beyond["x"] / beyond["width"], np.abs(beyond["y"] / steady - 1.0), color=colour,
-            label=f"{level:g}: 1 % after {settled / rows['width'].iloc[0]:.0f}", gid=f"rest {level:g}",
+            shown["x"], shown["y"], "o", color=colour, markersize=1.8, markerfacecolor="white", markeredgewidth=0.5,
+            gid=f"slip {level:g}",
         )  # fmt: skip
+        slip_axes.plot(reach, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2, gid=f"memory {level:g}")
+        for part, style, width in ((line, "-", 1.1), (rows, ":", 0.9)):
+            beyond = part[part["x"] > 0.0]
+            rest = np.maximum(np.abs(beyond["y"] / steady - 1.0), ROUNDING)
+            rest_axes.plot(
+                beyond["x"] / reach, rest, style, color=colour, linewidth=width,
+                gid=f"{'rest' if part is line else 'lattice rest'} {level:g}",
+            )  # fmt: skip
     before = slip["before"].iloc[0]
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     slip_axes.set(xlabel=r"distance beyond the step $\bar x$", ylabel=r"slip left behind $\bar u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\bar\tau_0 = {before:g}$ before")
-    slip_axes.legend(title=r"$\bar\tau_0$ beyond", loc="center right", bbox_to_anchor=(1.0, 0.35))
-    rest_axes.axhline(0.01, color=GREY, linewidth=0.6, linestyle=":")
+    slip_axes.plot([], [], "|", color="0.3", markersize=7.0, label="finite memory")
+    dx = slip["dx"].iloc[0]
+    slip_axes.plot([], [], "o", color="0.3", markersize=2.0, label=rf"lattice, $\mathrm{{d}}\bar x = {dx:g}$")
+    top = float(exact["y"].max())
+    slip_axes.set_ylim(None, 1.75 * top)
+    slip_axes.legend(title=r"exact, $\bar\tau_0$ beyond", loc="upper right", ncols=2, columnspacing=0.8)
+    rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
+    for style, label in (("-", "exact"), (":", "lattice")):
+        rest_axes.plot([], [], style, color="0.3", label=label)
     rest_axes.set(
         yscale="log",
-        xlabel="distance / width of the new pulse",
+        xlabel=r"distance / $\bar W_p/(\bar v - 1)$",
         ylabel="|slip / new steady slip $-$ 1|",
-        title=r"$\Gamma = 1$, relaxation",
+        title=r"$\Gamma = 1$, finite memory",
+        xlim=(0.0, BEYOND),
+        ylim=(0.3 * ROUNDING, 30.0),
     )
-    rest_axes.legend(fontsize=6.0)
+    rest_axes.legend(loc="lower left")
+    if (table["role"] == "limit").any():
+        slip_axes.text(0.02, 0.02, "exact solution ends early", transform=slip_axes.transAxes, fontsize=6.0)
     velocity = table[table["role"] == "velocity"]
     left = velocity["left"].min()
     shown = velocity[velocity["left"] == left]
@@ -149,7 +182,7 @@ def plot(table: pd.DataFrame) -> Figure:
     positive = shown.loc[shown["y"] > 0.0, "y"]
     velocity_axes.set_ylim(max(1e-2, positive.min()), 6.0 * positive.max())
     velocity_axes.legend(
-        title=r"$\bar\tau$ beyond", ncols=3, fontsize=5.5, loc="upper left", columnspacing=0.6
+        title=r"$\bar\tau$ beyond", ncols=3, fontsize=6.0, loc="upper left", columnspacing=0.6
     )
     for axes, letter in zip((slip_axes, rest_axes, velocity_axes), "abc", strict=True):
         panel_letter(axes, letter)
