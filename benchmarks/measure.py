@@ -16,7 +16,7 @@ from slippulse.measure.fronts import front_speed
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
-from slippulse.solver import localised
+from slippulse.solver import taylor
 from slippulse.solver.lattice import Lattice, run_scene
 from slippulse.theory.front_law import front_speed as exact_speed
 from slippulse.theory.pulse import steady_pulse
@@ -78,13 +78,13 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
         object.__setattr__(scene, "duration", start)
         lattice = Lattice(scene, None, scene.beta)
         lattice.run(None)
-        updates, steps = (int(lattice.counts[i]) for i in (localised.BLOCK_UPDATES, localised.STEPS))
+        updates, steps = (int(lattice.counts[i]) for i in (taylor.BLOCK_UPDATES, taylor.STEPS))
         object.__setattr__(scene, "duration", until)
         began = time.process_time()
         lattice.run(None)
         taken = time.process_time() - began
-        updates = int(lattice.counts[localised.BLOCK_UPDATES]) - updates
-        rates.append((updates / taken, updates / (int(lattice.counts[localised.STEPS]) - steps)))
+        updates = int(lattice.counts[taylor.BLOCK_UPDATES]) - updates
+        rates.append((updates / taken, updates / (int(lattice.counts[taylor.STEPS]) - steps)))
     return max(rates)
 
 
