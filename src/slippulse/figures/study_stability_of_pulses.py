@@ -42,7 +42,8 @@ def table(
     Returns
     -------
     DataFrame of role slip (lattice; x: distance beyond the step, y: slip, steady: the new pulse's exact slip, width:
-    its width, memory: the distance W_p/(v - 1) beyond which it is exactly steady), exact (the same of the exact solution),
+    its width, memory: the distance W_p/(v - 1) beyond which it is exactly steady), exact (the same of the
+    exact solution),
     limit (x, y: where and when its construction ends, if it does) and velocity (x: time, y: largest slip velocity ahead
     of the step)
     """
