@@ -45,7 +45,8 @@ def table(
     velocity), prestress (value: tau), front and trailing (time of first release and last stick, NaN where never),
     measured, paper and last_release (transition: its time, where the left and right fronts are then; value: the
     length), exact_front and exact_trailing (of the continuum limit, where it has a trailing edge), limit (where that
-    construction ends, if it does), parameter (value), largest (value: largest slip velocity; where and when), flag (series: the flags).
+    construction ends, if it does), parameter (value), largest (value: largest slip velocity; where
+    and when), flag (series: the flags).
     """
     parts = []
     for panel, *_ in PANELS:
@@ -82,10 +83,15 @@ def _exact_edges(run: xr.Dataset) -> pd.DataFrame:
     x = np.linspace(ends[0][0].x, ends[-1][1].x, EXACT_POINTS)[1:-1]
     parts = [
         pd.DataFrame({"role": role, "position": x, "time": time}).dropna()
-        for role, time in (("exact_front", rupture.release_time(x)), ("exact_trailing", rupture.stick_time(x)))
+        for role, time in (
+            ("exact_front", rupture.release_time(x)),
+            ("exact_trailing", rupture.stick_time(x)),
+        )
     ]
     if rupture.limit:
-        parts.append(pd.DataFrame([{"role": "limit", "position": rupture.limit.x, "time": rupture.limit.time}]))
+        parts.append(
+            pd.DataFrame([{"role": "limit", "position": rupture.limit.x, "time": rupture.limit.time}])
+        )
     return pd.concat(parts)
 
 

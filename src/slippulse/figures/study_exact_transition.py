@@ -74,7 +74,7 @@ def _rows(runs: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """T_trans and L_trans over the paper's prediction, over the exact theory, and residuals against dx; theory alone below."""
+    """T_trans and L_trans over the paper's prediction and the exact theory, and residuals; theory alone below."""
     figure = new_figure(PAGE, 6.4)
     above, beneath = figure.subfigures(2, 1, height_ratios=(4.5, 2.0))
     grid, below = above.subplots(2, 3), beneath.subplots(1, 4)

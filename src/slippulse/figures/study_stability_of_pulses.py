@@ -41,8 +41,9 @@ def table(
 
     Returns
     -------
-    DataFrame of role slip (lattice; x: distance beyond the step, y: slip, steady: the new pulse's exact slip, width: its
-    width, memory: the distance W_p/(v - 1) beyond which it is exactly steady), exact (the same of the exact solution),
+    DataFrame of role slip (lattice; x: distance beyond the step, y: slip, steady: the new pulse's exact slip, width:
+    its width, memory: the distance W_p/(v - 1) beyond which it is exactly steady), exact (the same of the
+    exact solution),
     limit (x, y: where and when its construction ends, if it does) and velocity (x: time, y: largest slip velocity ahead
     of the step)
     """
@@ -87,15 +88,14 @@ def table(
 
 
 def memory(pulse: SteadyPulse) -> float:
-    """How far beyond a change of level a pulse is still another one: the past of its trailing edge reaches no farther."""
+    """How far a pulse remembers a change of level: the past of its trailing edge reaches no farther."""
     return pulse.width / (pulse.speed - 1.0)
 
 
 def _exact(rupture: Rupture, place: float, reach: float) -> pd.DataFrame:
     """Final slip of the exact solution around a step, and where its construction ends."""
-    x = np.concatenate(
-        [np.linspace(-BEHIND, 0.0, 21), np.linspace(0.0, reach, EXACT_POINTS)[1:], np.linspace(reach, BEYOND * reach, 21)[1:]]
-    )  # fmt: skip
+    beyond = np.linspace(reach, BEYOND * reach, 21)[1:]
+    x = np.concatenate([np.linspace(-BEHIND, 0.0, 21), np.linspace(0.0, reach, EXACT_POINTS)[1:], beyond])
     rows = pd.DataFrame({"x": x, "y": rupture.final_slip(place + x), "role": "exact"}).dropna(subset="y")
     if rupture.limit:
         end = {"x": rupture.limit.x - place, "y": rupture.limit.time, "role": "limit"}
@@ -113,7 +113,7 @@ def relaxation_length(x: np.ndarray, y: np.ndarray, steady: float) -> float:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) slip across the step, (b) its distance from the new steady pulse, (c) largest velocity under imposed stress."""
+    """(a) slip across the step, (b) how far from the new steady pulse, (c) largest velocity under imposed stress."""
     figure = new_figure(PAGE, 2.9)
     slip_axes, rest_axes, velocity_axes = figure.subplots(1, 3)
     slip = table[table["role"] == "slip"]
@@ -127,7 +127,9 @@ def plot(table: pd.DataFrame) -> Figure:
             shown["x"], shown["y"], "o", color=colour, markersize=1.8, markerfacecolor="white", markeredgewidth=0.5,
             gid=f"slip {level:g}",
         )  # fmt: skip
-        slip_axes.plot(reach, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2, gid=f"memory {level:g}")
+        slip_axes.plot(
+            reach, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2, gid=f"memory {level:g}"
+        )
         for part, style, width in ((line, "-", 1.1), (rows, ":", 0.9)):
             beyond = part[part["x"] > 0.0]
             rest = np.maximum(np.abs(beyond["y"] / steady - 1.0), ROUNDING)

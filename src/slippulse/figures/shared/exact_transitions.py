@@ -1,4 +1,4 @@
-"""Exact transitions over a grid of scenes: what the Gaussian costs, and pulses that leave one way under leaf springs."""
+"""Exact transitions over a grid of scenes: what the Gaussian costs, and one-way pulses under leaf springs."""
 
 from __future__ import annotations
 
@@ -24,12 +24,14 @@ def peak_rows() -> pd.DataFrame:
         rows.append({"role": "uniform", "left": tau0, "exact": uniform_transition_time(tau0, 1.0) / np.pi})
         for gamma in GAMMAS:
             time = exact_transition_displacement(Prestress(tau0, tau0), gamma).time
-            rows.append({"role": "peak", "left": tau0, "gamma": gamma, "exact": time * np.sqrt(gamma) / np.pi})
+            rows.append(
+                {"role": "peak", "left": tau0, "gamma": gamma, "exact": time * np.sqrt(gamma) / np.pi}
+            )
     return pd.DataFrame(rows).assign(quantity="time", damping_ratio=0.0)
 
 
 def one_way_rows(damping_ratio: float) -> pd.DataFrame:
-    """Role one_way: where the left front stops (quantity stop), T_trans and L_trans; role limit if a construction ends."""
+    """Role one_way: where the left front stops (quantity stop), T_trans, L_trans; role limit if a construction ends."""
     rows = []
     for left in LEFTS:
         for right in RIGHTS:
@@ -41,7 +43,10 @@ def one_way_rows(damping_ratio: float) -> pd.DataFrame:
                 "length": rupture.transition_length,
             }
             common = {"left": left, "right": right, "gamma": ONE_WAY_GAMMA, "damping_ratio": damping_ratio}
-            rows += [common | {"role": "one_way", "quantity": name, "exact": value} for name, value in found.items()]
+            rows += [
+                common | {"role": "one_way", "quantity": name, "exact": value}
+                for name, value in found.items()
+            ]
             if rupture.limit:
                 rows.append(common | {"role": "limit"})
     return pd.DataFrame(rows)
@@ -59,7 +64,9 @@ def draw_peak(axes, table: pd.DataFrame) -> None:
         )  # fmt: skip
     axes.set(xlabel=r"pre-stress $\bar\tau_0$", ylabel=r"exact $\bar T_\mathrm{trans}\,\bar\gamma^{1/2}/\pi$")
     axes.set_ylim(0.85, 1.52)
-    axes.legend(loc="upper right", ncols=2, columnspacing=0.6, handlelength=1.2, handletextpad=0.4, fontsize=6.0)
+    axes.legend(
+        loc="upper right", ncols=2, columnspacing=0.6, handlelength=1.2, handletextpad=0.4, fontsize=6.0
+    )
 
 
 def draw_one_way(panels, table: pd.DataFrame) -> None:
@@ -85,4 +92,11 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
         fontsize=6.0,
     )  # fmt: skip
     if (table["role"] == "limit").any():
-        panels[1].text(0.05, 0.95, "some exact solutions\nend early", transform=panels[1].transAxes, va="top", fontsize=6.0)
+        panels[1].text(
+            0.05,
+            0.95,
+            "some exact solutions\nend early",
+            transform=panels[1].transAxes,
+            va="top",
+            fontsize=6.0,
+        )
