@@ -16,6 +16,8 @@ from .front_paths import front_paths, sliding_times
 # Seconds on one core of the reference machine: the start of a scene; a step; a sliding block in a step, by order; an
 # event, by order; a block of the lattice, to be set up and written; a block that is looked at by the textbook scheme.
 START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.7e-3, 3e-7, 0.75e-9, (1.0e-6, 0.07e-6), 1.5e-7, 5e-9
+# An instant of a stick, to be found.
+SEEK = 2e-7
 # A step ends early after so many events; the lattice has so many blocks at the start.
 EVENTS_OF_A_STEP, FIRST_BLOCKS = 64, 512
 # The run in so many parts, short ones at first.
@@ -120,7 +122,10 @@ def _scene_cost(scene: Scene) -> tuple[float, float]:
         return seconds + float(np.sum(steps * (STEP + LOOK * lattice))), blocks
     steps = np.where(steps > 0.0, np.maximum(steps, events / EVENTS_OF_A_STEP), 0.0)
     update, event = UPDATE * (scene.order + 1), EVENT[0] + EVENT[1] * scene.order
-    return seconds + float(np.sum(steps * (STEP + update * sliding) + event * events)), blocks
+    # A step that ends early looks again at all that would have stuck within it.
+    sought = (stuck[1:] - stuck[:-1]) * np.minimum(1.0, step / (scene.duration * LENGTHS))
+    each = STEP + update * sliding + SEEK * sought
+    return seconds + float(np.sum(steps * each + event * events)), blocks
 
 
 def _passed(when: np.ndarray, weight: np.ndarray, times: np.ndarray) -> np.ndarray:

@@ -131,9 +131,9 @@ def _stopped(profile: Prestress, cells: FrontPaths, gamma: float, stiffness: flo
     x, size, level = cells.x, cells.size, cells.level
     push, ends = size * level, []
     memory = math.pi / math.sqrt(gamma) if gamma else math.inf
-    # Without pre-stress a front fades for ever.
+    # Without pre-stress far away a front fades for ever, in the tail of the Gaussian too.
     held = stiffness * np.sqrt(1.0 - np.clip(level, 0.0, 1.0) ** 2) > 2.0 * np.maximum(level, 0.0)
-    held &= level != 0.0
+    held &= profile.level(x) != 0.0
     sides = [(x < 0.0, profile.left), (x > 0.0, profile.right)]
     pushes = [
         float(np.sum(push[side])) if level == 0.0 else math.inf if level > 0.0 else 0.0

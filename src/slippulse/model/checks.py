@@ -45,23 +45,21 @@ def check_number(
     ValueError
         Naming the key, the value and the range.
     """
-    bounds = [
-        f"> {above:g}" if above is not None else "",
-        f">= {at_least:g}" if at_least is not None else "",
-        f"<= {at_most:g}" if at_most is not None else "",
-        f"< {below:g}" if below is not None else "",
-    ]
-    allowed = " and ".join(["a finite number", *(bound for bound in bounds if bound)])
-    good = isinstance(value, Real) and not isinstance(value, bool | np.bool_) and _finite(value)
-    if good:
-        good = (
-            (above is None or value > above)
-            and (at_least is None or value >= at_least)
-            and (at_most is None or value <= at_most)
-            and (below is None or value < below)
-        )
-    if not good:
-        raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+    number = type(value) is float or (isinstance(value, Real) and not isinstance(value, (bool, np.bool_)))
+    if (
+        number
+        and _finite(value)
+        and (above is None or value > above)
+        and (at_least is None or value >= at_least)
+        and (at_most is None or value <= at_most)
+        and (below is None or value < below)
+    ):
+        return
+    signs = ((">", above), (">=", at_least), ("<=", at_most), ("<", below))
+    allowed = " and ".join(
+        ["a finite number", *(f"{sign} {bound:g}" for sign, bound in signs if bound is not None)]
+    )
+    raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
 
 
 def _finite(value: Real) -> bool:
