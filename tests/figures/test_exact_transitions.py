@@ -16,7 +16,9 @@ def test_uniform_prestress_leaves_the_papers_estimate_from_above(table):
     found = uniform.set_index("left")["exact"]
     assert found[[0.1, 0.4, 0.9]].to_numpy() == pytest.approx([1.219, 1.206, 1.112], abs=1e-3)
     assert (np.diff(uniform["exact"]) < 0.0).all()
-    peaks = table[table["role"] == "peak"].merge(uniform[["left", "exact"]], on="left", suffixes=("", "_uniform"))
+    peaks = table[table["role"] == "peak"].merge(
+        uniform[["left", "exact"]], on="left", suffixes=("", "_uniform")
+    )
     assert (peaks["exact"] < peaks["exact_uniform"]).all(), "the peak brings the transition forward"
 
 
