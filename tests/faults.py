@@ -125,7 +125,7 @@ def kill(run: subprocess.Popen, whom: str, chance: random.Random) -> None:
     run.wait(timeout=300)
 
 
-def fault_run(folder: Path, kills: int, seed: int, say=print) -> Report:
+def fault_run(folder: Path, kills: int, seed: int, say=print, targets: Iterable[str] = TARGETS) -> Report:
     """Kill runs until ``kills`` have been killed; compare each time that one gets to its end.
 
     Raises
@@ -136,7 +136,7 @@ def fault_run(folder: Path, kills: int, seed: int, say=print) -> Report:
     chance, report = random.Random(seed), Report()
     quiet = prepare(folder / "quiet")
     began = time.monotonic()
-    assert start(quiet).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(encoding="utf-8")
+    assert start(quiet, targets).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(encoding="utf-8")
     duration = time.monotonic() - began
     expected = digests(quiet)
     report.files = len(expected)

@@ -11,8 +11,11 @@ from slippulse.configuration.cost import expected_cost
 from slippulse.configuration.expand import expand, resolve
 from slippulse.data.chunks import dealing, runs_of
 from slippulse.data.join import ChunksDiffer
+from slippulse.data.origin import configured_by
 from slippulse.steps import join_data, join_measurements, join_uncertainties, measure, simulate, study_grid
 
+# Of the part of the configuration that the files are made by, which each notes.
+CONFIGURATION = "0123456789abcdef"
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either kind alone too; a
 # level of 0, so that columns of whole numbers in one chunk hold fractions in the next; a symmetric and an oblique one.
@@ -88,7 +91,8 @@ def made(project, tmp_path_factory):
         if not files[0].exists():
             data, measured, study, coarser = files
             settings = {"simulation": name, "measure": config["measure"], "threads": 1}
-            simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})
+            with configured_by(CONFIGURATION):
+                simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})
             measure.run({"data": data}, {"measured": measured}, settings)
             outputs = {"uncertainties": study, "coarser": coarser}
             study_grid.run({"finest": measured}, outputs, settings | {"sweeps": blocks})
@@ -107,7 +111,8 @@ def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks)
         *(made(name, [number, chunks]) for number in range(1, chunks + 1)), strict=True
     )
     joined = [tmp_path / file.name for file in whole]
-    join_data.run({"chunks": data}, {"data": joined[0]}, {"record": SWEEPS[name]["record"]})
+    with configured_by(CONFIGURATION):
+        join_data.run({"chunks": data}, {"data": joined[0]}, {"record": SWEEPS[name]["record"]})
     join_measurements.run({"chunks": measured}, {"measured": joined[1]}, {})
     join_uncertainties.run(
         {"finest": joined[1], "uncertainties": studies, "coarser": coarser},

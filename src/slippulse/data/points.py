@@ -48,7 +48,8 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
         )
         for name in ("sample_slip", "sample_velocity"):
             out[name] = (("sample_time", "sample_position"), sweep.variables[name].values[index])
-    of_the_run = {name: value for name, value in sweep.attrs.items() if name not in (*FILE, "featureType")}
+    of_the_file = (*FILE, "featureType", "configuration")
+    of_the_run = {name: value for name, value in sweep.attrs.items() if name not in of_the_file}
     out.attrs = {name: sweep.variables[name].values[index].item() for name in scalars} | of_the_run
     return out
 
