@@ -99,7 +99,7 @@ rule draw_sweep:
     params:
         step="draw_sweep",
         share=config["measure"]["share"],
-        configuration=lambda wildcards: configuration_of_job(wildcards.sweep),
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.sweep),
     message:
         "Drawing sweep {wildcards.sweep}"
     script:

@@ -28,7 +28,7 @@ def simulations_behind(file):
         return set(simulations_of([name]))
     if file == "results/scenes/index.html":
         return set(SCENES)
-    found = {other for other in SIMULATIONS if name == other or name == f"{other}_numbers"}
+    found = {other for other in SIMULATIONS if name in (other, f"{other}_numbers", f"sweep_{other}")}
     return found or set(SIMULATIONS)
 
 
