@@ -110,13 +110,13 @@ def configuration(simulations=(), **settings):
 @cache
 def configuration_of_data(job):
     """The same for the data of one simulation, chunks or not."""
-    return configuration([job.partition("/")[0]])
+    return configuration([Path(job).parts[0]])
 
 
 @cache
 def configuration_of_numbers(job):
     """The same for what is measured in the data of one simulation."""
-    return configuration([job.partition("/")[0]], measure=config["measure"])
+    return configuration([Path(job).parts[0]], measure=config["measure"])
 
 
 def figure_files(names):

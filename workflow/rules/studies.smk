@@ -19,7 +19,7 @@ for study in SOLVER_STUDIES:
             runtime=20,
         params:
             step="run_study",
-            study=study,
+            module=f"studies.{study}",
             values=settings_of_study(study),
             configuration=configuration(study=settings_of_study(study)),
         message:

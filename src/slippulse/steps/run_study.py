@@ -9,6 +9,6 @@ from ..data.store import save_table
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Outputs: table. Settings: study (its module), values (what it takes from the configuration)."""
-    study = import_module(f"slippulse.studies.{settings['study']}")
+    """Outputs: table. Settings: module (of the study), values (what it takes from the configuration)."""
+    study = import_module(f"slippulse.{settings['module']}")
     save_table(study.table(settings["values"]), outputs["table"])
