@@ -16,7 +16,6 @@ from .front_law import front_speed
 from .fronts import FrontLaw, straight_panel
 from .profile import nucleations
 from .riemann import Cones
-from .rupture import Rupture
 from .trailing import TrailingEdge
 
 
@@ -128,11 +127,25 @@ def exact_transition_displacement(
 
 
 def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTransition:
-    until = 2.5 * np.pi / np.sqrt(gamma)
-    rupture = Rupture(prestress, gamma, damping_ratio, release, until)
-    time = float(rupture.stick_time(0.0))
-    left, right = rupture.fronts_at(time)
-    return ExactTransition(time, right - left)
+    period = np.pi / np.sqrt(gamma)
+    # The cone of (0, t) enters at x + T(x) = t, so x < t.
+    fronts = Fronts(prestress, damping_ratio, release, 2.5 * period)
+    # Slip velocity swings no faster than the leaf springs: steps of a tenth of their half period miss no zero.
+    times = np.linspace(0.0, 2.0 * period, 21)[1:]
+    velocity = Cones(fronts.curve, gamma, np.zeros(times.size), times).slip_velocity()
+    first = int(np.flatnonzero(velocity[1:] <= 0.0)[0]) + 1
+    stick = float(
+        root_between(
+            lambda time: slip_velocity(fronts, gamma, 0.0, time),
+            times[first - 1],
+            times[first],
+            xtol=1e-12 * period,
+        )
+    )
+    level = float(prestress.level(np.asarray(1e300)))
+    speed = float(front_speed(level, damping_ratio, release))
+    reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width)
+    return ExactTransition(stick, 2.0 * reach.reached(stick, 1.0))
 
 
 def uniform_transition_time(
