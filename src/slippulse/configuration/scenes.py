@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..model.prestress import Prestress
-from ..theory.front_law import front_speed
+from ..theory.front_law import LARGEST_RATIO, front_speed
 
 # Keys of a scene that describe its pre-stress, those that become a list of one value, and those that stay.
 PROFILE_KEYS = ("left", "right", "width", "peak", "steps", "bumps")
@@ -45,7 +45,7 @@ def _reach(scene: Mapping, model: Mapping) -> float:
     """Where the fronts may be at the end: farther than any, by theory where there is one."""
     levels = [scene["left"], scene["right"], *(level for _, level in scene.get("steps", []))]
     level = min(max(levels), 1.0 - 1e-6)
-    ratio = scene.get("damping_ratio", model["damping_ratio"])
+    ratio = min(scene.get("damping_ratio", model["damping_ratio"]), LARGEST_RATIO)
     speed = 1.0
     if level > 0.0:
         known = "beta" not in scene
