@@ -214,7 +214,7 @@ def test_flagged_runs_are_open_counted_and_no_example(inputs):
     data, measured = inputs
     flagged = {name: frame.copy() for name, frame in measured.items()}
     rows = flagged["regimes_beyond"]["regime"] == "pulse, one-way, steady"
-    flagged["regimes_beyond"]["flags"] = np.where(rows, "energy", "")
+    flagged["regimes_beyond"]["run_flags"] = np.where(rows, "energy", "")
     table = figure.table(data, flagged, SETTINGS)
     assert "pulse, one-way, steady" not in set(table.loc[table["role"] == "example", "regime"])
     drawn = figure.plot(table)
@@ -231,7 +231,7 @@ def test_flagged_runs_are_open_counted_and_no_example(inputs):
 def test_a_diagram_of_flagged_runs_alone_is_still_drawn(inputs):
     data, measured = inputs
     table = figure.table(
-        data, {name: frame.assign(flags="energy") for name, frame in measured.items()}, SETTINGS
+        data, {name: frame.assign(run_flags="energy") for name, frame in measured.items()}, SETTINGS
     )
     assert not (table["role"] == "example").any()
     drawn = figure.plot(table)
@@ -242,7 +242,7 @@ def test_a_diagram_of_flagged_runs_alone_is_still_drawn(inputs):
 def test_inmost_run_is_far_from_other_classes_and_from_the_rim():
     columns, rows = np.meshgrid(np.arange(7), np.arange(7), indexing="ij")
     regime = np.where(columns.ravel() < 5, "crack-like, two-way", "arrested")
-    markers = pd.DataFrame({"x": columns.ravel(), "y": rows.ravel(), "regime": regime, "flags": ""})
+    markers = pd.DataFrame({"x": columns.ravel(), "y": rows.ravel(), "regime": regime, "run_flags": ""})
     chosen = markers.iloc[figure.inmost(markers, "crack-like, two-way")]
     assert (chosen["x"], chosen["y"]) == (2, 3)
     assert figure.inmost(markers, "pulses, two-way") is None

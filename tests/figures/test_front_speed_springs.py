@@ -12,7 +12,7 @@ def table(draw):
 
 
 def test_simulations_of_wide_pulses_lie_on_theory(table):
-    runs = table[(table["role"] == "simulation") & table["flags"].isna()]
+    runs = table[(table["role"] == "simulation") & table["run_flags"].isna()]
     springs = runs[runs["part"] == "springs"]
     assert len(springs) >= 20 and (springs["dx"] == 1.0).sum() >= 10
     assert set(springs["release"]) == {"total", "elastic"}

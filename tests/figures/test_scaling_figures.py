@@ -23,7 +23,7 @@ def test_every_run_is_drawn(draw):
         strict=True,
     ):
         measured = drawn.measured[f"scaling_{boundary}"]
-        sound = measured[measured["flags"].isna()]
+        sound = measured[measured["run_flags"].isna()]
         places = offsets(axes, "runs")
         assert len(places) == len(sound)
         drawn_y = np.ma.getdata(places[:, 1])

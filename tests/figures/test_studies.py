@@ -51,7 +51,7 @@ def test_refining_at_fixed_ratio_converges_and_at_fixed_beta_does_not(draw):
 
 def test_exact_theory_collapses_what_the_paper_scatters(draw):
     table = draw("study_exact_transition").table
-    rows = table[(table["role"] == "sweep") & table["flags"].isna() & table["measured"].notna()]
+    rows = table[(table["role"] == "sweep") & table["run_flags"].isna() & table["measured"].notna()]
     for _, group in rows.groupby(["boundary", "quantity"]):
         papers = np.abs(group["measured"] / group["paper"] - 1.0).median()
         exact = np.abs(group["measured"] / group["exact"] - 1.0).median()

@@ -59,7 +59,7 @@ def test_it_is_the_same_dataset():
         assert exact[name].dims == lattice[name].dims and exact[name].attrs == lattice[name].attrs
     missing = set(lattice.attrs) - set(exact.attrs)
     assert missing <= {name for name in lattice.attrs if name.endswith(("energy", "loss", "of_prestress"))}
-    assert exact.attrs["scheme"] == "continuum" and exact.attrs["flags"] == ""
+    assert exact.attrs["scheme"] == "continuum" and exact.attrs["run_flags"] == ""
     difference = np.abs(exact.sample_slip - lattice.sample_slip).max()
     assert float(difference) < 0.1 * float(lattice.sample_slip.max())
 
@@ -72,10 +72,10 @@ def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
         exact = sp.simulate(
             sp.Scene("displacement", profile, duration, 0.1, gamma=0.65, beta=0.01, scheme="continuum")
         )
-        if exact.attrs["flags"]:
+        if exact.attrs["run_flags"]:
             found = exact
     assert found is not None, "no scene of these ends early"
-    assert found.attrs["flags"] == "construction_ended" and found.attrs["limit_reason"]
+    assert found.attrs["run_flags"] == "construction_ended" and found.attrs["limit_reason"]
     assert found.attrs["limit_time"] <= found.attrs["duration"]
     assert np.isnan(found.slip.values).any()
 

@@ -131,7 +131,7 @@ def test_the_lowest_stress_of_a_stuck_block_is_not_above_what_is_left_at_the_end
     lowest = elastic_stress(run)[~sliding(run)].min()
     assert run.attrs["min_stuck_stress"] <= lowest + tol.STRESS_AT_END
     if lowest <= scene.reverse_threshold:
-        assert "reverse_sliding" in run.attrs["flags"]
+        assert "reverse_sliding" in run.attrs["run_flags"]
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])

@@ -19,12 +19,12 @@ from slippulse.simulation.sweep import run_sweep
 
 SHARE = 0.95
 PULSE = {
-    "boundary": "displacement", "flags": "", "left": 0.5, "right": 0.5, "beyond": 0.5, "damping_ratio": 0.1,
+    "boundary": "displacement", "run_flags": "", "left": 0.5, "right": 0.5, "beyond": 0.5, "damping_ratio": 0.1,
     "pulse_state": "steady", "front_speed_left": 1.2, "front_speed_right": 1.2, "pulse_width": 2.0,
     "transition_time": 3.0, "pulse_acceleration": 1.0,
 }  # fmt: skip
 CRACK = {
-    "boundary": "stress", "flags": "", "left": -1.0, "right": 0.0, "beyond": 0.0, "damping_ratio": 0.1,
+    "boundary": "stress", "run_flags": "", "left": -1.0, "right": 0.0, "beyond": 0.0, "damping_ratio": 0.1,
     "transition_state": "resolved", "front_speed_right": 1.0, "transition_time": 5.0, "largest_velocity": 1.0,
 }  # fmt: skip
 
@@ -36,7 +36,7 @@ CRACK = {
         (PULSE, "pulse_width", True),
         (PULSE, "transition_time", True),
         (PULSE, "pulse_acceleration", False),
-        (PULSE | {"flags": "unresolved_pulse"}, "front_speed_right", False),
+        (PULSE | {"run_flags": "unresolved_pulse"}, "front_speed_right", False),
         (PULSE | {"pulse_state": "unsteady"}, "pulse_width", False),
         (PULSE | {"pulse_width": math.nan}, "pulse_width", False),
         (PULSE | {"left": -0.1}, "front_speed_left", False),

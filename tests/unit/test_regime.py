@@ -166,7 +166,7 @@ def simulated(boundary: str, prestress: Prestress, duration: float, gamma: float
     )
     reach = 1.5 * duration + 10.0
     run = simulate(scene, Samples(np.linspace(0.0, duration, 10), np.linspace(-reach, reach, 801)))
-    assert run.attrs["flags"] == ""
+    assert run.attrs["run_flags"] == ""
     return regime(run)
 
 

@@ -114,11 +114,11 @@ def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps
     run = run_scene(sound)
     assert run.numbers["energy_residual"] < tol.ENERGY
     assert run.numbers["sticks"] == 0
-    assert judge(sound, run)["flags"] == ""
+    assert judge(sound, run)["run_flags"] == ""
     broken = beyond_the_bound("localised", tol.ABOVE_BOUND, **STRONG, beta=1.0)
     run = run_scene(broken)
     assert run.numbers["sticks"] > 0
-    assert "energy" in judge(broken, run)["flags"].split(",")
+    assert "energy" in judge(broken, run)["run_flags"].split(",")
     with pytest.raises(UnstableRun, match=r"unstable at t = .*max_step"):
         run_scene(beyond_the_bound("localised", tol.WELL_ABOVE_BOUND, **STRONG, beta=1.0))
 

@@ -25,7 +25,7 @@ def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     speed, _, _ = front_speed(run, 0.3)
     assert speed == pytest.approx(1.0 / np.sqrt(1.0 - tau0**2), rel=tol.FRONT_SPEED)
     assert leading_pulse(run, 0.3).slip == pytest.approx(2.0 * tau0 / 0.65, rel=tol.PULSE_SLIP)
-    assert run.attrs["flags"] == ""
+    assert run.attrs["run_flags"] == ""
 
 
 @pytest.mark.parametrize(

@@ -71,16 +71,16 @@ UNRESOLVED = {"boundary": "displacement", "gamma": 0.65, "prestress": sp.Prestre
 
 def test_a_pulse_of_few_blocks_is_flagged():
     run = sp.simulate(sp.Scene(**UNRESOLVED, duration=20.0))
-    assert run.attrs["flags"] == "unresolved_pulse"
+    assert run.attrs["run_flags"] == "unresolved_pulse"
     assert 0 < run.attrs["pulse_blocks"] < 8
-    assert sp.simulate(sp.Scene(**UNRESOLVED | {"dx": 0.05}, duration=20.0)).attrs["flags"] == ""
-    assert sp.simulate(sp.Scene(**UNRESOLVED, duration=20.0, resolved_blocks=1)).attrs["flags"] == ""
+    assert sp.simulate(sp.Scene(**UNRESOLVED | {"dx": 0.05}, duration=20.0)).attrs["run_flags"] == ""
+    assert sp.simulate(sp.Scene(**UNRESOLVED, duration=20.0, resolved_blocks=1)).attrs["run_flags"] == ""
 
 
 def test_under_a_stress_boundary_the_gaussian_must_be_resolved():
     values = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 4.0}
-    assert sp.simulate(sp.Scene(**values, dx=0.2)).attrs["flags"] == "unresolved_pulse"
-    assert sp.simulate(sp.Scene(**values, dx=0.125)).attrs["flags"] == ""
+    assert sp.simulate(sp.Scene(**values, dx=0.2)).attrs["run_flags"] == "unresolved_pulse"
+    assert sp.simulate(sp.Scene(**values, dx=0.125)).attrs["run_flags"] == ""
 
 
 @pytest.mark.parametrize(("ratio", "flagged"), [(0.0, True), (0.2, True), (0.3, False), (5.0, False)])
@@ -88,7 +88,7 @@ def test_a_stress_beyond_the_threshold_of_reverse_sliding_is_flagged(ratio, flag
     """The level -1.5 is there from the start: -(1 + 2 ratio) is above it for ratios below 0.25."""
     scene = sp.Scene("stress", sp.Prestress(-1.5, 0.3), 3.0, 0.05, beta=0.01, friction_ratio=ratio)
     run = sp.simulate(scene)
-    assert (run.attrs["flags"] == "reverse_sliding") is flagged
+    assert (run.attrs["run_flags"] == "reverse_sliding") is flagged
     assert run.attrs["friction_ratio_needed"] >= 0.25
 
 
@@ -100,7 +100,7 @@ def test_a_step_too_long_for_the_damping_is_flagged_or_stops(times_the_bound, st
         with pytest.raises(sp.UnstableRun, match=r"unstable at t = .*max_step"):
             sp.simulate(scene)
     else:
-        assert "energy" in sp.simulate(scene).attrs["flags"]
+        assert "energy" in sp.simulate(scene).attrs["run_flags"]
 
 
 def test_strict_raises_where_a_flag_would_be_set():
@@ -124,20 +124,20 @@ def test_a_pulse_that_dies_where_the_prestress_would_drive_it_on_is_flagged():
     """tau_0 = 0.01: the steady pulse goes on for ever, the lattice of dx = 0.1 is too coarse to carry it."""
     run = sp.simulate(sp.Scene(**DYING, prestress=sp.Prestress(0.01, 0.01)))
     assert run.attrs["stopped_because"] == "everything is stuck"
-    assert run.attrs["flags"] == "died_out"
+    assert run.attrs["run_flags"] == "died_out"
 
 
 def test_a_pulse_that_dies_on_one_side_is_flagged():
     run = sp.simulate(sp.Scene(**DYING, prestress=sp.Prestress(0.01, 0.5)))
     assert run.attrs["stopped_because"] == "duration reached"
-    assert "died_out" in run.attrs["flags"].split(",")
+    assert "died_out" in run.attrs["run_flags"].split(",")
 
 
 @pytest.mark.parametrize("level", [-0.5, 0.0])
 def test_an_arrest_without_prestress_to_drive_it_is_not_flagged(level):
     run = sp.simulate(sp.Scene(**DYING | {"dx": 0.02}, prestress=sp.Prestress(level, level)))
     assert run.attrs["stopped_because"] == "everything is stuck"
-    assert run.attrs["flags"] == ""
+    assert run.attrs["run_flags"] == ""
 
 
 def test_a_peak_that_falls_to_zero_within_a_few_blocks_is_flagged():
@@ -149,5 +149,5 @@ def test_a_peak_that_falls_to_zero_within_a_few_blocks_is_flagged():
         "friction_ratio": 60.0,
     }
     coarse = sp.simulate(sp.Scene(**values, dx=0.1, beta=0.01))
-    assert coarse.attrs["flags"] == "unresolved_pulse" and coarse.attrs["pulse_blocks"] == 1
-    assert sp.simulate(sp.Scene(**values, dx=0.005, beta=5e-4)).attrs["flags"] == ""
+    assert coarse.attrs["run_flags"] == "unresolved_pulse" and coarse.attrs["pulse_blocks"] == 1
+    assert sp.simulate(sp.Scene(**values, dx=0.005, beta=5e-4)).attrs["run_flags"] == ""

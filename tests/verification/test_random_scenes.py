@@ -57,7 +57,7 @@ def check_invariants(scene):
     if localised:
         assert largest_stress_of_stuck_blocks(scene, run) <= 1.0 + tol.STRESS_AT_END
         # Bounded, or flagged; and flagged only where the run is coarse or strongly damped.
-        flagged = "energy" in run.attrs["flags"]
+        flagged = "energy" in run.attrs["run_flags"]
         assert flagged == (run.attrs["energy_residual"] > tol.RANDOM_ENERGY)
         assert not flagged or run.attrs["steps"] < 20 or scene.order == 3 or scene.damping_ratio >= 1.0
         seen["flagged for energy"] += flagged

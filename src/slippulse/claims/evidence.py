@@ -48,7 +48,7 @@ class Evidence:
             value=study["value"].reindex(table.index),
             uncertainty=study["uncertainty"].reindex(table.index),
         )
-        table = table[table["flags"].isna() | (table["flags"] == "")]
+        table = table[table["run_flags"].isna() | (table["run_flags"] == "")]
         return table[where(table)] if where is not None else table
 
     def tolerance(self, claim: str) -> float:

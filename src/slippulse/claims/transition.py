@@ -83,7 +83,7 @@ def slope(evidence: Evidence, boundary: str, quantity: str, name: str, predictio
     slopes = []
     simulation = f"scaling_{boundary}"
     for table in (evidence.measured[simulation], *evidence.coarser[simulation]):
-        good = np.isfinite(table[quantity]) & (table["flags"].isna() | (table["flags"] == ""))
+        good = np.isfinite(table[quantity]) & (table["run_flags"].isna() | (table["run_flags"] == ""))
         slopes.append(float(np.polyfit(np.log(table[prediction][good]), np.log(table[quantity][good]), 1)[0]))
     return evidence.number(
         f"{name}_{boundary}_slope",

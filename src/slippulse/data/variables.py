@@ -50,7 +50,7 @@ VARIABLES = {
     "first_stick_position": ("1", "position of the first stick, in units of H"),
     "half_lattice_used": ("1", "1 where half of the scene was simulated"),
     "pulse_blocks": ("count", "blocks across the narrowest pulse at the end"),
-    "flags": (
+    "run_flags": (
         "text",
         "what would make the numbers something else than the model's; empty where nothing does",
     ),

@@ -105,7 +105,7 @@ def _markers(letter: str, measured: pd.DataFrame, x: str, y: str) -> pd.DataFram
             "x": measured[x],
             "y": measured[y],
             "regime": measured["regime"],
-            "flags": measured["flags"],
+            "run_flags": measured["run_flags"],
             **{name: measured[name] for name in KEPT},
         }
     )
@@ -156,7 +156,7 @@ def inmost(markers: pd.DataFrame, regime: str) -> int | None:
 
 def is_flagged(rows: pd.DataFrame) -> pd.Series:
     """Whether each run carries a flag; empty text is missing after a CSV file."""
-    return rows["flags"].astype(object).fillna("").astype(str).str.len() > 0
+    return rows["run_flags"].astype(object).fillna("").astype(str).str.len() > 0
 
 
 def _profiles(run: xr.Dataset) -> pd.DataFrame:

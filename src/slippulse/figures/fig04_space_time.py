@@ -69,8 +69,8 @@ def table(
 
 def _parameters(run: xr.Dataset) -> pd.DataFrame:
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
-    if run.attrs["flags"]:
-        rows.append({"role": "flag", "series": run.attrs["flags"]})
+    if run.attrs["run_flags"]:
+        rows.append({"role": "flag", "series": run.attrs["run_flags"]})
     return pd.DataFrame(rows)
 
 

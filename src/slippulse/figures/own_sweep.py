@@ -45,11 +45,16 @@ def table(measured: pd.DataFrame, share: float) -> pd.DataFrame:
         for quantity, label in LABELS[run["boundary"]].items():
             if np.isfinite(run.get(quantity, np.nan)):
                 rows.append(
-                    {"quantity": quantity, "label": label, "value": run[quantity], "flags": run["flags"]}
+                    {
+                        "quantity": quantity,
+                        "label": label,
+                        "value": run[quantity],
+                        "run_flags": run["run_flags"],
+                    }
                     | {"theory": exact.get(quantity, np.nan), "axis": varying[0], "x": run[varying[0]]}
                     | {"colour": varying[-1] if len(varying) > 1 else "", "level": run[varying[-1]]}
                 )
-    columns = ["quantity", "label", "value", "theory", "flags", "axis", "x", "colour", "level"]
+    columns = ["quantity", "label", "value", "theory", "run_flags", "axis", "x", "colour", "level"]
     return pd.DataFrame(rows, columns=columns)
 
 
@@ -65,7 +70,7 @@ def plot(table: pd.DataFrame) -> Figure:
             label = f"{AXES[group['colour'].iloc[0]]} = {level}" if group["colour"].iloc[0] else None
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
             for sound, face in ((True, colour), (False, "none")):
-                some = group[(group["flags"].isna() | (group["flags"] == "")) == sound]
+                some = group[(group["run_flags"].isna() | (group["run_flags"] == "")) == sound]
                 axes.plot(
                     some["x"],
                     some["value"],

@@ -37,8 +37,8 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, settings: Mapping) -> pd.DataF
     its front where the right front is); number (series: its label); parameter; title and flag (series: the text).
     """
     texts = [{"role": "title", "series": settings["title"]}]
-    if run.attrs["flags"]:
-        texts.append({"role": "flag", "series": run.attrs["flags"]})
+    if run.attrs["run_flags"]:
+        texts.append({"role": "flag", "series": run.attrs["run_flags"]})
     parts = [
         pd.DataFrame(texts),
         pd.DataFrame(

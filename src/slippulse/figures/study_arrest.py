@@ -52,7 +52,7 @@ def table(
             cracks[ratio] = ArrestingCrack(prestress_from(run.attrs), ratio, row["release"])
         crack = cracks[ratio]
         scale = abs(crack.balance_position)
-        common = {"damping_ratio": ratio, "dx": row["dx"], "flags": row["flags"]}
+        common = {"damping_ratio": ratio, "dx": row["dx"], "run_flags": row["run_flags"]}
         for share in SHARES:
             time = arrival(run, share * scale, "left") / scale
             exact = crack.share_time(share) / scale

@@ -64,7 +64,7 @@ def table(
                         "theory": theory.get(quantity, np.nan),
                         "fixed": run[column],
                         "release": run["release"],
-                        "flags": run["flags"],
+                        "run_flags": run["run_flags"],
                     }
                 )
     tau0 = float(measured["continuum_fixed_ratio"]["left"].iloc[0])

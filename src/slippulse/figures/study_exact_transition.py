@@ -67,7 +67,7 @@ def _rows(runs: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
                     "measured": run[column],
                     "paper": run[f"paper_{column}"],
                     "exact": exact[quantity],
-                    "flags": run["flags"],
+                    "run_flags": run["run_flags"],
                 }
             )
     return pd.DataFrame(rows)
@@ -90,7 +90,7 @@ def plot(table: pd.DataFrame) -> Figure:
             lines = []
             for boundary, (marker, colour, label) in MARKERS.items():
                 rows = sweep[(sweep["boundary"] == boundary) & (sweep["quantity"] == quantity)]
-                sound = rows["flags"].isna() & rows["measured"].notna()
+                sound = rows["run_flags"].isna() & rows["measured"].notna()
                 ratio = rows["measured"] / rows[reference]
                 axes.plot(
                     rows.loc[sound, reference], ratio[sound], marker, color=colour, markersize=2.5, alpha=0.8,
@@ -135,7 +135,7 @@ def _draw_refinement(axes, rows: pd.DataFrame, quantity: str) -> None:
                 label=rf"{left:g}, {gamma:g}" if style == "-" else None, gid=f"{left:g} {gamma:g} {ratio:g}",
             )  # fmt: skip
     marker, colour, label = MARKERS["stress"]
-    stress = rows[(rows["role"] == "sweep") & (rows["boundary"] == "stress") & rows["flags"].isna()]
+    stress = rows[(rows["role"] == "sweep") & (rows["boundary"] == "stress") & rows["run_flags"].isna()]
     error = np.abs(stress["measured"] / stress["exact"] - 1.0)
     axes.plot(
         stress["dx"] / stress["width"], error, marker, color=colour, markersize=2.0, alpha=0.5,

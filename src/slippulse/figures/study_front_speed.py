@@ -54,7 +54,7 @@ def table(
                     "damping_ratio": runs["damping_ratio"],
                     "speed": runs["front_speed_right"],
                     "theory": front_speed(runs["left"].to_numpy(), runs["damping_ratio"].to_numpy(), rule),
-                    "flags": runs["flags"],
+                    "run_flags": runs["run_flags"],
                 }
             )
         )
@@ -166,7 +166,7 @@ def _points(axes, rest, simulated, rule, key, value, x, colour, marker, label) -
     """Simulated speeds of one line and, below, how far each is from theory; flagged runs open."""
     runs = simulated[(simulated["release"] == rule) & (simulated[key] == value)]
     runs = runs[runs[x] > 0.0] if x == "damping_ratio" else runs
-    for flagged, group in runs.groupby(runs["flags"].notna()):
+    for flagged, group in runs.groupby(runs["run_flags"].notna()):
         look = {"linestyle": "none", "markersize": 3.0, "marker": marker, "color": colour}
         look |= {"markerfacecolor": "none"} if flagged else {}
         axes.plot(

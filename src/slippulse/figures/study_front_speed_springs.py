@@ -70,7 +70,7 @@ def _simulations(runs: pd.DataFrame) -> pd.DataFrame:
                 "role": "simulation", "release": run["release"], "tau0": run["left"], "gamma": run["gamma"],
                 "beta": run["beta"], "damping_ratio": run["damping_ratio"], "dx": run["dx"],
                 "springs": run["gamma"] * run["dx"] ** 2, "speed": run["front_speed_right"], "theory": _speed(*scene),
-                "flags": _flags(run),
+                "run_flags": _flags(run),
             }
         )  # fmt: skip
     return pd.DataFrame(rows)
@@ -86,7 +86,7 @@ def _speed(*scene) -> float:
 
 def _flags(run: pd.Series) -> str:
     """Flags of a run, and whether its pulse is too narrow for theory."""
-    found = [] if pd.isna(run["flags"]) else [run["flags"]]
+    found = [] if pd.isna(run["run_flags"]) else [run["run_flags"]]
     if run["pulse_state"] != "steady":
         found.append(str(run["pulse_state"]))
     if not run["pulse_width"] >= FEWEST_BLOCKS * run["dx"]:
@@ -197,7 +197,7 @@ def _speed_axis(axes, top: float) -> None:
 
 def _points(axes, rest, runs: pd.DataFrame, x: str, colour: str, marker: str) -> None:
     """Simulated speeds and, below, how far each is from theory; open where theory may not hold."""
-    for sound, group in runs.groupby(runs["flags"].isna() | (runs["flags"] == "")):
+    for sound, group in runs.groupby(runs["run_flags"].isna() | (runs["run_flags"] == "")):
         look = {
             "linestyle": "none",
             "markersize": 3.0,

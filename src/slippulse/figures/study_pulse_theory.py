@@ -52,7 +52,7 @@ def table(
                     "y": run[f"pulse_{quantity}"],
                     "theory": getattr(exact, quantity),
                     "paper": getattr(paper, quantity),
-                    "flags": run["flags"],
+                    "run_flags": run["run_flags"],
                 }
             )
     gamma, dx, release = runs["gamma"].iloc[0], runs["dx"].iloc[0], runs["release"].iloc[0]
@@ -86,7 +86,7 @@ def plot(table: pd.DataFrame) -> Figure:
                 theory["damping_ratio"], theory["y"] / theory["paper"], color=colour, gid=f"theory {tau0:g}",
                 label=rf"theory, $\bar\tau_0 = {tau0:g}$",
             )  # fmt: skip
-            for flagged, group in runs.groupby(runs["flags"].notna()):
+            for flagged, group in runs.groupby(runs["run_flags"].notna()):
                 look = {"linestyle": "none", "marker": "o", "color": colour}
                 look |= {"markerfacecolor": "none"} if flagged else {}
                 x = group["damping_ratio"]

@@ -66,7 +66,7 @@ def table(
         # Up to two widths behind the trailing edge, where blocks have stuck.
         inside = np.flatnonzero((x > place - 10.0) & (x < pulse.front - 1.05 * pulse.width))
         kept = inside[:: max(1, inside.size // POINTS)]
-        common = {"before": old_level, "level": level, "gamma": gamma, "flags": run.attrs["flags"]}
+        common = {"before": old_level, "level": level, "gamma": gamma, "run_flags": run.attrs["run_flags"]}
         common |= {"steady": new.slip, "steady_before": old.slip, "width": new.width, "memory": memory(new)}
         rows = pd.DataFrame({"x": x[kept] - place, "y": run["slip"].values[kept]})
         parts.append(rows.assign(role="slip", dx=run.attrs["dx"], **common))
@@ -81,7 +81,7 @@ def table(
         parts.append(
             pd.DataFrame({"x": run["sample_time"].values, "y": largest}).assign(
                 role="velocity", before=run.attrs["right"], left=run.attrs["left"], level=level, place=place,
-                flags=run.attrs["flags"],
+                run_flags=run.attrs["run_flags"],
             )
         )  # fmt: skip
     return pd.concat(parts, ignore_index=True)

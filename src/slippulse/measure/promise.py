@@ -56,7 +56,7 @@ def covers(run: Mapping, quantity: str, share: float) -> bool:
     quantity : its column
     share : share of |x_minus| that the left front covers at T_trans under a stress boundary
     """
-    if quantity not in COVERED[run["boundary"]] or run["flags"] or not math.isfinite(run[quantity]):
+    if quantity not in COVERED[run["boundary"]] or run["run_flags"] or not math.isfinite(run[quantity]):
         return False
     if quantity.startswith("front_speed"):
         ahead = [run[quantity.removeprefix("front_speed_")]]
@@ -89,7 +89,9 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, share: f
 
     A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept its promise.
     """
-    runs = measured.assign(flags=measured["flags"].astype(object).where(measured["flags"].notna(), ""))
+    runs = measured.assign(
+        run_flags=measured["run_flags"].astype(object).where(measured["run_flags"].notna(), "")
+    )
     rows = runs.to_dict("records")
     covered = [
         math.isfinite(promise) and covers(rows[row.point], row.quantity, share) for row in study.itertuples()

@@ -16,7 +16,7 @@ from .transition import transition_displacement, transition_stress
 # What names a run rather than measures it; enough to have its scene back (`Scene.from_attributes`).
 PARAMETERS = (
     "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx", "max_step",
-    "duration", "release", "scheme", "order", "half_lattice", "friction_ratio", "resolved_blocks", "flags", "steps",
+    "duration", "release", "scheme", "order", "half_lattice", "friction_ratio", "resolved_blocks", "run_flags", "steps",
     "block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases",
     "end_time",
 )  # fmt: skip

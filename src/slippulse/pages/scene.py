@@ -15,7 +15,7 @@ from .render import page
 SHOWN = (
     "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx",
     "duration", "release", "scheme", "max_step", "order", "steps", "block_updates", "energy_residual", "min_velocity",
-    "min_stuck_stress", "re_releases", "pulse_state", "flags",
+    "min_stuck_stress", "re_releases", "pulse_state", "run_flags",
 )  # fmt: skip
 NONE = "\N{EN DASH}"
 

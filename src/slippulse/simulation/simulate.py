@@ -70,8 +70,8 @@ def simulate(
     exact = scene.scheme == "continuum"
     run = solve_scene(scene, samples) if exact else run_scene(scene, samples, progress)
     numbers = run.numbers | judge(scene, run)
-    if strict and numbers["flags"]:
-        raise UnresolvedRun(f"the run is flagged: {numbers['flags']} ({describe_flags(scene, numbers)})")
+    if strict and numbers["run_flags"]:
+        raise UnresolvedRun(f"the run is flagged: {numbers['run_flags']} ({describe_flags(scene, numbers)})")
     data = {
         name: ("x", getattr(run, name))
         for name in ("prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
@@ -95,7 +95,7 @@ def judge(scene: Scene, run: LatticeRun | ContinuumRun) -> dict:
     if scene.scheme == "continuum":
         return {
             "pulse_blocks": pulse_blocks,
-            "flags": "construction_ended" if run.numbers["limit_reason"] else "",
+            "run_flags": "construction_ended" if run.numbers["limit_reason"] else "",
         }
     flags = []
     if run.numbers["min_stuck_stress"] <= scene.reverse_threshold:
@@ -110,7 +110,7 @@ def judge(scene: Scene, run: LatticeRun | ContinuumRun) -> dict:
         flags.append("negative_velocity")
     if scene.scheme == "localised" and run.numbers["energy_residual"] > ENERGY_RESIDUAL:
         flags.append("energy")
-    return {"pulse_blocks": pulse_blocks, "flags": ",".join(flags)}
+    return {"pulse_blocks": pulse_blocks, "run_flags": ",".join(flags)}
 
 
 def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:

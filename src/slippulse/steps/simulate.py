@@ -31,7 +31,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
             sys.stderr.flush()
 
     data = run_sweep(scenes, samples, sweep["record"], settings["threads"], progress)
-    flags = [flag for flag in data["flags"].values if flag]
+    flags = [flag for flag in data["run_flags"].values if flag]
     for kind in sorted(set(flags)):
         sys.stderr.write(
             f"  {name}: {flags.count(kind)} of {len(scenes)} runs are flagged {kind}, run by run in the data\n"

@@ -108,7 +108,7 @@ def flags_of(run: xr.Dataset, window: float) -> str:
     """Flags of the run, and the state of its pulse where that says that steady theory does not apply."""
     state = pulse_state(run, leading_pulse(run, window))
     return ",".join(
-        part for part in (run.attrs["flags"], state if state not in ("steady", "none") else "") if part
+        part for part in (run.attrs["run_flags"], state if state not in ("steady", "none") else "") if part
     )
 
 

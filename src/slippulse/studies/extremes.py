@@ -121,7 +121,7 @@ def first_stick(profile: Prestress, gamma: float, dx: float, ratio: float = RATI
     exact = exact_transition_displacement(profile, gamma, ratio).time
     run = simulate(scene(profile, gamma, ratio, dx, 1.02 * exact + 4.0 * dx))
     found = run.attrs["first_stick_time"]
-    return Measured(exact, found, run.attrs["flags"], run.attrs["block_updates"])
+    return Measured(exact, found, run.attrs["run_flags"], run.attrs["block_updates"])
 
 
 def damping(settings: Mapping, window: float, tolerances: Mapping) -> Iterator[Edge]:
@@ -198,7 +198,7 @@ def negative_level(settings: Mapping, window: float, tolerances: Mapping) -> Ite
             run = simulate(scene(profile, 0.0, ratio, of.dx, 1.5 * time, friction_ratio=of.friction_ratio))
             found = transition_stress(run, rule["share"])
             state = found["transition_state"]
-            flags = [run.attrs["flags"], state if state != "resolved" else ""]
+            flags = [run.attrs["run_flags"], state if state != "resolved" else ""]
             flags = ",".join(flag for flag in flags if flag)
             return Measured(time, found["transition_time"], flags, run.attrs["block_updates"])
 
@@ -273,7 +273,7 @@ def peak(settings: Mapping, window: float, tolerances: Mapping) -> Iterator[Edge
 
     def released(value: float) -> Measured:
         run = simulate(scene(even(LEVEL, peak=value), GAMMA, RATIO, rule["dx"], rule["duration"]))
-        return Measured(0.0, float(run.attrs["releases"]), run.attrs["flags"], run.attrs["block_updates"])
+        return Measured(0.0, float(run.attrs["releases"]), run.attrs["run_flags"], run.attrs["block_updates"])
 
     for below in rule["apart"]:
         yield Edge("peak", f"1 - {below:g}", "releases", "right", 0.0, partial(released, 1.0 - below))
@@ -296,14 +296,14 @@ def two_nucleations(settings: Mapping, window: float, tolerances: Mapping) -> It
         run = simulate(scene(profile, GAMMA, RATIO, dx, 1.5 * exact))
         between = np.abs(run["x"].values - 0.5 * distance) < 1.5 * dx
         found = float(np.nanmax(run["release_time"].values[between]))
-        return Measured(exact, found, run.attrs["flags"], run.attrs["block_updates"])
+        return Measured(exact, found, run.attrs["run_flags"], run.attrs["block_updates"])
 
     def asymmetry() -> Measured:
         run = simulate(scene(profile, GAMMA, RATIO, dx, 3.0 * exact))
         x, slip = run["x"].values, run["slip"].values
         mirrored = np.interp(distance - x, x, slip, left=0.0, right=0.0)
         off = float(np.max(np.abs(slip - mirrored)) / slip.max())
-        return Measured(0.0, off, run.attrs["flags"], run.attrs["block_updates"])
+        return Measured(0.0, off, run.attrs["run_flags"], run.attrs["block_updates"])
 
     yield Edge(
         "two nucleations",
@@ -328,7 +328,7 @@ def barrier(settings: Mapping, window: float, tolerances: Mapping) -> Iterator[E
         run = simulate(scene(profile, GAMMA, RATIO, dx, rule["duration"]))
         _, distances = path(run)
         return Measured(
-            0.0, max(0.0, float(distances[-1]) - centre), run.attrs["flags"], run.attrs["block_updates"]
+            0.0, max(0.0, float(distances[-1]) - centre), run.attrs["run_flags"], run.attrs["block_updates"]
         )
 
     def after(depth: float) -> Measured:

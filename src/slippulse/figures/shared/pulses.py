@@ -49,7 +49,7 @@ def pulse_rows(sweep: xr.Dataset, window: float, fields: tuple[str, ...]) -> pd.
         fields_here = comoving(run, pulse)
         xi_peak = pulse.peak_distance - pulse.front
         label = {"run": index} | {
-            key: run.attrs[key] for key in ("left", "right", "width", "gamma", "damping_ratio", "flags")
+            key: run.attrs[key] for key in ("left", "right", "width", "gamma", "damping_ratio", "run_flags")
         }
         if run.attrs["boundary"] == "displacement":
             speed = float(front_speed(label["left"], label["damping_ratio"], run.attrs["release"]))
@@ -159,7 +159,7 @@ def draw_displacement(axes, rows: pd.DataFrame, field: str) -> None:
                 ("theory", {"linewidth": 0.9, "linestyle": styles[ratio], "zorder": 3}),
             ):
                 curve = group[group["role"] == role]
-                if role == "simulation" and curve["flags"].notna().any():
+                if role == "simulation" and curve["run_flags"].notna().any():
                     options = options | {"color": "0.7"}
                 axes.plot(
                     curve["x"],
@@ -174,7 +174,7 @@ def draw_stress(axes, rows: pd.DataFrame, field: str) -> None:
     rows = rows[rows["field"] == field]
     for colour, (run, group) in zip(COLOURS, rows.groupby("run"), strict=False):
         curve = group[group["role"] == "simulation"]
-        pale = "0.7" if curve["flags"].notna().any() else colour
+        pale = "0.7" if curve["run_flags"].notna().any() else colour
         axes.plot(curve["x"], curve["y"], color=pale, linewidth=3.0, alpha=0.35, gid=f"simulation {run}")
         theory = group[group["role"] == "theory"]
         axes.plot(theory["x"], theory["y"], color=colour, linewidth=0.9, zorder=3, gid=f"theory {run}")

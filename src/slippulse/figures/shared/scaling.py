@@ -61,7 +61,7 @@ def collapse_rows(measured: pd.DataFrame, boundary: str) -> pd.DataFrame:
                     "damping_ratio": measured["damping_ratio"],
                     "beta": measured["beta"],
                     "dx": measured["dx"],
-                    "flags": measured["flags"],
+                    "run_flags": measured["run_flags"],
                 }
             )
         )
@@ -70,7 +70,7 @@ def collapse_rows(measured: pd.DataFrame, boundary: str) -> pd.DataFrame:
 
 def deviations(rows: pd.DataFrame) -> tuple[int, float, float]:
     """Number of sound runs, median and largest relative deviation from the prediction."""
-    sound = rows[rows["flags"].isna() & rows["y"].notna()]
+    sound = rows[rows["run_flags"].isna() & rows["y"].notna()]
     if sound.empty:
         return 0, float("nan"), float("nan")
     relative = np.abs(sound["y"] / sound["x"] - 1.0)
@@ -102,8 +102,8 @@ def draw_collapse(
     """
     maps = [matplotlib.colormaps[name] for name in (FACE_MAP, RIM_MAP)]
     (face, _, _), (rim, _, _) = COLOURS[boundary]
-    sound = rows[rows["flags"].isna()]
-    flagged = rows[rows["flags"].notna()]
+    sound = rows[rows["run_flags"].isna()]
+    flagged = rows[rows["run_flags"].notna()]
     if paper and rows["paper_definition"].notna().any():
         axes.scatter(
             rows["x"], rows["paper_definition"], marker="x", s=0.45 * size, linewidths=0.5, color="0.65",
