@@ -12,6 +12,8 @@ AGAINST ?=
 KILLS ?= 24
 # Through the environment, so that no value is read as a command.
 export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE
+# Without compiled modules each process imports for 3 s instead of 1.
+export PYTHONDONTWRITEBYTECODE :=
 VENV := .venv
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin

@@ -151,3 +151,5 @@ VELOCITY_MAP = 1e-2
 PROMISE_USED = 0.5
 # Spacings chosen for an accuracy are rounded to three digits.
 SHOWN_DIGITS = 0.02
+# Numbers of a scene of the exact solution against closed forms: quadrature and roots.
+EXACT_RUN = 1e-6

@@ -18,7 +18,7 @@ def trade(study) -> pd.DataFrame:
 
 def setting(work: float, **errors) -> dict:
     """One row of a made-up trade, every error a thousandth unless said."""
-    return {"order": 4, "step": 0.5, "dx": 0.01, "work": work} | dict.fromkeys(QUANTITIES, 1e-3) | errors
+    return {"scheme": "localised", "order": 4, "step": 0.5, "dx": 0.01, "work": work} | dict.fromkeys(QUANTITIES, 1e-3) | errors
 
 
 @pytest.mark.parametrize(
@@ -70,6 +70,19 @@ def test_transitions_are_set_by_the_spacing(trade):
     rows = trade[(trade["order"] == 8) & (trade["step"] == 0.5)].sort_values("dx")
     ratio = rows["transition_time"].to_numpy()[1:] / rows["transition_time"].to_numpy()[:-1]
     assert np.all(np.abs(np.log2(ratio) - 1.0) < tol.ORDER_BAND)
+
+
+def test_the_exact_solution_is_on_the_curve(trade):
+    """Where the fronts are and when they stick owes nothing to the spacing; where they stand is read at its multiples."""
+    (row,) = trade[trade["scheme"] == "continuum"].itertuples()
+    for name in ("front_speed", "peak_velocity", "width", "final_slip", "transition_time"):
+        assert getattr(row, name) < tol.EXACT_RUN
+    assert row.arrest_position < 2.0 * row.dx and row.seconds > 0.0 and np.isnan(row.work)
+
+
+def test_seconds_rise_with_the_work(trade):
+    lattices = trade[trade["scheme"] == "localised"]
+    assert lattices["seconds"].corr(lattices["work"], method="spearman") > 0.9
 
 
 def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):

@@ -16,6 +16,8 @@ from .front_paths import front_paths, sliding_times
 # Seconds on one core of the reference machine: the start of a scene; a step; a sliding block in a step, by order; an
 # event, by order; a block of the lattice, to be set up and written; a block that is looked at by the textbook scheme.
 START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.7e-3, 3e-7, 0.75e-9, (1.0e-6, 0.07e-6), 1.5e-7, 5e-9
+# The exact solution: its start; a place, and one behind a slow front for each unit of time; a sample.
+EXACT, PLACE, SLOW_PLACE, SAMPLE = 0.15, 5e-5, 4e-5, 1.5e-6
 # An instant of a stick, to be found.
 SEEK = 2e-7
 # A step ends early after so many events; the lattice has so many blocks at the start.
@@ -67,7 +69,9 @@ def expected_cost(scenes: Sequence[Scene], samples: Sequence[Samples | None]) ->
         lattice = max(lattice, 16.0 * (scene.order + 16) * blocks)
         recorded += 8.0 * 7.0 * blocks
         if recording is not None:
-            recorded += 16.0 * recording.times.size * recording.positions.size
+            points = recording.times.size * recording.positions.size
+            recorded += 16.0 * points
+            seconds += SAMPLE * points if scene.scheme == "continuum" else 0.0
     return Cost(len(scenes), seconds, recorded + lattice)
 
 
@@ -113,9 +117,11 @@ def _scene_cost(scene: Scene) -> tuple[float, float]:
     sliding = 0.5 * (sliding[1:] + sliding[:-1])
     events = released[1:] - released[:-1] + stuck[1:] - stuck[:-1]
     blocks = max(smallest, float(released[-1]))
-    seconds = START + BLOCK * blocks
     if scene.scheme == "continuum":
-        return seconds, blocks
+        slow = min(profile.left, profile.right) < 0.0 and scene.boundary == "stress"
+        places = 0.5 * blocks if scene.symmetric else blocks
+        return EXACT + places * (PLACE + SLOW_PLACE * scene.duration * slow), blocks
+    seconds = START + BLOCK * blocks
     steps = np.where(sliding > 0.5, scene.duration / step * LENGTHS, 0.0)
     if scene.scheme == "fixed_step":
         lattice = smallest * 2.0 ** np.ceil(np.log2(np.maximum(released[1:] / smallest, 1.0)))

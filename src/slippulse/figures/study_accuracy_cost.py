@@ -25,6 +25,8 @@ PANELS = {
 }
 # Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
 SIZES = {1.0: 5.0, 0.5: 3.6, 0.25: 2.2}
+# Colour of the exact solution, as no order has it.
+EXACT = "#a00000"
 # How far below the exact speed a plateau may lie and still be named.
 REACH = 0.3
 
@@ -37,7 +39,7 @@ def table(
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Six quantities against the work, and the speed of the front against the step."""
+    """Six quantities against the seconds, seconds against the work, and the speed of the front against the step."""
     figure = new_figure(PAGE, 6.8)
     grid = figure.add_gridspec(3, 3, height_ratios=[1.0, 1.0, 1.05])
     trade = table[table["part"] == "trade"]
@@ -49,44 +51,64 @@ def plot(table: pd.DataFrame) -> Figure:
         if number % 3 == 0:
             axes.set_ylabel("relative error")
         if number >= 3:
-            axes.set_xlabel("work (stencil passes over a block)")
+            axes.set_xlabel("seconds on one core")
     figure.legend(
-        handles=handles(trade), loc="outside upper center", ncols=9, columnspacing=1.0, handletextpad=0.3
+        handles=handles(trade), loc="outside upper center", ncols=6, columnspacing=1.0, handletextpad=0.3
     )
-    below = figure.add_subplot(grid[2, :])
+    cost = figure.add_subplot(grid[2, 0])
+    draw_marks(cost, trade[trade["scheme"] != "continuum"], "work", "seconds")
+    cost.set_xlabel("stencil passes over a block")
+    cost.set_ylabel("seconds on one core")
+    panel_letter(cost, "g")
+    below = figure.add_subplot(grid[2, 1:])
     draw_locking(below, table[table["part"] == "locking"])
-    panel_letter(below, "g")
+    panel_letter(below, "h")
     return figure
 
 
 def draw_trade(axes, rows: pd.DataFrame, name: str) -> None:
-    """One mark a setting; the textbook scheme joined over its steps, presets ringed and joined over their spacings."""
+    """One quantity against the seconds; the exact solution at the floor where its error is below it."""
+    lattices = rows[rows["scheme"] != "continuum"]
+    draw_marks(axes, lattices, "seconds", name)
+    exact = rows[rows["scheme"] == "continuum"]
+    low = axes.get_ylim()[0]
+    for row in exact[exact[name].notna()].itertuples():
+        error = getattr(row, name)
+        axes.plot(
+            row.seconds, max(error, low), "*" if error >= low else "v", color=EXACT, markersize=6.0,
+            clip_on=False, zorder=4, gid="continuum",
+        )  # fmt: skip
+    axes.set_ylim(bottom=low)
+    axes.set_xlim(right=6.0 * rows["seconds"].max())
+
+
+def draw_marks(axes, rows: pd.DataFrame, across: str, name: str) -> None:
+    """One mark a setting; the textbook scheme joined over its steps, presets ringed."""
     textbook = rows[rows["scheme"] == "fixed_step"]
     axes.plot(
-        textbook["work"], textbook[name], "x-", color=BLACK, markersize=3.5, linewidth=0.6, gid="textbook"
+        textbook[across], textbook[name], "x-", color=BLACK, markersize=3.5, linewidth=0.6, gid="textbook"
     )
     local = rows[rows["scheme"] == "localised"]
     for colour, (_, of_order) in zip(CYCLE, local.groupby("order"), strict=False):
         for step, marks in of_order.groupby("step"):
             axes.plot(
-                marks["work"], marks[name], "o", color=colour, markersize=SIZES.get(step, 3.0), alpha=0.8,
+                marks[across], marks[name], "o", color=colour, markersize=SIZES.get(step, 3.0), alpha=0.8,
                 markeredgewidth=0.0, gid="localised",
             )  # fmt: skip
     presets = rows[rows["preset"].notna()]
     axes.plot(
-        presets["work"], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none", gid="preset"
+        presets[across], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none", gid="preset"
     )
     for preset in presets.itertuples():
         axes.annotate(
             preset.preset,
-            (preset.work, getattr(preset, name)),
+            (getattr(preset, across), getattr(preset, name)),
             xytext=(4, 6),
             textcoords="offset points",
             fontsize=6,
         )
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlim(right=6.0 * rows["work"].max())
 
 
 def handles(rows: pd.DataFrame) -> list[Line2D]:
@@ -97,6 +119,18 @@ def handles(rows: pd.DataFrame) -> list[Line2D]:
     out += [
         Line2D([], [], color=colour, marker="o", linestyle="none", label=f"order {order:g}")
         for colour, order in zip(CYCLE, orders, strict=False)
+    ]
+    out += [
+        Line2D(
+            [],
+            [],
+            color=EXACT,
+            marker=marker,
+            linestyle="none",
+            markersize=6.0,
+            label=f"exact solution{where}",
+        )
+        for marker, where in (("*", ""), ("v", ", below axis"))
     ]
     return out + [
         Line2D([], [], color=GREY, marker="o", linestyle="none", markersize=size, label=f"step {step:g} dx")

@@ -1,4 +1,8 @@
-"""Error against cost: what each scheme, order, step and spacing buys, and whether a preset could be had cheaper."""
+"""Error against cost: what each scheme, order, step and spacing buys, and whether a preset could be had cheaper.
+
+The exact solution stands beside the lattices, sampled at the spacing of the textbook scheme. Seconds are those of the
+cost model of `slippulse.configuration.cost`, so that equal inputs give equal tables.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
+from ..configuration.cost import expected_seconds
 from ..measure.fronts import arrival, front_speed, path
 from ..measure.pulses import leading_pulse
 from ..model.prestress import Prestress
@@ -45,7 +50,7 @@ def table(settings: Mapping) -> pd.DataFrame:
     Returns
     -------
     rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
-    passes over one block), block_updates, one error a quantity, and for presets `dominated_by`; rows of part "locking":
+    passes over one block), seconds (expected), block_updates, one error a quantity, and for presets `dominated_by`; rows of part "locking":
     scheme, step, front_speed, exact
 
     Source: exact speed, pulse and transitions of `slippulse.theory`, all in the continuum limit at fixed beta/dx.
@@ -87,6 +92,7 @@ def ladder(settings: Mapping) -> list[tuple[str, int, float, float]]:
         for order in settings["orders"]
         for step in settings["steps"]
     ]
+    found += [("continuum", 1, 1.0, dx) for dx in settings["textbook"]["dx"]]
     presets = [("localised", p["order"], p["max_step"], p["dx"]) for p in settings["presets"].values()]
     return found + [preset for preset in presets if preset not in found]
 
@@ -121,17 +127,19 @@ def errors(settings: Mapping, theory: Mapping, row: Mapping, window: float) -> d
         if ratio == max(theory):
             found.append(crack_errors(settings, values, crack_scene))
     out = {name: float(np.max([entry[name] for entry in found if name in entry])) for name in QUANTITIES}
-    return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
+    return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work", "seconds")}
 
 
 def scenes(settings: Mapping, values: Mapping, row: Mapping, ratio: float) -> tuple[Scene, Scene]:
     """The pulse, and the crack under held stress, of one setting at one damping ratio."""
     level, gamma, dx = settings["level"], settings["gamma"], row["dx"]
     coarse = settings["stress_scale"] * dx
-    # The textbook scheme has no order to choose.
+    # The textbook scheme and the exact solution have no order to choose.
     more = {"scheme": row["scheme"], "order": max(row["order"], 3)}
 
     def step(gamma_dx2: float) -> float:
+        if row["scheme"] == "continuum":
+            return row["step"]
         return min(row["step"], MARGIN * largest_step(row["scheme"], more["order"], ratio, gamma_dx2))
 
     pulse = Scene(
@@ -150,7 +158,9 @@ def pulse_errors(settings: Mapping, values: Mapping, of: Scene, window: float) -
     """Relative errors of the pulse and of T_trans, and the work."""
     run = simulate(of)
     pulse = leading_pulse(run, window)
-    steady = steady_pulse(settings["level"], settings["gamma"], of.beta, values["front_speed"])
+    # At fixed beta/dx damping acts at the front alone in the continuum.
+    beta = 0.0 if of.scheme == "continuum" else of.beta
+    steady = steady_pulse(settings["level"], settings["gamma"], beta, values["front_speed"])
     return {
         "front_speed": abs(pulse.speed / values["front_speed"] - 1.0),
         "peak_velocity": abs(pulse.peak_velocity / steady.peak_velocity - 1.0),
@@ -160,6 +170,7 @@ def pulse_errors(settings: Mapping, values: Mapping, of: Scene, window: float) -
         "energy": run.attrs["energy_residual"],
         "block_updates": run.attrs["block_updates"],
         "work": work(run),
+        "seconds": expected_seconds(of),
     }
 
 
@@ -173,23 +184,26 @@ def crack_errors(settings: Mapping, values: Mapping, of: Scene) -> dict:
         "energy": run.attrs["energy_residual"],
         "block_updates": run.attrs["block_updates"],
         "work": work(run),
+        "seconds": expected_seconds(of),
     }
 
 
 def work(run) -> float:
     """Stencil passes over one block, those of events included: each order is one; the textbook scheme passes once over
-    the whole lattice.
+    the whole lattice, the exact solution has none.
     """
+    if run.attrs["scheme"] == "continuum":
+        return math.nan
     if run.attrs["scheme"] == "fixed_step":
         return float(run.attrs["steps"] * run.sizes["x"])
     return float((run.attrs["block_updates"] + run.attrs["event_updates"]) * run.attrs["order"])
 
 
 def dominating(trade: pd.DataFrame, index: int) -> str:
-    """A setting with less work that is nowhere less accurate and somewhere more; "" when there is none."""
+    """A setting of a lattice with less work that is nowhere less accurate and somewhere more; "" when there is none."""
     own = trade.loc[index]
     best, least = "", math.inf
-    for other in trade.itertuples():
+    for other in trade[trade["scheme"] != "continuum"].itertuples():
         if EQUAL * other.work > own["work"] or other.work >= least:
             continue
         pairs = [(max(getattr(other, name), NEGLIGIBLE), max(own[name], NEGLIGIBLE)) for name in JUDGED]
