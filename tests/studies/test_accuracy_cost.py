@@ -18,7 +18,11 @@ def trade(study) -> pd.DataFrame:
 
 def setting(work: float, **errors) -> dict:
     """One row of a made-up trade, every error a thousandth unless said."""
-    return {"scheme": "localised", "order": 4, "step": 0.5, "dx": 0.01, "work": work} | dict.fromkeys(QUANTITIES, 1e-3) | errors
+    return (
+        {"scheme": "localised", "order": 4, "step": 0.5, "dx": 0.01, "work": work}
+        | dict.fromkeys(QUANTITIES, 1e-3)
+        | errors
+    )
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 import tolerances as tol
 from pipeline_copy import copy_project, snakemake
 
-from slippulse import theory
+from slippulse import Prestress, theory
 from slippulse.configuration.overlay import read_overlay
 
 pytestmark = pytest.mark.workflow
@@ -21,6 +21,7 @@ TARGETS = {
     "asymmetric_levels": "results/measurements/asymmetric_levels.csv",
     "stress_barrier": "results/scenes/stress_barrier.html",
     "two_nucleation_sites": "results/measurements/two_sites.csv",
+    "exact_scene": "results/scenes/exact_scene.html",
     "elastic_release": "results/measurements/space_time_displacement.csv",
     "fixed_beta": "results/measurements/continuum_fixed_ratio.csv",
     "halved_spacing": "results/measurements/space_time_displacement.csv",
@@ -93,6 +94,17 @@ def test_two_sites_send_two_pulses(run):
     speed = theory.front_speed(0.5, 0.1)
     assert table["front_speed_left"][0] == pytest.approx(speed, rel=tol.DRAFT_SPEED)
     assert table["front_speed_right"][0] == pytest.approx(speed, rel=tol.DRAFT_SPEED)
+
+
+@pytest.mark.slow
+def test_the_exact_solution_is_drawn_like_a_run(run):
+    table, page = run("exact_scene")
+    assert table["scheme"][0] == "continuum"
+    assert table["front_speed_right"][0] == pytest.approx(theory.front_speed(0.5, 0.0), rel=tol.EXACT_RUN)
+    fronts = pd.read_csv(page.with_suffix(".csv"))
+    exact = theory.Rupture(Prestress(-0.5, 0.5), gamma=0.65, duration=12.0)
+    stops = exact.front_ends[0][0].x
+    assert fronts[fronts["role"] == "front"]["position"].min() == pytest.approx(stops, abs=table["dx"][0])
 
 
 @pytest.mark.slow

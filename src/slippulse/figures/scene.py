@@ -27,7 +27,7 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, settings: Mapping) -> pd.DataF
     Parameters
     ----------
     run : one run with fronts, fields and samples
-    numbers : `slippulse.measure.beside_theory.scene_numbers` of it
+    numbers : `slippulse.comparison.scene_numbers` of it
     settings : title
 
     Returns
