@@ -77,7 +77,7 @@ def test_transitions_are_set_by_the_spacing(trade):
 
 
 def test_the_exact_solution_is_on_the_curve(trade):
-    """Where the fronts are and when they stick owes nothing to the spacing; where they stand is read at its multiples."""
+    """Fronts and sticks owe nothing to the spacing; where a front stands is read at its multiples."""
     (row,) = trade[trade["scheme"] == "continuum"].itertuples()
     for name in ("front_speed", "peak_velocity", "width", "final_slip", "transition_time"):
         assert getattr(row, name) < tol.EXACT_RUN

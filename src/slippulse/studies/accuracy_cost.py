@@ -50,8 +50,8 @@ def table(settings: Mapping) -> pd.DataFrame:
     Returns
     -------
     rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
-    passes over one block), seconds (expected), block_updates, one error a quantity, and for presets `dominated_by`; rows of part "locking":
-    scheme, step, front_speed, exact
+    passes over one block), seconds (expected), block_updates, one error a quantity, and for presets `dominated_by`;
+    rows of part "locking": scheme, step, front_speed, exact
 
     Source: exact speed, pulse and transitions of `slippulse.theory`, all in the continuum limit at fixed beta/dx.
     """
