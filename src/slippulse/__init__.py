@@ -4,6 +4,7 @@
     scene = sp.Scene(boundary="displacement", gamma=0.65, beta=1e-3, dx=0.01, duration=15.0,
                      prestress=sp.Prestress(left=0.6, right=0.6))
     run = sp.simulate(scene)                                # xarray.Dataset over x
+    sp.plot(run)                                            # its fronts and slip, as a figure
     sp.theory.front_speed(0.6, damping_ratio=0.1)           # exact
 
 Importing is light: the compiled kernels and xarray are loaded when the first scene is simulated.
@@ -19,6 +20,7 @@ _HOMES = {
     "Scene": "model.scene",
     "UnresolvedRun": "simulation.simulate",
     "UnstableRun": "solver.lattice",
+    "plot": "figures.run",
     "point": "data.points",
     "run_sweep": "simulation.sweep",
     "settings_for": "configuration.accuracy",

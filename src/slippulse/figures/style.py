@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 from ..data.files import write_whole
 from ..data.origin import configuration
 
-matplotlib.use("Agg")
-
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
 PAGE = 7.05

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from html import escape
 from numbers import Real
 
 from .checks import check_choice, check_number, short_repr
@@ -186,6 +187,14 @@ class Scene:
             "friction_ratio": self.friction_ratio,
             "resolved_blocks": self.resolved_blocks,
         }
+
+    def _repr_html_(self) -> str:
+        """The parameters as a table, for a notebook."""
+        rows = (
+            f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>"
+            for name, value in self.attributes().items()
+        )
+        return f"<table>{''.join(rows)}</table>"
 
     @classmethod
     def from_attributes(cls, attributes: Mapping) -> Scene:

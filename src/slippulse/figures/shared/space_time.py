@@ -17,11 +17,16 @@ MAP_SAMPLES, FRONT_POINTS = 201, 300
 # Share of the slipped length that is drawn beyond it on each side: room for an arrow.
 MARGIN = 0.12
 STUCK = "#cfcfcf"
+# Width of a label on the axis of the narrow pre-stress panel, as a share of the axis.
+LABEL = 0.3
 
 
 def limits(run: xr.Dataset) -> tuple[float, float]:
     """Positions that are drawn: what slips and a margin, or as far as samples go where slip goes farther."""
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
+    if "sample_position" not in run:
+        margin = MARGIN * (slipped[-1] - slipped[0])
+        return float(slipped[0] - margin), float(slipped[-1] + margin)
     first, last = run["sample_position"].values[[0, -1]]
     spacing = (last - first) / max(1, run.sizes["sample_position"] - 1)
     margin = max(MARGIN * (slipped[-1] - slipped[0]), 3.0 * spacing)
@@ -89,8 +94,10 @@ def draw_profile(axes, rows: pd.DataFrame) -> None:
     axes.set_xlabel(r"$\bar\tau$")
     lower, upper = rows["value"].min(), rows["value"].max()
     axes.set_xlim(min(0.0, lower) - 0.15, upper + 0.15)
-    # The levels far away and the peak.
-    ticks = sorted({round(float(value), 2) for value in (*rows["value"].iloc[[0, -1]], upper)})
+    # The peak and the levels far away, the right one only where its label has room.
+    left, right = rows["value"].iloc[[0, -1]]
+    shown = [upper, left] if abs(right - left) < LABEL * (upper - min(0.0, lower)) else [upper, left, right]
+    ticks = sorted({round(float(value), 2) for value in shown})
     axes.set_xticks(ticks, [setting(value) for value in ticks])
     axes.set_ylim(rows["position"].min(), rows["position"].max())
 
@@ -112,20 +119,32 @@ def draw_map(axes, roles: Mapping[str, pd.DataFrame]):
         vmin=0.0,
         vmax=roles["largest"]["value"].iloc[0],
     )
-    # The front and the trailing edge are known to a block and a fraction of a step: the map is cut along them.
-    end = times[-1]
+    draw_edges(axes, roles, times[-1])
+    return image
+
+
+def draw_edges(axes, roles: Mapping[str, pd.DataFrame], end: float) -> None:
+    """The front and the trailing edge, known to a block and a fraction of a step; what is stuck is hidden."""
+    beyond = 0.01 * end
     front, trailing = roles["front"].sort_values("position"), roles["trailing"].sort_values("position")
     x, release = front["position"].to_numpy(), front["time"].to_numpy()
     low, high = roles["prestress"]["position"].min(), roles["prestress"]["position"].max()
     around = np.concatenate([[low, x[0]], x, [x[-1], high]])
     before = np.concatenate([[end, end], release, [end, end]])
-    axes.fill_betweenx(around, np.full_like(around, -dt), before, color="white", linewidth=0.0, zorder=1.5)
+    axes.fill_betweenx(
+        around, np.full_like(around, -beyond), before, color="white", linewidth=0.0, zorder=1.5
+    )
     axes.plot(release, x, color=BLACK, linewidth=0.8, zorder=2.0, label="front")
     stick = trailing["time"].to_numpy()
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
         axes.fill_betweenx(
-            trailing["position"], stick, np.full_like(stick, end + dt), color=STUCK, linewidth=0.0, zorder=1.4
+            trailing["position"],
+            stick,
+            np.full_like(stick, end + beyond),
+            color=STUCK,
+            linewidth=0.0,
+            zorder=1.4,
         )
         axes.plot(
             stick,
@@ -138,4 +157,3 @@ def draw_map(axes, roles: Mapping[str, pd.DataFrame]):
     axes.set_xlim(0.0, end)
     axes.set_xlabel(r"time $\bar t$")
     axes.tick_params(labelleft=False)
-    return image

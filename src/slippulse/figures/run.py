@@ -1,0 +1,66 @@
+"""One run as a picture, in one call: for a notebook or a script."""
+
+from __future__ import annotations
+
+import io
+
+import matplotlib
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+
+class Picture(Figure):
+    """A figure that a notebook shows as it is, whatever its backend."""
+
+    def _repr_png_(self) -> bytes:
+        buffer = io.BytesIO()
+        self.savefig(buffer, format="png", dpi=150)
+        return buffer.getvalue()
+
+
+def plot(run: xr.Dataset) -> Picture:
+    """Draw pre-stress, slip velocity over time and position with fronts and trailing edge, and the slip at the end.
+
+    Parameters
+    ----------
+    run : what `slippulse.simulate` returned; its map is there if it was given ``samples``
+
+    Returns
+    -------
+    A figure; a notebook shows it, ``figure.savefig("name.png")`` writes it.
+
+    Raises
+    ------
+    TypeError
+        If it is not a run.
+    ValueError
+        If nothing slipped.
+    """
+    if not isinstance(run, xr.Dataset) or "release_time" not in run:
+        raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
+    if not np.isfinite(run["release_time"]).any():
+        raise ValueError("run: nothing slipped; allowed: a run with a release")
+    # The house style is not forced on the figures of whoever calls.
+    with matplotlib.rc_context():
+        from .shared import space_time as parts
+        from .style import BLUE, PAGE, RC
+
+        matplotlib.rcParams.update(RC)
+        front, trailing = parts.edges(run)
+        roles = {"prestress": parts.prestress_profile(run), "front": front, "trailing": trailing}
+        figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
+        profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
+        parts.draw_profile(profile, roles["prestress"])
+        if "sample_velocity" in run:
+            sampled = parts.velocity_map(run)
+            roles |= {role: rows for role, rows in sampled.groupby("role")}
+            image = parts.draw_map(times, roles)
+            figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot{\bar u}$")
+        else:
+            parts.draw_edges(times, roles, run.attrs["end_time"])
+        times.legend(loc="upper left")
+        slip.plot(run["slip"], run["x"], color=BLUE)
+        slip.set_xlabel(r"slip $\bar u$")
+        profile.set_ylabel(r"position $\bar x$")
+    return figure

@@ -1,0 +1,47 @@
+"""A run as a picture, in one call."""
+
+from __future__ import annotations
+
+import matplotlib
+import numpy as np
+import pytest
+
+import slippulse as sp
+
+PLAIN = sp.Scene(
+    boundary="displacement", prestress=sp.Prestress(0.5, 0.4), gamma=0.65, duration=8.0, dx=0.05, scheme="continuum"
+)  # fmt: skip
+SAMPLES = sp.Samples(np.linspace(0.0, 8.0, 41), np.linspace(-12.0, 12.0, 81))
+
+
+@pytest.mark.parametrize("samples", [None, SAMPLES], ids=["edges", "map"])
+def test_fronts_trailing_edge_and_slip_are_drawn(samples):
+    run = sp.simulate(PLAIN, samples)
+    before = matplotlib.rcParams["font.size"]
+    figure = sp.plot(run)
+    assert matplotlib.rcParams["font.size"] == before
+    _, times, slip = figure.axes[:3]
+    lines = {line.get_label(): line for line in times.lines}
+    released = np.isfinite(run["release_time"].values)
+    assert lines["front"].get_xdata() == pytest.approx(run["release_time"].values[released], abs=0.1)
+    assert np.nanmin(lines["trailing edge"].get_xdata()) == pytest.approx(
+        run.attrs["first_stick_time"], abs=0.01
+    )
+    assert np.max(slip.lines[0].get_xdata()) == pytest.approx(float(run["slip"].max()))
+    assert bool(times.images) is (samples is not None)
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+def test_what_is_no_run_is_refused():
+    with pytest.raises(TypeError, match=r"^run: dict; allowed: a Dataset that simulate returned$"):
+        sp.plot({})
+    run = sp.simulate(PLAIN)
+    run["release_time"][:] = np.nan
+    with pytest.raises(ValueError, match=r"^run: nothing slipped"):
+        sp.plot(run)
+
+
+def test_a_scene_shows_its_parameters():
+    html = PLAIN._repr_html_()
+    for name, value in PLAIN.attributes().items():
+        assert f"<th>{name}</th>" in html and (isinstance(value, str) or f"<td>{value}</td>" in html)
