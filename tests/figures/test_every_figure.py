@@ -41,18 +41,23 @@ def test_axes_with_data_are_labelled(draw, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_what_is_drawn_is_finite_and_repeatable(draw, tmp_path, name):
+def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     drawn = draw(name)
     assert len(drawn.table) > 0
-    again = drawn.module.plot(drawn.table)
     # The resolution is not what is tested, and takes most of the time.
     with matplotlib.rc_context({"savefig.dpi": 50}):
         save_figure(drawn.figure, tmp_path / "first.png", tmp_path / "first.pdf")
-        again.get_layout_engine().execute(again)
-        again.set_layout_engine(None)
-        again.savefig(tmp_path / "again.png", metadata={"Software": None})
-    assert (tmp_path / "first.png").read_bytes() == (tmp_path / "again.png").read_bytes()
     for ending in ("png", "pdf"):
         assert (tmp_path / f"first.{ending}").stat().st_size > 5000
     numbers = drawn.table.select_dtypes("number").to_numpy()
     assert not np.isinf(numbers).any()
+
+
+@pytest.mark.parametrize("name", ["fig03_steady_state", "study_arrest"])
+def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
+    drawn = draw(name)
+    with matplotlib.rc_context({"savefig.dpi": 50}):
+        for take in ("first", "again"):
+            save_figure(drawn.module.plot(drawn.table), tmp_path / f"{take}.png", tmp_path / f"{take}.pdf")
+    for ending in ("png", "pdf"):
+        assert (tmp_path / f"first.{ending}").read_bytes() == (tmp_path / f"again.{ending}").read_bytes()

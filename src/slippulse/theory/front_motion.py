@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -52,6 +53,7 @@ class SteadyFront:
         return bool(np.all(self.ahead[:-1] < 1.0) and self.first_rest > 1.0)
 
 
+@lru_cache(maxsize=64)
 def steady_front(
     speed: float, damping_ratio: float, springs: float = 0.0, release: str = "total", blocks: int = BLOCKS
 ) -> SteadyFront:
