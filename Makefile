@@ -28,7 +28,7 @@ CHECK_OPTIONS = $(CHECK_PLACE); \
     case "$$CORES" in ""|*[!0-9]*|0|0[0-9]*) echo "CORES: $$CORES; allowed: a whole number from 1 on, such as CORES=2" >&2; exit 1;; esac; \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe replicate rulegraph verify test test-slow test-all faults slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe reference replicate rulegraph verify test test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
@@ -42,6 +42,7 @@ help:
 	@echo "make slurm-test  the draft through a Slurm of one node, started for it here, against the draft without"
 	@echo "make check       format and lint"
 	@echo "make describe    the tables of config/README.md and the JSON Schema, from the definition of the keys"
+	@echo "make reference   the reference of the Python interface, from its docstrings, into results/reference"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
 
@@ -77,6 +78,10 @@ lock:
 # The JSON Schema and the tables of config/README.md, from the definition of the configuration's keys.
 describe: $(READY)
 	@"$(BIN)/python" -m slippulse.configuration.describe
+
+# The reference of the Python interface, from its docstrings.
+reference: $(READY)
+	@"$(BIN)/python" docs/reference.py results/reference
 
 replicate: $(READY)
 	@$(CHECK_OPTIONS)

@@ -1,0 +1,26 @@
+"""The reference of the Python interface, from its docstrings: `make reference`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pdoc
+
+import slippulse
+from slippulse import theory
+
+
+def main(folder: str) -> None:
+    """Write HTML pages of what `slippulse` and `slippulse.theory` offer into a folder."""
+    # pdoc sees what is loaded, and these load their names when they are first used.
+    for package in (slippulse, theory):
+        for name in package.__all__:
+            setattr(package, name, getattr(package, name))
+    pdoc.render.configure(docformat="numpy", show_source=False, math=False)
+    pdoc.pdoc("slippulse", output_directory=Path(folder))
+    print(f"Open {folder}/index.html")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
