@@ -153,3 +153,5 @@ PROMISE_USED = 0.5
 SHOWN_DIGITS = 0.02
 # Numbers of a scene of the exact solution against closed forms: quadrature and roots.
 EXACT_RUN = 1e-6
+# T_trans and L_trans of the draft preset against exact theory: first order in dx, a few blocks.
+DRAFT_TRANSITION = 0.05

@@ -8,10 +8,21 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from ..model.prestress import Prestress
-from .shared.scaling import PREDICTIONS, SYMBOLS, collapse_rows, colour_bars, deviations, draw_collapse, norms
-from .style import BLUE, GREEN, ORANGE, PAGE, new_figure, panel_letter
+from .shared.scaling import (
+    OTHERS,
+    SYMBOLS,
+    chosen,
+    collapse_rows,
+    draw_collapse,
+    draw_ratio,
+    exact_rows,
+    level_bar,
+    summaries,
+)
+from .style import BLACK, COLUMN, GREY, colour_scale, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"measured": ["scaling_displacement", "scaling_stress"], "settings": ["measure.share"]}
@@ -22,99 +33,80 @@ INSET_POINTS = 161
 def table(
     data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """Every run of both sweeps, the summary of each panel, and the pre-stress profiles of the insets."""
+    """Every run of both sweeps, exact theory at some of them, the summary of each panel, and pre-stress profiles."""
+    share = settings["measure"]["share"]
     parts = []
-    for boundary in ("displacement", "stress"):
+    # In the continuum the ratios under a stress boundary do not depend on the width: its ends are enough.
+    for boundary, most in (("displacement", {"left": 5, "gamma": 5}), ("stress", {"left": 5, "width": 2})):
         sweep = measured[f"scaling_{boundary}"]
         rows = collapse_rows(sweep, boundary)
-        parts.append(rows)
-        for panel, group in rows.groupby("panel"):
-            count, median, largest = deviations(group)
-            parts.append(
-                pd.DataFrame(
-                    [{"panel": panel, "role": "summary", "runs": count, "median": median, "largest": largest}]
-                )
-            )
+        parts += [rows, exact_rows(chosen(sweep, **most), boundary, share), summaries(rows)]
         parts.append(inset_rows(sweep, boundary))
-    parts.append(pd.DataFrame([{"panel": "all", "role": "share", "y": settings["measure"]["share"]}]))
     return pd.concat(parts, ignore_index=True)
 
 
 def inset_rows(sweep: pd.DataFrame, boundary: str) -> pd.DataFrame:
     """Profiles of the lowest, middle and highest level, at the narrowest Gaussian."""
-    levels = np.sort(sweep["left"].unique())
-    width = float(sweep["width"].min() if boundary == "stress" else sweep["width"].iloc[0])
+    width = float(sweep["width"].min())
     x = np.linspace(-6.0 * width, 6.0 * width, INSET_POINTS)
     parts = []
-    for level in (levels[0], levels[levels.size // 2], levels[-1]):
+    for level in chosen(sweep, left=3)["left"].unique():
         right = level if boundary == "displacement" else float(sweep["right"].iloc[0])
-        parts.append(
-            pd.DataFrame(
-                {
-                    "panel": f"{boundary}_inset",
-                    "role": "inset",
-                    "x": x,
-                    "y": Prestress(float(level), float(right), width)(x),
-                    "left": level,
-                    "width": width,
-                }
-            )
-        )
-    return pd.concat(parts, ignore_index=True)
+        tau = Prestress(float(level), float(right), width)(x)
+        parts.append(pd.DataFrame({"role": "inset", "x": x, "y": tau, "left": level, "width": width}))
+    return pd.concat(parts).assign(panel=f"{boundary}_inset")
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Two rows (L_trans, T_trans) by two columns (displacement, stress)."""
-    figure = new_figure(PAGE, 6.0)
-    grid = figure.subplots(2, 2)
+    """A column a boundary: the collapse, and below it L_trans and T_trans over their predictions."""
+    figure = new_figure(COLUMN, 5.4)
+    grid = figure.subplots(3, 2, height_ratios=(1.25, 1.0, 1.0))
     markers = table[table["role"] == "marker"]
-    share = float(table.loc[table["role"] == "share", "y"].iloc[0])
-    for column, boundary in enumerate(("displacement", "stress")):
-        rows = markers[markers["panel"].str.startswith(boundary)]
-        scales = norms(rows, boundary)
-        for row, quantity in enumerate(("length", "time")):
-            axes = grid[row, column]
-            name = f"{boundary}_{quantity}"
-            draw_collapse(axes, rows[rows["panel"] == name], boundary, scales)
-            summary = table[(table["role"] == "summary") & (table["panel"] == name)].iloc[0]
-            axes.set_xlabel(f"predicted ${SYMBOLS[quantity]}$ = {PREDICTIONS[name]}")
-            axes.set_ylabel(f"measured ${SYMBOLS[quantity]}$")
-            axes.text(
-                0.97,
-                0.04,
-                f"{summary.runs:.0f} runs\ndeviation from 1:1:\nmedian {summary['median']:.0%},"
-                f" largest {summary['largest']:.0%}",
-                transform=axes.transAxes,
-                ha="right",
-                va="bottom",
-                fontsize=6.5,
-            )
-            panel_letter(axes, "abcd"[2 * row + column])
-        gamma = r"$\Gamma = 1$" if boundary == "displacement" else r"$\Gamma = 0$"
-        how = "when the first block sticks"
-        if boundary == "stress":
-            how = rf"when the left front reaches ${share:g}\,\bar x_-$"
-        grid[0, column].set_title(f"{gamma}, {how}", fontsize=8)
-        grid[1, column].legend(loc="upper left", handletextpad=0.4, borderaxespad=0.3)
-        draw_inset(grid[0, column], table[table["panel"] == f"{boundary}_inset"])
-        colour_bars(
-            figure,
-            list(grid[:, column]),
-            boundary,
-            scales,
-            location="bottom",
-            aspect=40,
-            shrink=0.92,
-            pad=0.02,
-        )
+    for column, (boundary, title) in enumerate(
+        (("displacement", r"$\Gamma = 1$"), ("stress", r"$\Gamma = 0$"))
+    ):
+        above, below = grid[0, column], grid[1:, column]
+        draw_collapse(above, markers[markers["panel"].str.startswith(boundary)], boundary)
+        above.set_title(title, fontsize=8)
+        above.set_xlabel(r"predicted $\bar L$, $\bar T$")
+        draw_inset(above, table[table["panel"] == f"{boundary}_inset"], boundary)
+        across, label = OTHERS[boundary]
+        for axes, quantity in zip(below, SYMBOLS, strict=True):
+            draw_ratio(axes, table, f"{boundary}_{quantity}", across)
+            axes.set_xlabel(label)
+        level_bar(figure, list(grid[:, column]), boundary, location="bottom", aspect=25, pad=0.01)
+        for row in range(3):
+            panel_letter(grid[row, column], "abcdef"[2 * row + column])
+    grid[0, 0].set_ylabel(r"measured $\bar L$, $\bar T$")
+    for axes, symbol in zip(grid[1:, 0], SYMBOLS.values(), strict=True):
+        axes.set_ylabel(f"${symbol}$, measured\nover predicted")
+    figure.legend(
+        handles=handles(table), loc="outside lower center", ncols=3, columnspacing=0.9, handletextpad=0.3
+    )
     return figure
 
 
-def draw_inset(axes, rows: pd.DataFrame) -> None:
-    """Pre-stress profiles in the upper left corner."""
-    inset = axes.inset_axes([0.1, 0.66, 0.34, 0.31])
-    for colour, (_, group) in zip((BLUE, ORANGE, GREEN), rows.groupby("left"), strict=False):
-        inset.plot(group["x"], group["y"], color=colour, linewidth=0.9)
-    inset.set_xlabel(r"$\bar x$", fontsize=6.5, labelpad=0)
-    inset.set_ylabel(r"$\bar\tau$", fontsize=6.5, labelpad=0)
-    inset.tick_params(labelsize=5.5, length=2)
+def handles(table: pd.DataFrame) -> list[Line2D]:
+    """What markers and lines are."""
+    entries = [
+        ({"marker": "o", "linestyle": "none"}, "length"),
+        ({"marker": "^", "linestyle": "none"}, "time"),
+        ({"marker": "x", "linestyle": "none"}, "literal definition"),
+        ({"color": BLACK, "linewidth": 0.8}, "equality"),
+        ({"linewidth": 0.8}, "exact theory"),
+    ]
+    if table["run_flags"].notna().any():
+        entries.append(({"marker": "o", "linestyle": "none", "fillstyle": "none"}, "flagged"))
+    return [
+        Line2D([], [], **({"color": GREY, "markersize": 3.5} | look), label=label) for look, label in entries
+    ]
+
+
+def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
+    """Pre-stress profiles in the lower right corner."""
+    scale = colour_scale("tau_0" if boundary == "displacement" else "tau_l")
+    inset = axes.inset_axes([0.62, 0.16, 0.36, 0.3])
+    for level, group in rows.groupby("left"):
+        inset.plot(group["x"], group["y"], color=scale.to_rgba(level), linewidth=0.8)
+    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=6.0, pad=1.0)
+    inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)

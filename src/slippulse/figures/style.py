@@ -5,6 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from ..data.files import write_whole
@@ -18,8 +21,15 @@ PAGE = 7.05
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 SKY, YELLOW, BLACK, GREY = "#56B4E9", "#E69F00", "#000000", "#7f7f7f"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
-# One map for slip velocity, two for the face and the rim of a scaling marker.
-VELOCITY_MAP, FACE_MAP, RIM_MAP = "viridis", "cividis", "plasma"
+VELOCITY_MAP = "viridis"
+# A quantity has the same colour for the same value in every figure: map, its part that is used, ends, and whether the
+# scale is logarithmic.
+SCALES = {
+    "tau_0": ("plasma", (0.0, 0.88), (0.0, 1.0), False),
+    "tau_l": ("YlGnBu_r", (0.0, 0.75), (-2.0, 0.0), False),
+    "gamma": ("cividis", (0.0, 0.95), (1e-3, 1.0), True),
+    "width": ("YlOrBr", (0.35, 1.0), (0.5, 16.0), True),
+}
 
 RC = {
     "font.size": 8.0,
@@ -52,6 +62,14 @@ matplotlib.rcParams.update(RC)
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure in the house style, ``width`` by ``height`` inches."""
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def colour_scale(quantity: str) -> ScalarMappable:
+    """The colours of a quantity of SCALES; ``to_rgba`` gives that of a value, a colour bar shows all."""
+    name, part, ends, logarithmic = SCALES[quantity]
+    colours = matplotlib.colormaps[name](np.linspace(*part, 256))
+    norm = (LogNorm if logarithmic else Normalize)(*ends, clip=True)
+    return ScalarMappable(norm, ListedColormap(colours))
 
 
 def panel_letter(axes, letter: str) -> None:

@@ -1,21 +1,19 @@
-"""The collapses of L_trans and T_trans: one row a run, drawn with two colours a marker."""
+"""T_trans and L_trans of every run beside the paper's predictions and exact theory: rows, and how they are drawn."""
 
 from __future__ import annotations
 
-import matplotlib
 import numpy as np
 import pandas as pd
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm, Normalize
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.lines import Line2D
 
-from ..style import FACE_MAP, GREY, RIM_MAP
+from ...comparison.exact_transition import exact_transition
+from ..style import BLACK, GREY, colour_scale, panel_letter
 
 QUANTITIES = {
     "length": ("transition_length", "paper_transition_length"),
     "time": ("transition_time", "paper_transition_time"),
 }
-# The paper's own definition, or what it draws, per boundary and quantity.
+# The literal definition of the paper's text, or what its figure shows, per boundary and quantity.
 PAPER_DEFINITION = {
     ("displacement", "length"): "slip_length_background",
     ("displacement", "time"): "slip_time_background",
@@ -23,49 +21,55 @@ PAPER_DEFINITION = {
     ("stress", "time"): "last_release_time",
 }
 SYMBOLS = {"length": r"\bar L_\mathrm{trans}", "time": r"\bar T_\mathrm{trans}"}
-# What the paper predicts, per panel.
-PREDICTIONS = {
-    "displacement_length": r"$2\pi/\sqrt{\bar\gamma(1-\bar\tau_0^2)}$",
-    "displacement_time": r"$\pi/\sqrt{\bar\gamma}$",
-    "stress_length": r"$2|\bar x_-|$",
-    "stress_time": r"$|\bar x_-|$",
-}
-# Face and rim of a marker: column, label, whether the scale is logarithmic.
-COLOURS = {
-    "displacement": (("left", r"$\bar\tau_0$", False), ("gamma", r"$\bar\gamma$", True)),
-    "stress": (("left", r"$\bar\tau_{0,l}$", False), ("width", r"$\bar W_{\bar\tau}$", True)),
-}
+# What colours and markers tell: the level, and what else varies.
+LEVELS = {"displacement": ("tau_0", r"$\bar\tau_0$"), "stress": ("tau_l", r"$\bar\tau_{0,l}$")}
+OTHERS = {"displacement": ("gamma", r"$\bar\gamma$"), "stress": ("width", r"$\bar W_{\bar\tau}$")}
+MARKERS = "os^Dv<>pP*hX"
 
 
 def collapse_rows(measured: pd.DataFrame, boundary: str) -> pd.DataFrame:
-    """One row a run and quantity: prediction, measurement and the paper's own definition beside it.
+    """One row a run and quantity: prediction x, measurement y and the paper's literal definition beside it.
 
     Parameters
     ----------
     measured : measured table of a sweep, one row a run
     boundary : "displacement" or "stress"
     """
+    kept = ["left", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
     parts = []
     for quantity, (column, prediction) in QUANTITIES.items():
-        parts.append(
-            pd.DataFrame(
-                {
-                    "panel": f"{boundary}_{quantity}",
-                    "role": "marker",
-                    "x": measured[prediction],
-                    "y": measured[column],
-                    "paper_definition": measured[PAPER_DEFINITION[boundary, quantity]],
-                    "left": measured["left"],
-                    "width": measured["width"],
-                    "gamma": measured["gamma"],
-                    "damping_ratio": measured["damping_ratio"],
-                    "beta": measured["beta"],
-                    "dx": measured["dx"],
-                    "run_flags": measured["run_flags"],
-                }
-            )
-        )
+        rows = pd.DataFrame({"panel": f"{boundary}_{quantity}", "role": "marker", "x": measured[prediction]})
+        rows["y"], rows["paper_definition"] = measured[column], measured[PAPER_DEFINITION[boundary, quantity]]
+        parts.append(rows.join(measured[kept]))
     return pd.concat(parts, ignore_index=True)
+
+
+def exact_rows(measured: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
+    """Rows of role "exact" for runs of a sweep: the paper's prediction x, and exact theory y.
+
+    Parameters
+    ----------
+    measured : the runs wanted, as rows of a measured table
+    boundary : "displacement" or "stress"
+    share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+    """
+    rows = []
+    for _, run in measured.iterrows():
+        found = exact_transition(run, share)
+        for quantity, (_, prediction) in QUANTITIES.items():
+            row = {"panel": f"{boundary}_{quantity}", "role": "exact"}
+            row |= {"x": run[prediction], "y": getattr(found, quantity)}
+            rows.append(row | {name: run[name] for name in ("left", "width", "gamma", "damping_ratio")})
+    return pd.DataFrame(rows)
+
+
+def chosen(measured: pd.DataFrame, **most: int) -> pd.DataFrame:
+    """Runs at so many values of a column at most, from the smallest to the largest."""
+    for column, count in most.items():
+        values = np.sort(measured[column].unique())
+        kept = values[np.unique(np.linspace(0, values.size - 1, count).round().astype(int))]
+        measured = measured[measured[column].isin(kept)]
+    return measured
 
 
 def deviations(rows: pd.DataFrame) -> tuple[int, float, float]:
@@ -77,148 +81,110 @@ def deviations(rows: pd.DataFrame) -> tuple[int, float, float]:
     return len(sound), float(relative.median()), float(relative.max())
 
 
-def norms(rows: pd.DataFrame, boundary: str) -> list[Normalize]:
-    """Colour scales of face and rim over all rows."""
-    out = []
-    for column, _, logarithmic in COLOURS[boundary]:
-        low, high = float(rows[column].min()), float(rows[column].max())
-        out.append(LogNorm(low, high) if logarithmic else Normalize(low, high))
-    return out
+def summaries(rows: pd.DataFrame, by: tuple[str, ...] = ("panel",)) -> pd.DataFrame:
+    """Rows of role "summary": number of runs, median and largest deviation of each group of markers."""
+    found = []
+    for key, group in rows.groupby(list(by), sort=False):
+        count, median, largest = deviations(group)
+        found.append(
+            dict(zip(by, key, strict=True))
+            | {"role": "summary", "runs": count, "median": median, "largest": largest}
+        )
+    return pd.DataFrame(found)
 
 
-def draw_collapse(
-    axes, rows: pd.DataFrame, boundary: str, scales: list[Normalize], size: float = 20.0, paper: bool = True
-) -> None:
-    """Markers with face and rim colours, flagged runs open, the 1:1 line, the paper's definition as crosses.
-
-    Parameters
-    ----------
-    axes : where to draw
-    rows : rows of one panel
-    boundary : "displacement" or "stress"
-    scales : colour scales of face and rim
-    size : marker area (points^2)
-    paper : whether to show the paper's own definition
-    """
-    maps = [matplotlib.colormaps[name] for name in (FACE_MAP, RIM_MAP)]
-    (face, _, _), (rim, _, _) = COLOURS[boundary]
-    sound = rows[rows["run_flags"].isna()]
-    flagged = rows[rows["run_flags"].notna()]
-    if paper and rows["paper_definition"].notna().any():
+def draw_collapse(axes, rows: pd.DataFrame, boundary: str) -> None:
+    """The paper's collapse: measured against predicted on logarithmic axes, lengths as circles, times as triangles."""
+    scale = colour_scale(LEVELS[boundary][0])
+    for quantity, marker in (("length", "o"), ("time", "^")):
+        part = rows[rows["panel"] == f"{boundary}_{quantity}"]
         axes.scatter(
-            rows["x"], rows["paper_definition"], marker="x", s=0.45 * size, linewidths=0.5, color="0.65",
-            label="as defined or drawn in the paper", zorder=1, gid="paper definition",
+            part["x"], part["paper_definition"], marker="x", s=5.0, linewidths=0.4, color="0.7", zorder=1,
+            gid="paper definition",
         )  # fmt: skip
-    axes.scatter(
-        sound["x"], sound["y"], s=size, c=maps[0](scales[0](sound[face])), edgecolors=maps[1](scales[1](sound[rim])),
-        linewidths=0.9, zorder=3, gid="runs",
-    )  # fmt: skip
-    if not flagged.empty:
-        axes.scatter(
-            flagged["x"], flagged["y"], s=size, facecolors="none", edgecolors=GREY, linewidths=0.7, zorder=2,
-            label="flagged: not resolved", gid="flagged",
-        )  # fmt: skip
+        _scatter(axes, part, part["x"], part["y"], marker, scale)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    values = rows[["x", "y", "paper_definition"] if paper else ["x", "y"]].to_numpy(float).ravel()
-    values = values[np.isfinite(values)]
-    ends = np.array([values.min() / 1.4, values.max() * 1.4])
-    axes.plot(ends, ends, color="black", linewidth=0.8, zorder=0, label="1:1", gid="one to one")
+    values = rows[["x", "y", "paper_definition"]].to_numpy(float).ravel()
+    ends = np.array([np.nanmin(values) / 1.4, np.nanmax(values) * 1.4])
+    axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="one to one")
     axes.set_xlim(*ends)
     axes.set_ylim(*ends)
 
 
-def colour_bars(figure, axes, boundary: str, scales: list[Normalize], **options) -> list:
-    """One bar for the faces and one for the rims."""
-    bars = []
-    for (_, label, _), scale, name, part in zip(
-        COLOURS[boundary], scales, (FACE_MAP, RIM_MAP), ("face", "rim"), strict=True
-    ):
-        bar = figure.colorbar(ScalarMappable(scale, name), ax=axes, **options)
-        bar.set_label(f"{label} ({part})")
-        if isinstance(scale, LogNorm):
-            bar.ax.xaxis.set_minor_formatter(NullFormatter())
-            if scale.vmax / scale.vmin < 100.0:
-                # Too short for decades: the ends and the powers of two between them are what was simulated.
-                ticks = 2.0 ** np.arange(np.ceil(np.log2(scale.vmin)), np.floor(np.log2(scale.vmax)) + 1.0)
-                bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
-        bars.append(bar)
-    return bars
+def draw_ratio(axes, table: pd.DataFrame, panel: str, across: str, several: str | None = None) -> None:
+    """Measured over predicted on a linear axis, with exact theory as a line for each level.
 
-
-def damping_rows(measured: pd.DataFrame, boundary: str) -> pd.DataFrame:
-    """Rows of one panel for each damping ratio and quantity, with a summary row each."""
-    rows = collapse_rows(measured, boundary)
-    rows["panel"] = [
-        f"{panel}_{ratio:g}" for panel, ratio in zip(rows["panel"], rows["damping_ratio"], strict=True)
-    ]
-    parts = [rows]
-    for panel, group in rows.groupby("panel", sort=False):
-        count, median, largest = deviations(group)
-        betas = np.unique(group["beta"])
-        summary = {"panel": panel, "role": "summary", "runs": count, "median": median, "largest": largest}
-        summary |= {
-            "damping_ratio": group["damping_ratio"].iloc[0],
-            "beta_from": betas.min(),
-            "beta_to": betas.max(),
-        }
-        parts.append(pd.DataFrame([summary]))
-    return pd.concat(parts, ignore_index=True)
-
-
-def draw_damping(figure, table: pd.DataFrame, boundary: str, predictions: dict[str, str]) -> np.ndarray:
-    """Two rows (L_trans, T_trans) by one column a damping ratio; axes are shared along a row."""
-    markers = table[table["role"] == "marker"]
-    summaries = table[table["role"] == "summary"]
-    ratios = np.sort(markers["damping_ratio"].unique())
-    scales = norms(markers, boundary)
-    grid = figure.subplots(2, ratios.size, squeeze=False)
-    for row, quantity in enumerate(QUANTITIES):
-        chosen = markers["panel"].str.startswith(f"{boundary}_{quantity}")
-        ends = []
-        for column, ratio in enumerate(ratios):
-            axes = grid[row, column]
-            name = f"{boundary}_{quantity}_{ratio:g}"
-            draw_collapse(axes, markers[markers["panel"] == name], boundary, scales, size=11.0, paper=False)
-            summary = summaries[summaries["panel"] == name].iloc[0]
-            axes.text(
-                0.96, 0.04, f"median {summary['median']:.0%}\nlargest {summary['largest']:.0%}",
-                transform=axes.transAxes, ha="right", va="bottom", fontsize=6.0,
-            )  # fmt: skip
-            if row == 0:
-                axes.set_title(damping_title(summary), fontsize=6.5)
-            if column:
-                axes.tick_params(labelleft=False)
-        values = markers.loc[chosen, ["x", "y"]].to_numpy(float).ravel()
-        values = values[np.isfinite(values)]
-        ends = (values.min() / 1.4, values.max() * 1.4)
-        for axes in grid[row]:
-            axes.set_xlim(*ends)
-            axes.set_ylim(*ends)
-            axes.lines[0].set_data(ends, ends)
-            axes.tick_params(labelsize=6.0)
-            axes.xaxis.set_major_locator(LogLocator(base=10.0, numticks=4))
-            axes.yaxis.set_major_locator(LogLocator(base=10.0, numticks=4))
-            # Twelve panels of minor ticks are half of the time that the figure takes.
-            axes.minorticks_off()
-        grid[row, 0].set_ylabel(f"measured ${SYMBOLS[quantity]}$")
-        grid[row, ratios.size // 2].set_xlabel(
-            f"predicted ${SYMBOLS[quantity]}$ = {predictions[f'{boundary}_{quantity}']}", x=-0.05
+    Parameters
+    ----------
+    axes : where to draw
+    table : rows of role marker and exact
+    panel : such as "stress_time"
+    across : column of the horizontal axis, on a logarithmic scale that has a place for 0
+    several : column that markers tell; one marker where there is none
+    """
+    boundary = panel.split("_")[0]
+    scale = colour_scale(LEVELS[boundary][0])
+    rows = table[table["panel"] == panel]
+    axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0, gid="one to one")
+    for level, line in rows[rows["role"] == "exact"].groupby("left"):
+        line, colour = line.sort_values(across), scale.to_rgba(level)
+        axes.plot(
+            line[across], line["y"] / line["x"], color=colour, linewidth=0.8, zorder=2, gid=f"exact {level:g}"
         )
-    colour_bars(
-        figure, list(grid.ravel()), boundary, scales, location="bottom", aspect=50, shrink=0.5, pad=0.02
+    markers = rows[rows["role"] == "marker"]
+    groups = markers.groupby(several) if several else [(None, markers)]
+    for marker, (_, part) in zip(MARKERS, groups, strict=False):
+        _scatter(axes, part, part[across], part["y"] / part["x"], marker, scale)
+    values = np.sort(markers[across].unique())
+    if values[0] == 0.0:
+        axes.set_xscale("symlog", linthresh=values[1], linscale=0.5)
+        axes.set_xticks(values, [f"{value:g}" for value in values])
+        axes.set_xlim(-0.3 * values[1], 1.5 * values[-1])
+    else:
+        axes.set_xscale("log")
+    axes.minorticks_off()
+
+
+def _scatter(axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, marker: str, scale) -> None:
+    """Runs in the colour of their level, flagged ones open and grey."""
+    sound = rows["run_flags"].isna()
+    axes.scatter(
+        x[sound], y[sound], s=9.0, marker=marker, c=scale.to_rgba(rows.loc[sound, "left"]), linewidths=0.0, zorder=3,
+        alpha=0.85, gid="runs",
+    )  # fmt: skip
+    if not sound.all():
+        axes.scatter(
+            x[~sound], y[~sound], s=9.0, marker=marker, facecolors="none", edgecolors=GREY, linewidths=0.6, zorder=2,
+            gid="flagged",
+        )  # fmt: skip
+
+
+def level_bar(figure, axes, boundary: str, **options) -> None:
+    """The colours of the levels."""
+    quantity, label = LEVELS[boundary]
+    figure.colorbar(colour_scale(quantity), ax=axes, **options).set_label(label)
+
+
+def draw_damping(figure, table: pd.DataFrame, boundary: str) -> None:
+    """L_trans and T_trans over the paper's predictions against beta/dx."""
+    several, label = OTHERS[boundary]
+    panels = figure.subplots(1, 2)
+    for axes, quantity, letter in zip(panels, QUANTITIES, "ab", strict=True):
+        draw_ratio(axes, table, f"{boundary}_{quantity}", "damping_ratio", several)
+        panel_letter(axes, letter)
+        axes.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
+        axes.set_ylabel(f"measured over predicted ${SYMBOLS[quantity]}$")
+    level_bar(figure, list(panels), boundary, pad=0.01, aspect=30)
+    values = np.sort(table.loc[table["role"] == "marker", several].unique())
+    handles = [
+        Line2D(
+            [], [], color=GREY, marker=marker, linestyle="none", markersize=3.5, label=f"{label} = {value:g}"
+        )
+        for marker, value in zip(MARKERS, values, strict=False)
+    ]
+    shown = table.loc[table["role"] == "exact", several].iloc[0]
+    handles.append(Line2D([], [], color=GREY, linewidth=0.8, label=f"exact theory, {label} = {shown:g}"))
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), columnspacing=0.9, handletextpad=0.3
     )
-    return grid
-
-
-def damping_title(summary: pd.Series) -> str:
-    """beta/dx of a column, and beta or its range below."""
-    title = rf"$\bar\beta/\mathrm{{d}}\bar x = {summary['damping_ratio']:g}$"
-    low, high = summary["beta_from"], summary["beta_to"]
-    if high == 0.0:
-        return title + "\nno damping"
-    power = int(np.floor(np.log10(high)))
-    scaled = [f"{value / 10.0**power:.1f}" for value in (low, high)]
-    # A non-breaking en dash: a range, not a difference.
-    span = scaled[0] if low == high else f"{scaled[0]}\u2013{scaled[1]}"
-    return title + "\n" + rf"$\bar\beta =$ {span}$\,\times 10^{{{power}}}$"
