@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
 from .shared.pulses import (
-    COLOURS,
     displacement_handles,
     draw_displacement,
     draw_prestress,
     draw_stress,
     prestress_rows,
+    profile_colours,
     pulse_rows,
     stress_handles,
+    tau_colours,
 )
-from .style import PAGE, new_figure, panel_letter
+from .style import COLUMN, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {
@@ -45,32 +45,41 @@ def table(
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Left: displacement boundary, simulation and theory. Right: stress boundary, simulation and exact peaks."""
-    figure = new_figure(PAGE, 3.1)
-    left, right = figure.subplots(1, 2)
-    rows = table[table["panel"] == "displacement"]
-    draw_displacement(left, rows, "slip_velocity")
-    left.set_title(r"$\Gamma = 1$", fontsize=8)
-    top = float(rows.loc[rows["role"] != "inset", "y"].max())
-    left.set_ylim(-0.04 * top, 1.55 * top)
-    draw_prestress(left.inset_axes([0.64, 0.7, 0.34, 0.28]), rows[rows["role"] == "inset"], "left")
-    left.legend(handles=displacement_handles(rows), loc="upper left", handlelength=2.2, labelspacing=0.25)
-
-    rows = table[table["panel"] == "stress"]
-    draw_stress(right, rows, "slip_velocity")
-    peaks = rows[rows["role"] == "peak"]
-    reach = 0.06 * float(np.ptp(rows.loc[rows["role"] == "simulation", "x"]))
-    for colour, (_, peak) in zip(COLOURS, peaks.groupby("run"), strict=False):
-        right.plot(
-            [-reach, reach], [peak["y"].iloc[0]] * 2, color=colour, linewidth=0.8, linestyle=(0, (2, 1)), gid="peak"
-        )  # fmt: skip
-    right.set_title(r"$\Gamma = 0$", fontsize=8)
-    top = float(rows.loc[rows["role"] != "inset", "y"].max())
-    right.set_ylim(-0.04 * top, 1.7 * top)
-    draw_prestress(right.inset_axes([0.64, 0.7, 0.34, 0.28]), rows[rows["role"] == "inset"], "run")
-    right.legend(handles=stress_handles(rows), loc="upper left", handlelength=1.6, labelspacing=0.25)
-    for axes, letter in ((left, "a"), (right, "b")):
-        axes.set_xlabel(r"$\bar\chi$")
-        axes.set_ylabel(r"slip velocity $\dot{\bar u}$")
-        panel_letter(axes, letter)
+    """Left: displacement boundary, on axes where undamped pulses are one. Right: stress boundary. Residuals below."""
+    figure = new_figure(COLUMN, 3.7)
+    grid = figure.subplots(2, 2, height_ratios=(2.6, 1.0), sharex="col")
+    pulses = table[table["role"] != "inset"]
+    insets = table[table["role"] == "inset"]
+    for column, (boundary, title, draw, colours, by) in enumerate(
+        (
+            ("displacement", r"$\Gamma = 1$", draw_displacement, tau_colours, "left"),
+            ("stress", r"$\Gamma = 0$", draw_stress, profile_colours, "run"),
+        )
+    ):
+        above, strip = grid[:, column]
+        rows = pulses[pulses["panel"] == boundary]
+        draw(above, strip, rows, "slip_velocity")
+        above.set_title(title, fontsize=8)
+        above.set_ylim(-0.05, 1.75)
+        shown = insets[insets["panel"] == boundary]
+        draw_prestress(above.inset_axes([0.6, 0.66, 0.38, 0.26]), shown, by, colours(rows))
+        panel_letter(above, "ab"[column])
+        panel_letter(strip, "cd"[column])
+    gamma = table["gamma"].dropna().iloc[0]
+    grid[0, 0].set_ylabel(r"slip velocity / largest")
+    grid[1, 0].set_ylabel("simulation\n$-$ exact")
+    grid[1, 0].set_xlabel(rf"$\bar\chi$ / paper's width ($\bar\gamma = {gamma:g}$)", fontsize=7)
+    grid[1, 1].set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
+    handles = displacement_handles(pulses[pulses["panel"] == "displacement"])
+    grid[0, 0].legend(
+        handles=handles[:4], loc="upper left", handlelength=0.8, labelspacing=0.2, borderaxespad=0.2
+    )
+    more = stress_handles(pulses[pulses["panel"] == "stress"])
+    figure.legend(
+        handles=[*handles[4:-1], *more],
+        loc="outside lower center",
+        ncols=3,
+        columnspacing=0.8,
+        handlelength=1.4,
+    )
     return figure

@@ -27,16 +27,21 @@ def table(
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Three panels: slip, slip velocity, slip acceleration."""
-    figure = new_figure(PAGE, 2.9)
-    panels = figure.subplots(1, 3)
-    for axes, (field, label), letter in zip(panels, FIELDS.items(), "abc", strict=True):
-        draw_displacement(axes, table, field)
-        axes.set_xlabel(r"$\bar\chi$")
-        axes.set_ylabel(label)
-        panel_letter(axes, letter)
-    theory = table[(table["role"] == "theory") & (table["field"] == "slip_acceleration")]["y"]
-    # The undamped lattice rings beyond the theory at the front; the axis leaves room for half as much again.
-    panels[2].set_ylim(1.5 * float(theory.min()), 1.5 * float(theory.max()))
+    """Slip, slip velocity and acceleration in units of the paper's pulse; simulation less theory below."""
+    figure = new_figure(PAGE, 3.9)
+    grid = figure.subplots(2, 3, height_ratios=(2.6, 1.0), sharex=True)
+    gamma = table["gamma"].iloc[0]
+    for (above, strip), (field, label), letter in zip(grid.T, FIELDS.items(), "abc", strict=True):
+        draw_displacement(above, strip, table, field)
+        above.set_ylabel(f"{label} / paper's largest")
+        strip.set_xlabel(r"$\bar\chi$ / paper's width")
+        panel_letter(above, letter)
+    grid[1, 0].set_ylabel("simulation\n$-$ exact")
+    theory = table[(table["role"] == "theory") & (table["field"] == "slip_acceleration")]
+    scaled = theory["y"] / theory["y_scale"]
+    # The undamped lattice rings beyond the theory at the front; the axes leave room for some of it.
+    grid[0, 2].set_ylim(1.5 * float(scaled.min()), 1.5 * float(scaled.max()))
+    grid[1, 2].set_ylim(-0.5, 0.5)
+    grid[0, 1].set_title(rf"$\Gamma = 1$, $\bar\gamma = {gamma:g}$", fontsize=8)
     figure.legend(handles=displacement_handles(table), loc="outside lower center", ncols=4)
     return figure

@@ -9,11 +9,11 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from .shared.pulses import (
-    COLOURS,
     FIELDS,
     draw_prestress,
     draw_stress,
     prestress_rows,
+    profile_colours,
     pulse_rows,
     stress_handles,
 )
@@ -21,6 +21,9 @@ from .style import PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"data": ["steady_stress"], "measured": ["steady_stress"], "settings": ["measure.front_window"]}
+
+# Drawn of the acceleration, in widths of the Gaussian.
+NEAR_THE_FRONT = (-4.0, 4.0)
 
 
 def table(
@@ -33,21 +36,25 @@ def table(
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Three panels: slip with the pre-stress as inset, slip velocity with the exact peaks, slip acceleration."""
-    figure = new_figure(PAGE, 2.8)
-    panels = figure.subplots(1, 3)
-    for axes, (field, label), letter in zip(panels, FIELDS.items(), "abc", strict=True):
-        draw_stress(axes, table, field)
-        axes.set_xlabel(r"$\bar\chi$")
-        axes.set_ylabel(label)
-        panel_letter(axes, letter)
-    for colour, (_, peak) in zip(COLOURS, table[table["role"] == "peak"].groupby("run"), strict=False):
-        panels[1].axhline(peak["y"].iloc[0], color=colour, linewidth=0.7, linestyle=(0, (2, 1)), gid="peak")
-    slip = table[(table["role"] == "simulation") & (table["field"] == "slip")]["y"]
-    panels[0].set_ylim(-0.04 * slip.max(), 1.5 * slip.max())
-    draw_prestress(panels[0].inset_axes([0.56, 0.64, 0.42, 0.33]), table[table["role"] == "inset"], "run")
-    # The exact acceleration has no bound at the front; the axis is that of the simulation.
-    simulated = table[(table["role"] == "simulation") & (table["field"] == "slip_acceleration")]["y"]
-    panels[2].set_ylim(1.3 * simulated.min() - 0.05, 1.05 * simulated.max())
-    figure.legend(handles=stress_handles(table), loc="outside lower center", ncols=4)
+    """Slip with the pre-stress as inset, slip velocity, acceleration near the front; below, simulation less theory."""
+    figure = new_figure(PAGE, 3.9)
+    grid = figure.subplots(2, 3, height_ratios=(2.6, 1.0))
+    pulses = table[table["role"] != "inset"]
+    for (above, strip), (field, label), letter in zip(grid.T, FIELDS.items(), "abc", strict=True):
+        draw_stress(above, strip, pulses, field)
+        above.set_ylabel(f"{label} / scale")
+        strip.set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
+        panel_letter(above, letter)
+    grid[1, 0].set_ylabel("simulation\n$-$ exact")
+    grid[0, 0].set_ylim(-0.04, 1.5)
+    colours = profile_colours(pulses)
+    draw_prestress(
+        grid[0, 0].inset_axes([0.56, 0.66, 0.42, 0.26]), table[table["role"] == "inset"], "run", colours
+    )
+    # The exact acceleration has no bound at the front.
+    for axes in grid[:, 2]:
+        axes.set_xlim(*NEAR_THE_FRONT)
+    grid[0, 2].set_ylim(-0.3, 3.0)
+    grid[1, 2].set_ylim(-0.5, 0.5)
+    figure.legend(handles=stress_handles(pulses), loc="outside lower center", ncols=3)
     return figure

@@ -11,8 +11,7 @@ from matplotlib.figure import Figure
 
 from ..theory.front_law import front_speed
 from ..theory.pulse import paper_pulse, steady_pulse
-from .shared.pulses import COLOURS
-from .style import GREY, PAGE, new_figure, panel_letter
+from .style import GREY, PAGE, colour_scale, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"measured": ["pulse_damping"]}
@@ -78,9 +77,8 @@ def plot(table: pd.DataFrame) -> Figure:
     for column, (quantity, label) in enumerate(QUANTITIES.items()):
         axes, rest = grid[:, column]
         axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper")
-        for colour, (tau0, rows) in zip(
-            COLOURS, table[table["quantity"] == quantity].groupby("tau0"), strict=False
-        ):
+        for tau0, rows in table[table["quantity"] == quantity].groupby("tau0"):
+            colour = colour_scale("tau_0").to_rgba(tau0)
             theory, runs = rows[rows["role"] == "theory"], rows[rows["role"] == "simulation"]
             axes.plot(
                 theory["damping_ratio"], theory["y"] / theory["paper"], color=colour, gid=f"theory {tau0:g}",

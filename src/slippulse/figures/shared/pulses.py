@@ -15,7 +15,7 @@ from ...model.scene import prestress_from
 from ...theory.arrest import ArrestingCrack
 from ...theory.front_law import front_speed
 from ...theory.pulse import paper_pulse, steady_pulse
-from ..style import BLUE, GREEN, ORANGE, PURPLE, SKY
+from ..style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, colour_scale
 
 FIELDS = {
     "slip": r"slip $\bar u$",
@@ -23,6 +23,7 @@ FIELDS = {
     "slip_acceleration": r"slip acceleration $\ddot{\bar u}$",
 }
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
+STYLES = ("-", "--", ":", "-.")
 # Points of a drawn curve; a pulse of many more blocks is thinned to this.
 POINTS = 400
 MARGIN = 0.25
@@ -39,8 +40,10 @@ def pulse_rows(sweep: xr.Dataset, window: float, fields: tuple[str, ...]) -> pd.
 
     Returns
     -------
-    rows of role "simulation", "theory" (exact, damped), "paper" (the paper's formula, for undamped runs) and "peak"
-    (exact peak velocity in the continuum, under a stress boundary) over x = chi, with chi = 0 at the largest velocity
+    rows of role "simulation", "theory" (exact, damped), "paper" (the paper's formula, for undamped runs), "peak" (exact
+    peak velocity in the continuum, under a stress boundary) and "residual" (simulation less theory) over x = chi, with
+    chi = 0 at the largest velocity; x_scale and y_scale are what they are drawn in units of: the width of the paper's
+    pulse and its largest values, or the width of the Gaussian and the largest values of the exact far-field pulse
     """
     parts = []
     for index in range(sweep.sizes["point"]):
@@ -51,23 +54,42 @@ def pulse_rows(sweep: xr.Dataset, window: float, fields: tuple[str, ...]) -> pd.
         label = {"run": index} | {
             key: run.attrs[key] for key in ("left", "right", "width", "gamma", "damping_ratio", "run_flags")
         }
+        rows = []
         if run.attrs["boundary"] == "displacement":
             speed = float(front_speed(label["left"], label["damping_ratio"], run.attrs["release"]))
             theory = steady_pulse(label["left"], label["gamma"], run.attrs["beta"], speed)
             span = theory.width
-            parts.append(theory_rows(theory, "theory", fields, label))
+            exact = theory_rows(theory, "theory", fields, label)
+            paper = paper_pulse(label["left"], label["gamma"])
+            of_paper, x_scale = theory_rows(paper, "paper", fields, label), paper.width
+            y_scale = of_paper.groupby("field")["y"].max()
             if label["damping_ratio"] == 0.0:
-                parts.append(theory_rows(paper_pulse(label["left"], label["gamma"]), "paper", fields, label))
+                rows.append(of_paper)
         else:
             crack = ArrestingCrack(prestress_from(run.attrs), label["damping_ratio"], run.attrs["release"])
-            far = far_rows(crack, fields, label)
-            parts.append(far)
-            span = -float(far["x"].min())
+            exact = far_rows(crack, fields, label)
+            span, x_scale = -float(exact["x"].min()), label["width"]
+            y_scale = exact.groupby("field")["y"].max()
+            # The acceleration has no bound; its scale is that of a velocity gained over a width.
+            if "slip_acceleration" in fields:
+                y_scale["slip_acceleration"] = crack.peak_velocity / label["width"]
             if "slip_velocity" in fields:
                 peak = {"role": "peak", "field": "slip_velocity", "x": 0.0, "y": crack.peak_velocity}
-                parts.append(pd.DataFrame([peak | label]))
-        parts.append(simulated_rows(fields_here, xi_peak, span, fields, label, run.attrs["boundary"]))
+                rows.append(pd.DataFrame([peak | label]))
+        simulated = simulated_rows(fields_here, xi_peak, span, fields, label, run.attrs["boundary"])
+        found = pd.concat([*rows, exact, simulated, residual_rows(simulated, exact)])
+        parts.append(found.assign(x_scale=x_scale, y_scale=found["field"].map(y_scale)))
     return pd.concat(parts, ignore_index=True)
+
+
+def residual_rows(simulated: pd.DataFrame, exact: pd.DataFrame) -> pd.DataFrame:
+    """Simulation less theory, where there is theory."""
+    parts = []
+    for field, rows in simulated.groupby("field"):
+        curve = exact[exact["field"] == field].sort_values("x")
+        theory = np.interp(rows["x"], curve["x"], curve["y"], left=np.nan, right=0.0)
+        parts.append(rows.assign(role="residual", y=rows["y"] - theory))
+    return pd.concat(parts)
 
 
 def simulated_rows(fields, xi_peak: float, span: float, names, label: Mapping, boundary: str) -> pd.DataFrame:
@@ -148,84 +170,81 @@ def prestress_rows(sweep: xr.Dataset, reach: float) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def draw_displacement(axes, rows: pd.DataFrame, field: str) -> None:
-    """Pulses under a displacement boundary: colour by tau_0, simulation as pale lines, theory dashed by damping."""
+def tau_colours(rows: pd.DataFrame) -> dict:
+    """The colour of each pre-stress level of pulses under a displacement boundary."""
+    scale = colour_scale("tau_0")
+    return {level: scale.to_rgba(level) for level in np.sort(rows["left"].dropna().unique())}
+
+
+def profile_colours(rows: pd.DataFrame) -> dict:
+    """The colour of each run under a stress boundary."""
+    return dict(zip(np.sort(rows["run"].dropna().unique()), COLOURS, strict=False))
+
+
+def draw_displacement(axes, strip, rows: pd.DataFrame, field: str) -> None:
+    """Pulses in units of the paper's: colour by tau_0, simulation as pale lines, theory by damping; residual below."""
     rows = rows[rows["field"] == field]
-    styles = dict(zip(np.sort(rows["damping_ratio"].unique()), ("-", "--", ":", "-."), strict=False))
-    for colour, (tau0, level) in zip(COLOURS, rows.groupby("left"), strict=False):
-        for ratio, group in level.groupby("damping_ratio"):
-            for role, options in (
-                ("simulation", {"linewidth": 3.0, "alpha": 0.35, "linestyle": "-", "zorder": 2}),
-                ("theory", {"linewidth": 0.9, "linestyle": styles[ratio], "zorder": 3}),
-            ):
-                curve = group[group["role"] == role]
-                if role == "simulation" and curve["run_flags"].notna().any():
-                    options = options | {"color": "0.7"}
-                axes.plot(
-                    curve["x"],
-                    curve["y"],
-                    **({"color": colour} | options),
-                    gid=f"{role} {tau0:g} {ratio:g}",
-                )
+    colours = tau_colours(rows)
+    styles = dict(zip(np.sort(rows["damping_ratio"].unique()), STYLES, strict=False))
+    for (level, ratio), group in rows.groupby(["left", "damping_ratio"]):
+        _draw_pulse(axes, strip, group, colours[level], styles[ratio], f"{level:g} {ratio:g}")
 
 
-def draw_stress(axes, rows: pd.DataFrame, field: str) -> None:
-    """Pulses under a stress boundary, one colour a profile."""
+def draw_stress(axes, strip, rows: pd.DataFrame, field: str) -> None:
+    """Pulses under a stress boundary over the width of their Gaussian, one colour a profile; residual below."""
     rows = rows[rows["field"] == field]
-    for colour, (run, group) in zip(COLOURS, rows.groupby("run"), strict=False):
-        curve = group[group["role"] == "simulation"]
-        pale = "0.7" if curve["run_flags"].notna().any() else colour
-        axes.plot(curve["x"], curve["y"], color=pale, linewidth=3.0, alpha=0.35, gid=f"simulation {run}")
-        theory = group[group["role"] == "theory"]
-        axes.plot(theory["x"], theory["y"], color=colour, linewidth=0.9, zorder=3, gid=f"theory {run}")
+    colours = profile_colours(rows)
+    for run, group in rows.groupby("run"):
+        _draw_pulse(axes, strip, group, colours[run], "-", f"{run:g}")
 
 
-def draw_prestress(inset, rows: pd.DataFrame, by: str) -> None:
+def _draw_pulse(axes, strip, rows: pd.DataFrame, colour, style: str, name: str) -> None:
+    for role, where, look in (
+        ("simulation", axes, {"linewidth": 2.4, "alpha": 0.35, "zorder": 2}),
+        ("theory", axes, {"linewidth": 0.8, "linestyle": style, "zorder": 3}),
+        ("residual", strip, {"linewidth": 0.6, "linestyle": style}),
+    ):
+        curve = rows[rows["role"] == role]
+        flagged = role != "theory" and curve["run_flags"].notna().any()
+        where.plot(
+            curve["x"] / curve["x_scale"], curve["y"] / curve["y_scale"], gid=f"{role} {name}",
+            color="0.7" if flagged else colour, **look,
+        )  # fmt: skip
+
+
+def draw_prestress(inset, rows: pd.DataFrame, by: str, colours: Mapping) -> None:
     """Pre-stress profiles in an inset, in the colours of the pulses."""
-    for colour, (_, group) in zip(COLOURS, rows.groupby(by), strict=False):
-        inset.plot(group["x"], group["y"], color=colour, linewidth=0.9)
-    inset.set_xlabel(r"$\bar x$", fontsize=6.5, labelpad=0)
-    inset.set_ylabel(r"$\bar\tau$", fontsize=6.5, labelpad=0)
-    inset.tick_params(labelsize=5.5, length=2)
+    for key, group in rows.groupby(by):
+        inset.plot(group["x"], group["y"], color=colours[key], linewidth=0.8)
+    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=6.0, pad=1.0)
+    inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)
 
 
 def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:
     """Legend: colours are tau_0, line styles the damping of the theory, pale lines the simulation."""
-    levels = np.sort(rows.loc[rows["role"] == "theory", "left"].unique())
     ratios = np.sort(rows.loc[rows["role"] == "theory", "damping_ratio"].unique())
     handles = [
         Line2D([], [], color=colour, label=rf"$\bar\tau_0 = {level:g}$")
-        for colour, level in zip(COLOURS, levels, strict=False)
+        for level, colour in tau_colours(rows).items()
     ]
+    damping = r"exact, $\bar\beta/\mathrm{d}\bar x = "
     handles += [
-        Line2D(
-            [],
-            [],
-            color="black",
-            linewidth=0.9,
-            linestyle=style,
-            label=rf"theory, $\bar\beta/\mathrm{{d}}\bar x = {ratio:g}$",
-        )
-        for style, ratio in zip(("-", "--", ":", "-."), ratios, strict=False)
-    ]
-    return [*handles, Line2D([], [], color="black", linewidth=3.0, alpha=0.35, label="simulation")]
+        Line2D([], [], color=BLACK, linewidth=0.8, linestyle=style, label=f"{damping}{ratio:g}$")
+        for style, ratio in zip(STYLES, ratios, strict=False)
+    ]  # fmt: skip
+    return [*handles, Line2D([], [], color=BLACK, linewidth=2.4, alpha=0.35, label="simulation")]
 
 
 def stress_handles(rows: pd.DataFrame) -> list[Line2D]:
-    """Legend: one colour a profile, dashes the exact peak."""
+    """Legend: one colour a profile."""
     runs = rows[rows["role"] == "simulation"].groupby("run").first()
-    handles = [
-        Line2D(
-            [],
-            [],
-            color=colour,
-            label=rf"$\bar\tau_{{0,l}} = {run.left:g}$, $\bar W_{{\bar\tau}} = {run.width:g}$",
-        )
-        for colour, run in zip(COLOURS, runs.itertuples(), strict=False)
-    ]
+    handles = []
+    for run, colour in profile_colours(rows).items():
+        level, width = runs.loc[run, "left"], runs.loc[run, "width"]
+        label = rf"$\bar\tau_{{0,l}} = {level:g}$, $\bar W_{{\bar\tau}} = {width:g}$"
+        handles.append(Line2D([], [], color=colour, label=label))
     return [
         *handles,
-        Line2D([], [], color="black", linewidth=0.9, label="exact far-field pulse"),
-        Line2D([], [], color="black", linewidth=0.8, linestyle=(0, (2, 1)), label="its largest velocity"),
-        Line2D([], [], color="black", linewidth=3.0, alpha=0.35, label="simulation"),
+        Line2D([], [], color=BLACK, linewidth=0.8, label="exact far-field pulse"),
+        Line2D([], [], color=BLACK, linewidth=2.4, alpha=0.35, label="simulation"),
     ]
