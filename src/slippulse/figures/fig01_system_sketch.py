@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Rectangle
 
-from .style import BLACK, BLUE, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, COLUMN, ORANGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {}
@@ -137,8 +137,8 @@ def profile_rows(panel: str) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Two panels, one a boundary condition."""
-    figure = new_figure(PAGE, 1.72)
-    for axes, panel, letter in zip(figure.subplots(1, 2), TITLES, "ab", strict=True):
+    figure = new_figure(COLUMN, 3.4)
+    for axes, panel, letter in zip(figure.subplots(2, 1), TITLES, "ab", strict=True):
         draw_panel(axes, table[table["panel"] == panel])
         axes.set_title(TITLES[panel], fontsize=8)
         panel_letter(axes, letter)
@@ -146,7 +146,7 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def draw_panel(axes, rows: pd.DataFrame) -> None:
-    """Everything of one boundary condition, to scale."""
+    """Everything of one boundary condition."""
     of = {role: group for role, group in rows.groupby("role", sort=False)}
     for box in of["rectangle"].itertuples():
         axes.add_patch(Rectangle((box.x, box.y), box.width, box.height, gid=box.name, **RECTANGLES[box.name]))

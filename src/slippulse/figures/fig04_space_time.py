@@ -9,12 +9,13 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from ..comparison.exact_rupture import exact_rupture
 from ..data.points import point
 from ..measure.fronts import position_at
-from .shared.space_time import draw_map, draw_profile, edges, prestress_profile, velocity_map
-from .style import BLACK, ORANGE, PAGE, PURPLE, new_figure, panel_letter
+from .shared.space_time import STUCK, draw_map, draw_profile, edges, prestress_profile, velocity_map
+from .style import BLACK, COLUMN, ORANGE, PURPLE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {
@@ -116,9 +117,10 @@ def _transition(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Draw the figure from its table."""
-    figure = new_figure(PAGE, 3.35)
+    figure = new_figure(COLUMN, 5.6)
     figure.get_layout_engine().set(wspace=0.01, w_pad=0.03)
-    for side, (panel, letter, boundary) in zip(figure.subfigures(1, 2, wspace=0.03), PANELS, strict=True):
+    maps = []
+    for side, (panel, letter, boundary) in zip(figure.subfigures(2, 1), PANELS, strict=True):
         profile, space_time = side.subplots(1, 2, sharey=True, width_ratios=(0.27, 1.0))
         chosen = table[table["panel"] == panel]
         roles = {role: rows for role, rows in chosen.groupby("role")}
@@ -127,11 +129,15 @@ def plot(table: pd.DataFrame) -> Figure:
         _draw_exact(space_time, roles)
         _draw_transition(space_time, roles)
         largest = roles["largest"]["value"].iloc[0]
-        bar = side.colorbar(image, ax=space_time, location="top", aspect=32, pad=0.02)
-        bar.set_label(rf"slip velocity $\dot{{\bar u}}$ (largest {largest:.3f})")
+        bar = side.colorbar(image, ax=space_time, pad=0.02, aspect=22)
+        bar.set_label(rf"slip velocity $\dot{{\bar u}}$ (largest {largest:#.3g})")
         profile.set_ylabel(r"position $\bar x$")
         panel_letter(profile, letter)
         side.suptitle(_title(roles, boundary), fontsize=8.0)
+        maps.append(space_time)
+    figure.legend(
+        handles=_legend(maps), loc="outside lower center", ncols=3, handlelength=1.6, columnspacing=1.0
+    )
     return figure
 
 
@@ -186,8 +192,21 @@ def _draw_transition(axes, roles: Mapping[str, pd.DataFrame]) -> None:
                 label=label,
                 **marker,
             )
-    handles = [line for line in axes.lines if not line.get_label().startswith("_")]
-    axes.legend(handles=handles, loc="upper left", handlelength=1.6, borderaxespad=0.3)
+
+
+def _legend(panels) -> list:
+    """Each line and marker of the panels once, and what white and grey are."""
+    handles = {
+        line.get_label(): line
+        for axes in panels
+        for line in axes.lines
+        if not line.get_label().startswith("_")
+    }
+    patches = [
+        Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5, label=label)
+        for colour, label in (("white", "not yet slipped"), (STUCK, "stuck again"))
+    ]
+    return [*handles.values(), *patches]
 
 
 def _draw_arrows(axes, ends: pd.DataFrame, level: float) -> None:
@@ -201,5 +220,5 @@ def _draw_arrows(axes, ends: pd.DataFrame, level: float) -> None:
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
-        label = rf"$\bar {name}_\mathrm{{trans}} = {value:.2f}$"
+        label = rf"$\bar {name}_\mathrm{{trans}} = {value:#.3g}$"
         axes.text(beside, height, label, va="center", fontsize=7.5, path_effects=HALO, zorder=4.0)

@@ -16,7 +16,7 @@ from matplotlib.ticker import MultipleLocator
 
 from ..data.points import point
 from ..model.scene import prestress_from
-from .style import BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
@@ -30,7 +30,8 @@ BLOCK, HEIGHT, PLATE = 0.5, 0.44, 1.12
 FARTHEST, SHORTEST = 0.85, 0.35
 # Inches of a spacing's height, and of the strip with the pre-stress.
 UNIT, STRIP = 0.36, 0.42
-COLOURS = {"at rest": "#d5dce4", "sliding": ORANGE, "stuck after sliding": GREEN}
+# Light, middle and dark, so that grey tells them apart too.
+COLOURS = {"at rest": "#e2e8ee", "sliding": ORANGE, "stuck after sliding": "#00402f"}
 TITLES = {
     "displacement": r"$\Gamma = 1$: leaf springs to a held plate, $\bar\gamma = {gamma:g}$, $\bar\tau_0 = {left:g}$",
     "stress": r"$\Gamma = 0$: a constant stress on each block, "

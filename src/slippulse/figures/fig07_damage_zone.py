@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch, Rectangle
 
 from ..theory.dimensional import damage_zone_stress_drop
-from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, COLUMN, CYCLE, GREY, ORANGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {}
@@ -43,6 +43,7 @@ TEXTS = {
     "imposed": ("center", "bottom", BLACK),
     "before": ("right", "center", GREY),
     "after": ("left", "center", BLUE),
+    "change": ("center", "center", BLUE),
     "thickness": ("left", "center", MUTED),
     "height": ("right", "center", MUTED),
     "axis": ("left", "center", MUTED),
@@ -123,6 +124,7 @@ def sketch_rows() -> pd.DataFrame:
         ("imposed", ORIGIN + 0.5 * IMPOSED, top + 0.2, r"imposed $\hat u$"),
         ("before", ORIGIN + np.interp(1.5, [1.0, top], before[1:]) - 0.12, 1.5, "before"),
         ("after", ORIGIN + np.interp(0.4, [0.0, 1.0], after[:2]) + 0.1, 0.4, "after"),
+        ("change", ORIGIN + 0.5 * SLIP, 0.15, "change"),
         ("thickness", WIDTH + 0.26, 0.5, "$H$"),
         ("thickness", WIDTH + 0.26, 1.0 + 0.5 * ROCK, "$H_r$"),
         ("height", -0.2, 0.0, "fault  $0$"),
@@ -141,13 +143,13 @@ def sketch_rows() -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Left: the schematic. Right: stress drop against G/G_r."""
-    figure = new_figure(PAGE, 2.75)
-    left, right = figure.subplots(1, 2, width_ratios=[1.15, 1.0])
-    draw_sketch(left, table[table["panel"] == "sketch"])
-    draw_stress_drop(right, table[table["panel"] == "stress_drop"])
-    panel_letter(left, "a")
-    panel_letter(right, "b")
+    """Above: the schematic. Below: stress drop against G/G_r."""
+    figure = new_figure(COLUMN, 4.6)
+    above, below = figure.subplots(2, 1, height_ratios=[1.15, 1.0])
+    draw_sketch(above, table[table["panel"] == "sketch"])
+    draw_stress_drop(below, table[table["panel"] == "stress_drop"])
+    panel_letter(above, "a")
+    panel_letter(below, "b")
     return figure
 
 
@@ -159,6 +161,11 @@ def draw_sketch(axes, rows: pd.DataFrame) -> None:
         axes.add_patch(Rectangle((box.x, box.y), box.width, box.height, gid=box.name, **look))
     for name, line in of["line"].groupby("name", sort=False):
         axes.plot(line["x"], line["y"], gid=name, **LINES[name])
+    change = {name: line.sort_values("y") for name, line in of["line"].groupby("name")}
+    axes.fill_betweenx(
+        change["after"]["y"], change["before"]["x"], change["after"]["x"], color=BLUE, alpha=0.18, linewidth=0.0,
+        gid="change",
+    )  # fmt: skip
     for arrow in of["arrow"].itertuples():
         style, colour = ARROWS[arrow.name]
         axes.add_patch(

@@ -18,7 +18,7 @@ MAP_SAMPLES, FRONT_POINTS = 201, 300
 MARGIN = 0.12
 STUCK = "#cfcfcf"
 # Width of a label on the axis of the narrow pre-stress panel, as a share of the axis.
-LABEL = 0.3
+LABEL = 0.5
 
 
 def limits(run: xr.Dataset) -> tuple[float, float]:
