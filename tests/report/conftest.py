@@ -22,6 +22,10 @@ from slippulse.report.inputs import Inputs
 from slippulse.theory import front_speed, steady_pulse
 
 SIMULATIONS = ("scaling_displacement", "scaling_stress", "steady_displacement")
+EDGE = {
+    "family": "level", "value": "tau_0 = 0.999", "quantity": "front speed", "error": 1e-4, "tolerance": 1e-2,
+    "verdict": "right", "message": "",
+}  # fmt: skip
 KEYS = ("left", "gamma", "beta", "damping_ratio", "release")
 
 
@@ -110,6 +114,8 @@ def make_inputs(project, shipped, tmp_path_factory):
             save_table(tables[0], measured[name])
             studies[name] = str(folder / f"{name}_study.csv")
             save_table(grid_tables(tables, (2.0, 4.0), KEYS), studies[name])
+        measured["extremes"] = str(folder / "extremes.csv")
+        save_table(pd.DataFrame([EDGE]), measured["extremes"])
         captions = yaml.safe_load((project / "manuscript/captions.yaml").read_text(encoding="utf-8"))
         figures = figures if figures is not None else [name for name in captions if name.startswith("fig")]
         picture = Figure(figsize=(4, 2))

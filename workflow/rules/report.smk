@@ -19,7 +19,7 @@ rule write_report:
         LOCK,
         source="manuscript/replication.md",
         claims="results/claims.json",
-        measured=tables("measurements", REPORT_SIMULATIONS),
+        measured=tables("measurements", REPORT_SIMULATIONS) + ["results/studies/extremes.csv"],
         uncertainties=tables("uncertainties", REPORT_SIMULATIONS),
         figures=[f"results/figures/{name}.pdf" for name in NEEDS],
         pictures=[f"results/figures/{name}.png" for name in NEEDS],

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ..comparison.exact_transition import exact_transition
 from .shared.exact_transitions import draw_one_way, draw_peak, one_way_rows, peak_rows
 from .shared.scaling import SYMBOLS
-from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {
@@ -20,7 +20,9 @@ NEEDS = {
     "settings": ["measure.share", "model.damping_ratio"],
 }
 
-MARKERS = {"displacement": ("o", BLUE, r"$\Gamma = 1$"), "stress": ("s", ORANGE, r"$\Gamma = 0$")}
+# Black and grey, since colours tell levels and gamma in the other panels.
+MARKERS = {"displacement": ("o", BLACK, r"$\Gamma = 1$"), "stress": ("s", GREY, r"$\Gamma = 0$")}
+REFINED = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW)
 COLUMNS = {"time": "transition_time", "length": "transition_length"}
 
 
@@ -126,7 +128,7 @@ def _draw_refinement(axes, rows: pd.DataFrame, quantity: str) -> None:
     """Distance from the exact theory over dx/W; the levels share a colour, lines join what differs in dx alone."""
     refinement = rows[rows["role"] == "refinement"]
     keys = refinement.groupby(["left", "gamma"])
-    for colour, ((left, gamma), group) in zip((*CYCLE[:-1], GREY), keys, strict=False):
+    for colour, ((left, gamma), group) in zip(REFINED, keys, strict=False):
         for (ratio, line), style in zip(group.groupby("damping_ratio"), ("-", "--"), strict=False):
             line = line.sort_values("dx")
             error = np.abs(line["measured"] / line["exact"] - 1.0)

@@ -101,15 +101,16 @@ def plot(table: pd.DataFrame) -> Figure:
                 & (table["damping_ratio"] == ratio)
             ]
             style = {"linewidth": 2.0} if ratio == paper else {}
-            axes.plot(line["tau0"], line["speed"], color=colour, gid=f"theory {ratio:g}", **style)
-            _points(axes, rest, simulated, rule, "damping_ratio", ratio, "tau0", colour, marker, f"{ratio:g}")
+            axes.plot(line["tau0"], _over(line, rule), color=colour, gid=f"theory {ratio:g}", **style)
+            runs = simulated.assign(speed=_over(simulated, rule), theory=_over(simulated, rule, "theory"))
+            _points(axes, rest, runs, rule, "damping_ratio", ratio, "tau0", colour, marker, f"{ratio:g}")
         limit = table[(table["role"] == "limit") & (table["release"] == rule)]
         undamped = table[(table["role"] == "undamped") & (table["release"] == rule)]
         label = r"$1/\sqrt{1-\bar\tau_0}$" if rule == "elastic" else r"$1/(1-\bar\tau_0)$"
-        axes.plot(limit["tau0"], limit["speed"], color=BLACK, linestyle=":", linewidth=1.0, label=label)
+        axes.plot(limit["tau0"], _over(limit, rule), color=BLACK, linestyle=":", linewidth=1.0, label=label)
         axes.plot(
             undamped["tau0"],
-            undamped["speed"],
+            _over(undamped, rule),
             color=BLACK,
             linestyle="--",
             linewidth=0.8,
@@ -149,17 +150,27 @@ def plot(table: pd.DataFrame) -> Figure:
     )  # fmt: skip
     rest.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
     for axes, letter in zip(grid[0], "abc", strict=True):
+        panel_letter(axes, letter)
+    for axes in grid[0, ::2]:
         axes.set_yscale("log")
         axes.set_ylim(*SPEED_RANGE)
         axes.set_yticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
         axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
-        panel_letter(axes, letter)
     for rest in grid[1]:
+        rest.axhline(CLOSEST, color=GREY, linewidth=0.6, linestyle=":")
         rest.set_yscale("log")
         rest.set_ylim(0.5 * CLOSEST, 1e-1)
+    # Elastic speeds are close to one another: over the undamped speed they are not a bundle.
+    grid[0, 1].set_ylim(0.97, 1.85)
     grid[0, 0].set_ylabel(r"front speed $\bar v$")
+    grid[0, 1].set_ylabel(r"$\bar v\,\sqrt{1-\bar\tau_0^2}$")
     grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$")
     return figure
+
+
+def _over(rows: pd.DataFrame, rule: str, column: str = "speed") -> pd.Series:
+    """Speeds as they are drawn over tau_0: under the rule "elastic" in units of the speed without damping."""
+    return rows[column] * np.sqrt(1.0 - rows["tau0"] ** 2) if rule == "elastic" else rows[column]
 
 
 def _points(axes, rest, simulated, rule, key, value, x, colour, marker, label) -> None:

@@ -4,25 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..model.stability import MARGIN
+from ..model.stability import MARGIN, largest_step
 from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
-NEEDS = {"studies": ["stability"]}
+NEEDS = {"studies": ["stability"], "settings": ["studies.stability.between"]}
 
 # Below this the damping axis is linear, so that 0 has a place.
 LINEAR = 0.01
+POINTS = 200
+# An arrow up.
+CENSORED = r"$\uparrow$"
 
 
 def table(
     data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """The rows of the study as they are drawn."""
-    return measured["stability"]
+    """The rows of the study, with where the search for a step ended, and the derived bounds as lines (kind derived)."""
+    rows, (_, most) = measured["stability"], settings["studies"]["stability"]["between"]
+    rows = rows.assign(searched_to=most)
+    ratios = np.concatenate([[0.0], np.geomspace(LINEAR / 10.0, rows["damping_ratio"].max(), POINTS - 1)])
+    lines = [
+        pd.DataFrame({"kind": "derived", "scheme": scheme, "order": order, "damping_ratio": ratios}).assign(
+            derived=[largest_step(scheme, order, ratio, 0.0) for ratio in ratios]
+        )
+        for scheme, order in rows.loc[rows["kind"] == "boundary", ["scheme", "order"]]
+        .drop_duplicates()
+        .to_numpy()
+    ]
+    return pd.concat([rows, *lines], ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -30,22 +45,21 @@ def plot(table: pd.DataFrame) -> Figure:
     figure = new_figure(PAGE, 3.4)
     left, right = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
     rows = table[table["kind"] == "boundary"]
+    lines = table[table["kind"] == "derived"]
     for colour, ((scheme, order), curve) in zip(CYCLE, rows.groupby(["scheme", "order"]), strict=True):
         name = "textbook scheme" if scheme == "fixed_step" else f"localised, order {order}"
+        line = lines[(lines["scheme"] == scheme) & (lines["order"] == order)]
         left.plot(
-            curve["damping_ratio"], curve["derived"], color=colour, linewidth=0.9, label=name, gid="derived"
+            line["damping_ratio"], line["derived"], color=colour, linewidth=0.9, label=name, gid="derived"
         )
         left.plot(
             curve["damping_ratio"], curve["measured"], "o", color=colour, markersize=3.2, gid="measured"
         )
         for column, marker in (("measured_ratio", "o"), ("measured_rupture_ratio", "^")):
-            right.plot(
-                curve["damping_ratio"], curve[column], marker, color=colour, markersize=3.2,
-                markerfacecolor=colour if marker == "o" else "none", linestyle="none", gid=column,
-            )  # fmt: skip
+            _draw_ratio(right, curve, column, marker, colour)
     styles = ("-", "--", ":", "-.")
     for style, (name, curve) in zip(
-        styles, table[table["kind"] != "boundary"].groupby("kind", sort=False), strict=False
+        styles, table[~table["kind"].isin(["boundary", "derived"])].groupby("kind", sort=False), strict=False
     ):
         left.plot(
             curve["damping_ratio"], curve["measured"], color=GREY, linewidth=1.8, alpha=0.7, linestyle=style,
@@ -66,6 +80,7 @@ def plot(table: pd.DataFrame) -> Figure:
         ("^", "none", "rupture (events in the steps)"),
     ):
         right.plot([], [], marker, color="0.3", markerfacecolor=face, linestyle="none", label=name)
+    right.plot([], [], color="0.3", marker=CENSORED, linestyle="none", label="sound as far as searched")
     right.legend(loc="center right", bbox_to_anchor=(1.0, 0.72))
     for axes, letter in ((left, "a"), (right, "b")):
         axes.set_xscale("symlog", linthresh=LINEAR, linscale=0.4)
@@ -73,3 +88,13 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
         panel_letter(axes, letter)
     return figure
+
+
+def _draw_ratio(axes, curve: pd.DataFrame, column: str, marker: str, colour) -> None:
+    """Measured over derived; an arrow up where every step that was tried is sound."""
+    beyond = curve[column] > curve["searched_to"] - 1e-6
+    for rows, shape in ((curve[~beyond], marker), (curve[beyond], CENSORED)):
+        axes.plot(
+            rows["damping_ratio"], rows[column], marker=shape, color=colour, markersize=3.6 if shape == marker else 6.0,
+            markerfacecolor=colour if marker == "o" else "none", linestyle="none", gid=column,
+        )  # fmt: skip

@@ -7,11 +7,12 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
+from ..studies.outcomes import FLAGGED
 from ..texts.numerals import number, percent, setting
 from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
-from .markdown import table
+from .markdown import plain, table
 
 # What the grid table shows: simulation, column, name.
 QUANTITIES = (
@@ -139,3 +140,17 @@ def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
         r"$1/\sqrt{\gamma}$",
     ]
     return table(head, rows, [9, 11, 14, 12, 15, 14, 12, 13], "rrrrrrrr")
+
+
+def edges(study: pd.DataFrame) -> str:
+    """The edges of the solver's domain: what was compared, its error and tolerance, and how it ended."""
+    rows = []
+    for _, row in study.iterrows():
+        flag = str(row["message"]).partition(",")[0].replace("_", " ") if row["verdict"] == FLAGGED else ""
+        outcome = f"{row['verdict']}: {flag}" if flag else row["verdict"]
+        error, tolerance = (
+            "" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance")
+        )
+        rows.append([row["family"], plain(row["value"]), plain(row["quantity"]), error, tolerance, outcome])
+    head = ["edge", "value", "compared", "error", "tolerance", "outcome"]
+    return table(head, rows, [16, 28, 18, 12, 12, 24], "lllrrl")

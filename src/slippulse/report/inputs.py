@@ -22,7 +22,7 @@ class Inputs:
     ----------
     config : the configuration of the run, builtins
     claims_file : the ledger, JSON
-    measured, uncertainties : per simulation, a CSV table
+    measured, uncertainties : per simulation, a CSV table; among the measured the study of the edges, extremes
     figures : names of the figures to include, in any order
     figures_folder : where their files are
     manuscript : folder of the texts: captions, errata, shipped verdicts
@@ -47,7 +47,11 @@ class Inputs:
         return cls(
             config=yaml.safe_load(settings.read_text(encoding="utf-8")),
             claims_file=str(results / "claims.json"),
-            measured={p.stem: str(p) for p in sorted((results / "measurements").glob("*.csv"))},
+            measured={
+                p.stem: str(p)
+                for name in ("measurements", "studies")
+                for p in sorted((results / name).glob("*.csv"))
+            },
             uncertainties={p.stem: str(p) for p in sorted((results / "uncertainties").glob("*.csv"))},
             figures=[name for name in captions if (results / f"figures/{name}.pdf").exists()],
             figures_folder=str(results / "figures"),

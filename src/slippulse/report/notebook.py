@@ -12,7 +12,7 @@ from ..data.alterations import changes
 from ..model.prestress import Prestress
 from ..texts.captions import read_captions
 from ..texts.prose import FILTERS, fill
-from .accuracy import attempt, grid_studies, presets, speeds, sticking
+from .accuracy import attempt, edges, grid_studies, presets, speeds, sticking
 from .alterations import alteration_note
 from .errata import errata_table
 from .figures import Gallery, placed_figures
@@ -37,7 +37,7 @@ def define(names: dict[str, object], inputs: Inputs, show: Callable[[str], None]
     names |= {"CLOSE": CLOSE, "SMALL": SMALL, "WIDE": WIDE, "np": np, "theory": theory}
     altered = changes(inputs.shipped, inputs.config)
     names["tolerances_altered"] = any(change["key"].startswith("claims.") for change in altered)
-    for function in (Prestress, attempt, grid_studies, presets, speeds, sticking):
+    for function in (Prestress, attempt, edges, grid_studies, presets, speeds, sticking):
         names[function.__name__] = function
 
     captions = read_captions(Path(inputs.manuscript) / "captions.yaml", lambda text: fill(text, names))

@@ -9,7 +9,7 @@ from ...model.prestress import Prestress
 from ...texts.numerals import setting
 from ...theory.exact_transition import exact_transition_displacement, uniform_transition_time
 from ...theory.rupture import Rupture
-from ..style import BLACK, CYCLE
+from ..style import BLACK, colour_scale
 
 LEVELS = (0.1, 0.2, 0.4, 0.6, 0.8, 0.9)
 GAMMAS = (0.01, 0.1, 0.65)
@@ -57,7 +57,8 @@ def draw_peak(axes, table: pd.DataFrame) -> None:
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     line = table[table["role"] == "uniform"]
     axes.plot(line["left"], line["exact"], "--", color=BLACK, label="uniform", gid="uniform")
-    for colour, (gamma, rows) in zip(CYCLE, table[table["role"] == "peak"].groupby("gamma"), strict=False):
+    for gamma, rows in table[table["role"] == "peak"].groupby("gamma"):
+        colour = colour_scale("gamma").to_rgba(gamma)
         axes.plot(
             rows["left"], rows["exact"], color=colour, marker="o", markersize=2.0, label=rf"$\bar\gamma = {gamma:g}$",
             gid=f"peak {gamma:g}",
@@ -79,7 +80,8 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
     rows = table[table["role"] == "one_way"]
     for axes, (quantity, label) in zip(panels, labels.items(), strict=True):
         groups = rows[rows["quantity"] == quantity].groupby("left")
-        for colour, (left, line) in zip(CYCLE, groups, strict=False):
+        for left, line in groups:
+            colour = colour_scale("tau_l").to_rgba(left)
             axes.plot(
                 line["right"], line["exact"], color=colour, marker="o", markersize=2.0, label=setting(left),
                 gid=f"{quantity} {left:g}",
