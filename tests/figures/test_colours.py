@@ -1,0 +1,55 @@
+"""Readers with any colour vision can tell the colours of a figure apart: simulated after Machado et al. (2009)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+
+from slippulse.figures.fig06_burridge_knopoff import COLOURS
+from slippulse.figures.style import CYCLE, SCALES, colour_scale
+
+# Rows of linear red, green, blue.
+VISION = {
+    "usual": np.eye(3),
+    "deuteranopia": np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]]),
+    "protanopia": np.array([[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]]),
+    "tritanopia": np.array([[1.256, -0.077, -0.179], [-0.078, 0.931, 0.148], [0.005, 0.691, 0.304]]),
+    "grey": np.tile([0.2126, 0.7152, 0.0722], (3, 1)),
+}
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+WHITE = TO_XYZ.sum(axis=1)
+# Distances in CIE L*a*b*: what is just seen is about 2; marks of a few points need more.
+APART, GREYS_APART = 10.0, 15.0
+
+
+def lab(colour, vision: str) -> np.ndarray:
+    """L*, a*, b* of a colour as it is seen."""
+    linear = np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)])
+    xyz = TO_XYZ @ np.clip(VISION[vision] @ linear, 0.0, 1.0) / WHITE
+    f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
+    return np.array([116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("vision", ["usual", "deuteranopia", "protanopia"])
+def test_colours_of_the_cycle_are_apart(vision):
+    seen = [lab(colour, vision) for colour in CYCLE]
+    for k, one in enumerate(seen):
+        for other in seen[k + 1 :]:
+            assert np.linalg.norm(one - other) > APART
+
+
+@pytest.mark.parametrize("vision", VISION)
+@pytest.mark.parametrize("quantity", SCALES)
+def test_a_scale_goes_one_way_in_lightness(quantity, vision):
+    _, _, ends, logarithmic = SCALES[quantity]
+    values = np.geomspace(*ends, 9) if logarithmic else np.linspace(*ends, 9)
+    lightness = np.array([lab(colour_scale(quantity).to_rgba(value), vision)[0] for value in values])
+    steps = np.diff(lightness)
+    assert (steps > 0.0).all() or (steps < 0.0).all()
+    assert abs(lightness[-1] - lightness[0]) > 40.0
+
+
+def test_states_of_a_block_are_apart_in_grey():
+    shades = sorted(lab(colour, "grey")[0] for colour in COLOURS.values())
+    assert (np.diff(shades) > GREYS_APART).all()
