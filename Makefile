@@ -17,10 +17,15 @@ export PYTHONDONTWRITEBYTECODE :=
 VENV := .venv
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
-PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes
-# uv of the lock, or pip where there is no uv for this machine.
-INSTALL := sh -c '"$(BIN)/uv" --version >/dev/null 2>&1 && exec "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes "$$@" || exec "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes "$$@"' install
-PIP_EDITABLE := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
+# By uv of the lock, or by pip on a machine that has no uv.
+define install
+if "$(BIN)/uv" --version >/dev/null 2>&1; then \
+    "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes --only-binary :all: $(1); \
+else \
+    $(PIP) --require-hashes --only-binary :all: $(1); \
+fi
+endef
 
 # What Snakemake would stop at late, or never: jobs find no interpreter below a folder with such a name.
 CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
@@ -54,14 +59,14 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
-	@$(PIP) --only-binary :all: -r requirements-build.lock
-	@$(INSTALL) --only-binary :all: --no-binary connection-pool --no-build-isolation -r requirements.lock
-	@$(PIP_EDITABLE)
+	@$(PIP) --require-hashes --only-binary :all: -r requirements-build.lock
+	@$(call install,--no-binary connection-pool --no-build-isolation -r requirements.lock)
+	@$(PIP) --no-build-isolation --editable .
 	@touch "$(READY)"
 
 # Only what a cluster adds: every other package is that of requirements.lock.
 $(VENV)/.slurm: $(READY) requirements-slurm.lock
-	@$(INSTALL) --only-binary :all: -r requirements-slurm.lock
+	@$(call install,-r requirements-slurm.lock)
 	@touch "$@"
 
 slurm: $(VENV)/.slurm

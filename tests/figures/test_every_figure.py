@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.mathtext import MathTextParser
+from matplotlib.text import Text
 
-from slippulse.figures.style import PAGE, save_figure
+from slippulse.figures.style import PAGE, SCRIPTS, save_figure
 from slippulse.texts.captions import read_captions
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
+# Points, at the width of the journal.
+SMALLEST = 6.0
 SKETCHES = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone", "study_extremes"}
 
 
@@ -51,6 +56,24 @@ def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
         assert (tmp_path / f"first.{ending}").stat().st_size > 5000
     numbers = drawn.table.select_dtypes("number").to_numpy()
     assert not np.isinf(numbers).any()
+    assert not too_small(drawn.figure)
+
+
+def too_small(figure) -> dict[str, float]:
+    """Texts of a figure, as it was drawn, that are too small to read in print."""
+    found = {}
+    for text in figure.findobj(Text):
+        shown = text.get_text()
+        if text.get_visible() and shown.strip():
+            size = text.get_fontsize() * (SCRIPTS if re.search(r"\$[^$]*[_^]", shown) else 1.0)
+            if size < SMALLEST - 1e-9:
+                found[shown] = round(size, 2)
+    return found
+
+
+def test_exponents_have_the_size_that_they_are_given():
+    letter, exponent = MathTextParser("path").parse("$x^2$").glyphs
+    assert exponent[1] / letter[1] == pytest.approx(SCRIPTS)
 
 
 @pytest.mark.parametrize("name", ["fig03_steady_state", "study_arrest"])

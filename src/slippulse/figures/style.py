@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib
+import matplotlib.mathtext
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm, Normalize
@@ -37,7 +38,7 @@ RC = {
     "axes.titlesize": 8.0,
     "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0,
-    "legend.fontsize": 6.5,
+    "legend.fontsize": 7.0,
     "legend.frameon": False,
     "lines.linewidth": 1.1,
     "lines.markersize": 3.5,
@@ -57,6 +58,10 @@ RC = {
     "svg.hashsalt": "slippulse",
 }
 matplotlib.rcParams.update(RC)
+# Exponents and subscripts of a label of 7 points have 6, not 5. matplotlib has no public setting; a test looks at what is
+# drawn.
+SCRIPTS = 6.0 / 7.0
+matplotlib.mathtext._mathtext.SHRINK_FACTOR = SCRIPTS
 
 
 def new_figure(width: float, height: float) -> Figure:
