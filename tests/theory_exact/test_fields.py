@@ -9,7 +9,13 @@ from scipy.optimize import brentq
 from scipy.special import j0
 
 import slippulse as sp
-from slippulse.theory import Rupture, front_speed, steady_pulse, uniform_transition_time
+from slippulse.theory import (
+    Rupture,
+    exact_transition_displacement,
+    front_speed,
+    steady_pulse,
+    uniform_transition_time,
+)
 
 PUBLISHED = (sp.Prestress(0.25, 0.25), 0.55, 0.1)
 # Positions, stick times and slips of the published scene; lattices of dx = 0.01, 0.005 and 0.0025, extrapolated, agree
@@ -184,3 +190,9 @@ def test_where_the_construction_ends_is_said_and_kept():
 def test_times_beyond_the_duration_are_refused():
     with pytest.raises(ValueError, match=r"^time: 5\.0; allowed: <= duration = 4$"):
         Rupture(*PUBLISHED, "total", 4.0).slip(0.0, 5.0)
+
+
+def test_with_soft_springs_the_peak_is_a_point():
+    """Soft leaf springs are as quick to solve as stiff ones, and their transition is that of uniform pre-stress."""
+    time = exact_transition_displacement(sp.Prestress(0.5, 0.5), 1e-12, 0.1).time
+    assert 1e-6 * time == pytest.approx(uniform_transition_time(0.5, 1.0, 0.1), rel=1e-4)

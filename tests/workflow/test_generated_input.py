@@ -288,6 +288,8 @@ def test_every_argument_of_the_library(name):
     [
         (lambda: sp.simulate(None), "scene: None; allowed: a Scene"),
         (lambda: sp.simulate({"boundary": "stress"}), "scene: {'boundary': 'stress'}; allowed: a Scene"),
+        (lambda: sp.theory.front_speed("x", 0.1), "tau0: 'x'; allowed: a number, or an array of them"),
+        (lambda: sp.theory.prestress_for_speed(1.2, {}), "damping_ratio: {}; allowed: a number, or an array of them"),
         (lambda: sp.run_sweep([]), "scenes: []; allowed: a list of Scenes, at least one"),
         (lambda: sp.run_sweep([TINY], record=("samples",)), "record: 'samples' without samples; allowed: Samples"),
         (lambda: sp.run_sweep([TINY], record=("x",)), "record: ('x',); allowed: a list of fronts, fields, samples"),

@@ -130,6 +130,6 @@ def plot(table: pd.DataFrame) -> Figure:
         title=r"fixed $\bar\beta/\mathrm{d}\bar x$",
     )
     error_axes.set_ylim(1e-7, 0.1)
-    error_axes.legend(loc="lower right", fontsize=6.0)
+    error_axes.legend(loc="lower right")
     panel_letter(error_axes, "b")
     return figure

@@ -28,6 +28,7 @@ class Fronts:
     damping_ratio : beta/dx, >= 0
     release : "total" or "elastic"
     reach : how far from x = 0 times are wanted (units of H)
+    gamma : elasticity ratio whose waves the panels resolve, which are then no shorter than that asks for
 
     Attributes
     ----------
@@ -39,7 +40,9 @@ class Fronts:
         If the profile does not nucleate at x = 0, or nucleates elsewhere too.
     """
 
-    def __init__(self, prestress: Prestress, damping_ratio: float, release: str, reach: float) -> None:
+    def __init__(
+        self, prestress: Prestress, damping_ratio: float, release: str, reach: float, gamma: float = 0.0
+    ) -> None:
         check_number("damping_ratio", damping_ratio, at_least=0.0)
         check_choice("release", release, RELEASES)
         check_number("reach", reach, above=0.0)
@@ -48,7 +51,7 @@ class Fronts:
         if len(places) > 1 or places[0][0] != places[0][1]:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
         self.prestress = prestress
-        law = FrontLaw(prestress, 0.0, damping_ratio, release)
+        law = FrontLaw(prestress, gamma, damping_ratio, release)
         right, end, _ = law.rightwards(0.0, 0.0, reach, np.inf)
         left, start, _ = law.mirrored().rightwards(0.0, 0.0, reach, np.inf)
         self.ends = {-1.0: start if start < reach else np.inf, 1.0: end if end < reach else np.inf}
@@ -129,7 +132,7 @@ def exact_transition_displacement(
 def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTransition:
     period = np.pi / np.sqrt(gamma)
     # The cone of (0, t) enters at x + T(x) = t, so x < t.
-    fronts = Fronts(prestress, damping_ratio, release, 2.5 * period)
+    fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
     # Slip velocity swings no faster than the leaf springs: steps of a tenth of their half period miss no zero.
     times = np.linspace(0.0, 2.0 * period, 21)[1:]
     velocity = Cones(fronts.curve, gamma, np.zeros(times.size), times).slip_velocity()
@@ -144,7 +147,7 @@ def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTra
     )
     level = float(prestress.level(np.asarray(1e300)))
     speed = float(front_speed(level, damping_ratio, release))
-    reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width)
+    reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width, gamma)
     return ExactTransition(stick, 2.0 * reach.reached(stick, 1.0))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import check_choice, check_number, short_repr
 from ..model.scene import RELEASES
 from .speed_solver import SLOWEST, fastest, first_guess, in_chunks, log_excess, root
 from .wiener_hopf import log_prestress
@@ -54,7 +54,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
     """
     check_choice("release", release, RELEASES)
-    tau, ratio = np.broadcast_arrays(np.asarray(tau0, dtype=float), np.asarray(damping_ratio, dtype=float))
+    tau, ratio = np.broadcast_arrays(_numbers("tau0", tau0), _numbers("damping_ratio", damping_ratio))
     _check("tau0", tau, above=0.0, below=1.0)
     _check("damping_ratio", ratio, at_least=0.0, at_most=LARGEST_RATIO)
     out = np.array(front_speed_undamped(tau))
@@ -82,9 +82,7 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
         Outside the domain, naming the value and the range.
     """
     check_choice("release", release, RELEASES)
-    speeds, ratio = np.broadcast_arrays(
-        np.asarray(speed, dtype=float), np.asarray(damping_ratio, dtype=float)
-    )
+    speeds, ratio = np.broadcast_arrays(_numbers("speed", speed), _numbers("damping_ratio", damping_ratio))
     _check("speed", speeds, above=1.0, at_most=1e100)
     _check("damping_ratio", ratio, at_least=0.0, at_most=LARGEST_RATIO)
     excess = speeds - 1.0
@@ -197,6 +195,14 @@ def _no_front(tau0: float, least: float, gamma: float, dx: float, ratio: float) 
         f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
         f" dx = {dx:g}, damping_ratio = {ratio:g}"
     )
+
+
+def _numbers(key: str, values) -> np.ndarray:
+    """An array of numbers, or one line that names what is none."""
+    try:
+        return np.asarray(values, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{key}: {short_repr(values)}; allowed: a number, or an array of them") from None
 
 
 def _check(key: str, values: np.ndarray, **bounds: float) -> None:
