@@ -58,7 +58,7 @@ RC = {
     "svg.hashsalt": "slippulse",
 }
 matplotlib.rcParams.update(RC)
-# Exponents and subscripts of a label of 7 points have 6, not 5. There is no public setting; a test looks at what is drawn.
+# Scripts of a label of 7 points have 6, not 5. There is no public setting; a test looks at what is drawn.
 SCRIPTS = 6.0 / 7.0
 matplotlib.mathtext._mathtext.SHRINK_FACTOR = SCRIPTS
 
