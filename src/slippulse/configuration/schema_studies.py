@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from ..model.scene import RELEASES
 from .keys import (
     LENGTH,
     STRESS,
@@ -17,6 +18,7 @@ from .keys import (
     Positive,
     Positives,
     Share,
+    choice,
     different,
     key,
     number,
@@ -26,6 +28,10 @@ from .keys import (
 Shares, Orders = different(Share), different(Order)
 Negatives = different(number(below=0.0))
 AtLeast50 = number(at_least=50, whole=True)
+
+
+# Enough for a cubic through them.
+FourOrMore = different(Positive, "a list of different numbers > 0, at least four", least=4)
 
 
 class Range(Block):
@@ -243,6 +249,57 @@ class Barriers(Block):
     passing: Passing = key("both sides of passing")
 
 
+class Notebook(Block):
+    """Settings of the authors' public notebook."""
+
+    damping_ratio: Positive = key("beta/dx", origin="paper")
+    dx: Positive = key("block spacing", LENGTH, "paper")
+    release: choice(RELEASES) = key("release rule", origin="paper")
+
+
+class Arrows(Block):
+    """Where the arrows of the published space-time figure end."""
+
+    time: Positive = key("T_trans, left panel", TIME, "figure")
+    length: Positive = key("L_trans, left panel", LENGTH, "figure")
+    stress_time: Positive = key("T_trans, right panel", TIME, "figure")
+
+
+class RatiosByRule(Block):
+    """Damping ratios under both release rules."""
+
+    total: FourOrMore = key("beta/dx under the rule `total`")
+    elastic: FourOrMore = key("beta/dx under the rule `elastic`")
+
+
+class Near(Block):
+    """Where the fits begin."""
+
+    tau0: Share = key("pre-stress", STRESS, "figure")
+    gamma: Positive = key("elasticity ratio", origin="figure")
+
+
+class RightPanel(Block):
+    """The right panel, whose largest velocity is compared."""
+
+    left: number(below=0.0) = key("tau_l", STRESS, "figure")
+    width: Positive = key("W", LENGTH, "figure")
+    damping_ratios: Positives = key("beta/dx at which it is run")
+    duration: Positive = key("in which the largest velocity is met", TIME)
+
+
+class PublishedFigure(Block):
+    """What the published space-time figure was made with."""
+
+    beta: Positive = key("damping of the figure", origin="paper")
+    end: Positive = key("of the left panel", TIME, "figure")
+    near: Near = key("where the fits begin")
+    damping_ratios: RatiosByRule = key("at each of which tau_0 and gamma are fitted")
+    notebook: Notebook = key("settings of the authors' public notebook, fitted beside it")
+    stress: RightPanel = key("the right panel")
+    arrows: Arrows = key("drawn arrows, without a reading error: compared and not fitted")
+
+
 class Requirements(Block):
     """Work a sliding block, bytes a block, and how the work grows."""
 
@@ -261,4 +318,5 @@ class Studies(Block):
     stability: Stability = key("where a step blows up")
     accuracy_cost: AccuracyCost = key("error against cost")
     barriers: Barriers = key("how deep a pulse enters negative pre-stress")
+    published_figure: PublishedFigure = key("what the published space-time figure was made with")
     requirements: Requirements = key("work and memory")

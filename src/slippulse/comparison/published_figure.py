@@ -1,0 +1,223 @@
+"""The published space-time figure as one inference: what parameters predict of its readings, and which are likely.
+
+The figure was drawn from a lattice. A trial is the exact solution of the continuum limit; what a finite spacing adds
+to each reading is taken from a lattice run of the same trial (`studies.published_figure`). The largest velocity needs
+that most: it is the largest value over all blocks, still grows when the figure ends, and falls with the spacing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ..measure.fronts import front_speed, position_at
+from ..theory.rupture import Rupture
+
+# A lattice's front is a straight line over this last share of its path; the exact one is beyond the Gaussian.
+WINDOW = 0.3
+# Positions of the trailing edge and of the last profile of slip velocity.
+EDGE, PROFILE = 241, 401
+# Points of a curve over the damping ratio.
+FINE = 801
+TRAILING = "trailing_edge_"
+CONFIDENCE = (0.68, 0.95)
+
+
+def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
+    """What was read off for one simulation: rows reading, quantity, drawn, reading_error.
+
+    Parameters
+    ----------
+    published : `published` of the configuration
+    simulation : name
+    """
+    rows = [
+        {
+            "reading": name,
+            "drawn": entry["value"],
+            **{key: entry[key] for key in ("quantity", "reading_error")},
+        }
+        for name, entry in published.items()
+        if entry["simulation"] == simulation
+    ]
+    return pd.DataFrame(rows)
+
+
+def exact_values(rupture: Rupture, quantities: Iterable[str]) -> np.ndarray:
+    """Readings of an exact rupture, symmetric and under a displacement boundary, that ends where the figure does.
+
+    Parameters
+    ----------
+    rupture : its duration is where the figure ends
+    quantities : names as in a measured table
+
+    Raises
+    ------
+    ValueError
+        Naming a quantity that is not predicted here.
+
+    Source: `Rupture`.
+    """
+    end = rupture.front_ends[-1][1]
+    before = (1.0 - WINDOW) * end.x
+    speed = (end.x - before) / (end.time - float(rupture.release_time(before)))
+    x = np.linspace(0.0, end.x, EDGE)
+    stick = rupture.stick_time(x)
+    edge = stick[np.isfinite(stick)], x[np.isfinite(stick)]
+    at_end = rupture.slip_velocity(np.linspace(0.0, end.x, PROFILE), rupture.duration)
+    known = {
+        "front_speed_right": speed,
+        "front_intercept_right": end.x - speed * end.time,
+        "first_stick_time": rupture.transition_time,
+        "largest_velocity": max(rupture.largest_velocity, float(np.max(at_end))),
+    }
+    return _chosen(quantities, known, lambda time: float(np.interp(time, *edge)))
+
+
+def lattice_values(run: xr.Dataset, quantities: Iterable[str]) -> np.ndarray:
+    """The same of a lattice run whose samples are its blocks."""
+    speed, intercept, _ = front_speed(run, WINDOW)
+    known = {
+        "front_speed_right": speed,
+        "front_intercept_right": intercept,
+        "first_stick_time": run.attrs["first_stick_time"],
+        "largest_velocity": float(run["sample_velocity"].max()),
+    }
+    return _chosen(quantities, known, lambda time: float(position_at(run, time, edge="stick_time")))
+
+
+def _chosen(quantities: Iterable[str], known: Mapping[str, float], trailing_edge) -> np.ndarray:
+    out = []
+    for name in quantities:
+        if name.startswith(TRAILING):
+            out.append(trailing_edge(float(name.removeprefix(TRAILING))))
+        elif name in known:
+            out.append(known[name])
+        else:
+            raise ValueError(f"quantity: {name!r}; allowed: {', '.join(known)}, {TRAILING}TIME")
+    return np.array(out)
+
+
+def curve(profile: pd.DataFrame) -> pd.DataFrame:
+    """Best trials of one release rule over the damping ratio, between those that were fitted.
+
+    Parameters
+    ----------
+    profile : rows of part "profile" of one release rule
+
+    Returns
+    -------
+    DataFrame of damping_ratio, dx, tau0, gamma, their errors at that damping ratio, chi2, and one column a reading:
+    its pull, (predicted - drawn)/reading_error; cubic in the logarithm of the damping ratio
+    """
+    # Slow to load, and needed here only.
+    from scipy.interpolate import CubicSpline
+
+    pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
+    numbers = profile.groupby("damping_ratio")[["dx", "tau0", "gamma", "tau0_error", "gamma_error"]].first()
+    nodes = pd.concat([pulls, numbers], axis=1)
+    at = np.log(nodes.index.to_numpy())
+    fine = np.linspace(at[0], at[-1], FINE)
+    out = pd.DataFrame(CubicSpline(at, nodes.to_numpy())(fine), columns=nodes.columns)
+    out["chi2"] = (out[pulls.columns] ** 2).sum(axis=1)
+    return out.assign(damping_ratio=np.exp(fine))
+
+
+def likely(level: float, parameters: int = 1) -> float:
+    """How far chi-square may lie above its smallest value inside a confidence region of so many parameters."""
+    from scipy.stats import chi2
+
+    return float(chi2.ppf(level, parameters))
+
+
+def region(curve: pd.DataFrame, level: float) -> tuple[float, float]:
+    """Confidence region of the damping ratio under one rule; NaN for an end that was not reached."""
+    inside = np.flatnonzero(curve["chi2"] <= curve["chi2"].min() + likely(level))
+    ratios = curve["damping_ratio"].to_numpy()
+    low = ratios[inside[0]] if inside[0] > 0 else np.nan
+    high = ratios[inside[-1]] if inside[-1] < ratios.size - 1 else np.nan
+    return float(low), float(high)
+
+
+def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic")) -> dict:
+    """What the figure says of its parameters, under each release rule and over both.
+
+    Parameters
+    ----------
+    table : results/studies/published_figure.csv, or the figure's own table
+    releases : rules that were fitted
+
+    Returns
+    -------
+    per rule and under "best" (the better rule, named by ``release``): chi2, dof, p_value, damping_ratio, dx, tau0,
+    gamma; ``regions`` of the damping ratio and of tau0 and gamma by confidence level, given the rule; pulls by reading;
+    and ``difference``, by how much chi-square of the worse rule exceeds that of the better
+
+    Source: profile likelihood; the readings have independent Gaussian errors.
+    """
+    from scipy.stats import chi2
+
+    profile = table[table["part"] == "profile"]
+    found = {}
+    for release in releases:
+        rows = profile[profile["release"] == release]
+        names = list(rows["reading"].unique())
+        line = curve(rows)
+        best = line.loc[line["chi2"].idxmin()]
+        # tau_0, gamma and the damping ratio.
+        dof = len(names) - 3
+        found[release] = {
+            "release": release,
+            "chi2": float(best["chi2"]),
+            "dof": dof,
+            "p_value": float(chi2.sf(best["chi2"], dof)),
+            **{name: float(best[name]) for name in ("damping_ratio", "dx", "tau0", "gamma")},
+            "regions": {level: _regions(line, level) for level in CONFIDENCE},
+            "pulls": {name: float(best[name]) for name in names},
+        }
+    order = sorted(found.values(), key=lambda entry: entry["chi2"])
+    return found | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
+
+
+def right_panel(table: pd.DataFrame) -> dict:
+    """What the largest velocity of the right panel says, its pre-stress being read off and not fitted.
+
+    Parameters
+    ----------
+    table : as of `inference`
+
+    Returns
+    -------
+    chi2 (of the run that fits worst, over all damping ratios and rules), dof, p_value; spread (between the runs, in
+    reading errors); width and width_error (the W that would meet the reading exactly, at that level)
+
+    Source: in the limit the largest velocity is half the integral of tau right of its zero, proportional to W.
+    """
+    from scipy.stats import chi2
+
+    rows = table[table["part"] == "stress"]
+    worst = rows.loc[rows["pull"].abs().idxmax()]
+    fit = worst["width"] * rows["drawn"] / (rows["exact"] + rows["correction"])
+    return {
+        "chi2": float(worst["pull"] ** 2),
+        "dof": 1,
+        "p_value": float(chi2.sf(worst["pull"] ** 2, 1)),
+        "spread": float(np.ptp(rows["pull"])),
+        "width": float(fit.mean()),
+        "width_error": float(worst["width"] * worst["reading_error"] / worst["exact"]),
+    }
+
+
+def _regions(line: pd.DataFrame, level: float) -> dict[str, tuple[float, float]]:
+    """Regions of each parameter, the others being what fits best."""
+    room = likely(level) - (line["chi2"] - line["chi2"].min())
+    inside = line[room >= 0.0]
+    reach = np.sqrt(room[room >= 0.0])
+    out = {"damping_ratio": region(line, level)}
+    for name in ("tau0", "gamma"):
+        half = reach * inside[f"{name}_error"]
+        out[name] = float((inside[name] - half).min()), float((inside[name] + half).max())
+    return out

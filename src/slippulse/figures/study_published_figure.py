@@ -1,0 +1,205 @@
+"""Which parameters the published space-time figure was made with, and how surely its readings tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import matplotlib
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from ..comparison.published_figure import curve, likely
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
+
+# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+NEEDS = {
+    "studies": ["published_figure"],
+    "settings": ["simulations.space_time_displacement", "model.damping_ratio"],
+}
+
+LOOKS = {"total": (BLUE, "o", "total force"), "elastic": (ORANGE, "s", "elastic stress")}
+LEVELS = (0.68, 0.95)
+# Points kept of each curve.
+KEPT = 161
+NAMES = {
+    "front_speed": "front slope",
+    "intercept": "intercept",
+    "centre_stick": "centre stops",
+    "velocity_displacement": r"largest $\dot{\bar u}$",
+}
+
+
+def table(
+    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+) -> pd.DataFrame:
+    """The study with smooth curves of the best trials.
+
+    Parameters
+    ----------
+    data : not used
+    measured : published_figure
+    settings : simulations (space_time_displacement) and model (damping_ratio): the scene of our figure 4
+
+    Returns
+    -------
+    DataFrame of the study's rows and, by release rule, part "curve" (damping_ratio, dx, tau0, gamma, their errors,
+    chi2) and part "best" (one row a reading: pull, with the parameters that fit best); part "ours" (the scene of our
+    figure: damping_ratio, tau0, gamma)
+    """
+    study = measured["published_figure"]
+    parts = [study]
+    for release, profile in study[study["part"] == "profile"].groupby("release", sort=False):
+        line = curve(profile)
+        best = line.loc[line["chi2"].idxmin()]
+        names = ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
+        readings = profile["reading"].drop_duplicates()
+        thin = line.iloc[:: len(line) // (KEPT - 1)]
+        parts.append(thin[[*names, "tau0_error", "gamma_error"]].assign(part="curve", release=release))
+        parts.append(
+            pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)}).assign(
+                part="best", release=release, **{name: best[name] for name in names}
+            )
+        )
+    scene = settings["simulations"]["space_time_displacement"]
+    ours = {
+        "damping_ratio": settings["model"]["damping_ratio"],
+        "tau0": scene["left"][0],
+        "gamma": scene["gamma"][0],
+    }
+    parts.append(pd.DataFrame([{"part": "ours", **ours}]))
+    return pd.concat(parts, ignore_index=True)
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """Above: chi-square and regions over the damping ratio. Below: what is left of each reading, the right panel."""
+    figure = new_figure(PAGE, 4.7)
+    axes = figure.subplot_mosaic("abc;ddE", height_ratios=(1.0, 0.9))
+    _draw_chi2(axes["a"], table)
+    _draw_region(axes["b"], table, "tau0", r"pre-stress $\bar\tau_0$")
+    _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\bar\gamma$")
+    _draw_pulls(axes["d"], table)
+    _draw_right_panel(axes["E"], table[table["part"] == "stress"])
+    for name, letter in zip("abcdE", "abcde", strict=True):
+        panel_letter(axes[name], letter)
+    return figure
+
+
+def _curves(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
+    rows = table[table["part"] == "curve"]
+    return [(release, rows[rows["release"] == release]) for release in LOOKS]
+
+
+def _ratio_axis(axes) -> None:
+    axes.set(xscale="log", xlabel=r"damping ratio $b = \bar\beta/\mathrm{d}\bar x$")
+    axes.set_xticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _draw_chi2(axes, table: pd.DataFrame) -> None:
+    """Smallest chi-square over the damping ratio, as far as a fit is accepted."""
+    best = table[table["part"] == "best"]
+    dof = best["reading"].nunique() - 3
+    accepted = likely(LEVELS[1], dof)
+    for release, line in _curves(table):
+        colour, marker, label = LOOKS[release]
+        shown = line[line["chi2"] <= accepted]
+        axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
+        inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
+        axes.fill_between(inside["damping_ratio"], inside["chi2"], color=colour, alpha=0.18, linewidth=0.0)
+        found = best[best["release"] == release].iloc[0]
+        axes.plot(
+            found["damping_ratio"], found["chi2"], marker, color=colour, linestyle="none",
+            label=rf"{label}: $\chi^2 = {found['chi2']:.1f}$",
+        )  # fmt: skip
+    top = 1.62 * accepted
+    notebook = table[table["part"] == "notebook"]
+    axes.axvline(
+        notebook["damping_ratio"].iloc[0], ymax=accepted / top, color=GREY, linewidth=0.8, linestyle="--",
+        label=rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$",
+    )  # fmt: skip
+    axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
+    axes.text(
+        0.98, accepted, f"5 % at {dof} degrees of freedom", transform=axes.get_yaxis_transform(), fontsize=6.0,
+        ha="right", va="bottom",
+    )  # fmt: skip
+    _ratio_axis(axes)
+    axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
+    axes.legend(loc="upper left", handletextpad=0.4)
+
+
+def _draw_region(axes, table: pd.DataFrame, name: str, label: str) -> None:
+    """The region of the damping ratio and another parameter, the third being what fits best."""
+    for release, line in _curves(table):
+        colour, marker, _ = LOOKS[release]
+        for level, alpha in zip(LEVELS[::-1], (0.22, 0.45), strict=True):
+            room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
+            inside = line[room >= 0.0]
+            half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
+            axes.fill_between(
+                inside["damping_ratio"], inside[name] - half, inside[name] + half, color=colour, alpha=alpha,
+                linewidth=0.0, gid=f"{release} {level:g}",
+            )  # fmt: skip
+        best = table[(table["part"] == "best") & (table["release"] == release)].iloc[0]
+        axes.plot(
+            best["damping_ratio"], best[name], marker, color=colour, markeredgecolor="white", markersize=4.5
+        )
+    ours = table[table["part"] == "ours"].iloc[0]
+    axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our figure 4")
+    if name == "tau0":
+        for level, alpha in zip(LEVELS, (0.6, 0.25), strict=True):
+            axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
+        axes.legend(loc="upper left")
+    _ratio_axis(axes)
+    axes.set_xlim(0.045, 0.3)
+    axes.set_ylabel(label)
+
+
+def _draw_pulls(axes, table: pd.DataFrame) -> None:
+    readings = table.loc[table["part"] == "best", "reading"].drop_duplicates().tolist()
+    axes.axhspan(-1.0, 1.0, color="0.92")
+    axes.axhline(0.0, color=BLACK, linewidth=0.6)
+    for release, shift in zip(LOOKS, (-0.12, 0.12), strict=True):
+        colour, marker, label = LOOKS[release]
+        rows = (
+            table[(table["part"] == "best") & (table["release"] == release)]
+            .set_index("reading")
+            .loc[readings]
+        )
+        axes.plot(
+            np.arange(len(readings)) + shift, rows["pull"], marker, color=colour, label=label, gid=release,
+        )  # fmt: skip
+    labels = [NAMES.get(name, _edge(name)) for name in readings]
+    axes.set_xticks(np.arange(len(readings)), labels, rotation=35, ha="right", rotation_mode="anchor")
+    axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
+    axes.legend(title="released by", loc="upper right", ncols=2)
+
+
+def _edge(name: str) -> str:
+    return rf"edge, $\bar t = {name.rpartition('_')[2]}$"
+
+
+def _draw_right_panel(axes, rows: pd.DataFrame) -> None:
+    """The largest velocity without leaf springs hardly depends on the damping ratio or the rule."""
+    first = rows.iloc[0]
+    axes.axhspan(
+        first["drawn"] - first["reading_error"], first["drawn"] + first["reading_error"], color="0.88", label="drawn"
+    )  # fmt: skip
+    axes.axhline(first["exact"], color=GREEN, label="exact, any $b$")
+    for release, (colour, marker, label) in LOOKS.items():
+        line = rows[rows["release"] == release].sort_values("damping_ratio")
+        axes.plot(
+            line["damping_ratio"],
+            line["exact"] + line["correction"],
+            marker,
+            color=colour,
+            label=f"lattice, {label}",
+        )
+    axes.set(ylim=(first["drawn"] - 0.022, first["drawn"] + 0.012), ylabel=r"largest $\dot{\bar u}$")
+    axes.set_title(r"$\Gamma = 0$", loc="right")
+    _ratio_axis(axes)
+    axes.set_xlim(0.04, 0.25)
+    axes.yaxis.set_major_locator(matplotlib.ticker.MultipleLocator(0.01))
+    axes.legend(loc="lower left", fontsize=6.0, labelspacing=0.3)

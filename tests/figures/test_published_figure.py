@@ -1,0 +1,44 @@
+"""What the figure of the inference shows is what was inferred."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slippulse.comparison.published_figure import inference, likely
+
+
+@pytest.fixture(scope="module")
+def drawn(draw):
+    return draw("study_published_figure")
+
+
+def test_numbers_are_the_same_from_the_figures_own_table(drawn):
+    again, study = inference(drawn.table), inference(drawn.measured["published_figure"])
+    assert again == study
+    for release in ("total", "elastic"):
+        rows = drawn.table[(drawn.table["part"] == "best") & (drawn.table["release"] == release)]
+        assert (rows["pull"] ** 2).sum() == pytest.approx(study[release]["chi2"])
+        assert rows.set_index("reading")["pull"].to_dict() == pytest.approx(study[release]["pulls"])
+
+
+def test_regions_are_drawn_around_the_best_fits(drawn):
+    axes = drawn.figure.axes
+    for panel, name in zip(axes[1:3], ("tau0", "gamma"), strict=True):
+        for release in ("total", "elastic"):
+            found = inference(drawn.table)[release]
+            wide = {patch.get_gid(): patch for patch in panel.collections}
+            corners = wide[f"{release} 0.95"].get_paths()[0].vertices
+            inner = wide[f"{release} 0.68"].get_paths()[0].vertices
+            low, high = found["regions"][0.95][name]
+            # A joint region of two parameters is wider than that of one.
+            assert corners[:, 1].min() < low and corners[:, 1].max() > high
+            assert np.ptp(inner[:, 0]) < np.ptp(corners[:, 0])
+            assert inner[:, 0].min() < found["damping_ratio"] < inner[:, 0].max()
+
+
+def test_curves_end_where_the_fit_is_no_longer_accepted(drawn):
+    axes = drawn.figure.axes[0]
+    for line in axes.lines:
+        if line.get_gid():
+            assert line.get_ydata().max() <= likely(0.95, 7)

@@ -1,0 +1,124 @@
+"""The inference from the published figure: it finds known parameters, and its numbers are those of a lattice alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+from selection import selected
+
+from slippulse.comparison.published_figure import curve, exact_values, inference, likely, right_panel
+from slippulse.model.prestress import Prestress
+from slippulse.studies import published_figure as study_module
+from slippulse.studies.published_figure import _Panel
+from slippulse.theory.rupture import Rupture
+
+
+@pytest.fixture(scope="module")
+def table(study):
+    return study("published_figure")
+
+
+@pytest.fixture
+def settings(config):
+    return selected(config, study_module.SETTINGS, config["studies"]["published_figure"])
+
+
+@pytest.fixture
+def panel(settings):
+    return _Panel(study_module.readings_of(settings["published"], "space_time_displacement"), settings["end"])
+
+
+def test_it_finds_the_parameters_of_a_lattice_run(settings, panel):
+    truth, ratio = np.array([0.3, 0.6]), 0.12
+    for name, value in zip(
+        panel.readings["reading"],
+        panel.lattice(truth, ratio, "total", settings["beta"] / ratio),
+        strict=True,
+    ):
+        settings["published"][name]["value"] = float(value)
+    settings["damping_ratios"] = {"total": [0.08, 0.1, 0.13, 0.17], "elastic": [0.1, 0.15, 0.22, 0.3]}
+    settings["stress"]["damping_ratios"] = [0.1]
+    found = inference(study_module.table(settings))
+    best = found["best"]
+    assert best["release"] == "total" and best["chi2"] < 0.05
+    assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
+    assert best["tau0"] == pytest.approx(truth[0], abs=2e-3)
+    assert best["gamma"] == pytest.approx(truth[1], abs=2e-3)
+    low, high = best["regions"][0.68]["damping_ratio"]
+    assert low < ratio < high
+
+
+@pytest.mark.parametrize("release", ["total", "elastic"])
+def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, panel, settings, release):
+    best = inference(table)[release]
+    ratio, dx = best["damping_ratio"], best["dx"]
+    assert dx == pytest.approx(settings["beta"] / ratio, rel=1e-3)
+    found = least_squares(
+        lambda trial: (panel.lattice(trial, ratio, release, dx) - panel.drawn) / panel.error,
+        [0.25, 0.55], x_scale=[0.25, 0.55], diff_step=0.01, xtol=1e-4,
+    )  # fmt: skip
+    assert 2.0 * found.cost == pytest.approx(best["chi2"], abs=0.05)
+    assert found.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
+
+
+def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel):
+    profile = table[(table["part"] == "profile") & (table["release"] == "total")]
+    rows = profile[profile["damping_ratio"] == profile["damping_ratio"].unique()[2]]
+    first = rows.iloc[0]
+    correction = rows["correction"].to_numpy()
+    own = (rows["pull"] ** 2).sum()
+    for change in ((0.004, 0.0), (-0.004, 0.0), (0.0, 0.008), (0.0, -0.008)):
+        trial = np.array([first["tau0"] + change[0], first["gamma"] + change[1]])
+        pulls = panel.exact(trial, first["damping_ratio"], "total") + correction - panel.drawn
+        assert ((pulls / panel.error) ** 2).sum() > own + 0.5
+
+
+def test_regions_end_where_chi_square_has_risen_enough(table):
+    found = inference(table)
+    assert found["best"] == min((found["total"], found["elastic"]), key=lambda entry: entry["chi2"])
+    for release in ("total", "elastic"):
+        line = curve(table[(table["part"] == "profile") & (table["release"] == release)])
+        entry = found[release]
+        for level, regions in entry["regions"].items():
+            low, high = regions["damping_ratio"]
+            assert low < entry["damping_ratio"] < high
+            for end in (low, high):
+                there = np.interp(end, line["damping_ratio"], line["chi2"])
+                assert there == pytest.approx(entry["chi2"] + likely(level), abs=0.15)
+        assert entry["chi2"] == pytest.approx(sum(pull**2 for pull in entry["pulls"].values()))
+        # Ten readings less three parameters.
+        assert entry["dof"] == len(entry["pulls"]) - 3 == 7
+    assert likely(0.95) == pytest.approx(3.841, abs=1e-3) and likely(0.95, 2) == pytest.approx(
+        5.991, abs=1e-3
+    )
+
+
+def test_an_end_beyond_the_fits_is_not_known(table):
+    rows = table[
+        (table["part"] != "profile") | (table["damping_ratio"] > 0.09) | (table["release"] == "elastic")
+    ]
+    entry = inference(rows, ("elastic",))
+    assert np.isfinite(entry["elastic"]["regions"][0.95]["damping_ratio"]).all()
+    cut = rows[(rows["damping_ratio"] < 0.29) & (rows["damping_ratio"] > 0.1)]
+    low, high = inference(cut, ("elastic",))["elastic"]["regions"][0.95]["damping_ratio"]
+    assert np.isnan(low) and np.isfinite(high)
+
+
+def test_the_right_panel_fixes_the_width_and_nothing_else(table):
+    found = right_panel(table)
+    rows = table[table["part"] == "stress"]
+    # Half the integral of tau right of its zero, by the trapezoidal rule.
+    level, width = rows["left"].iloc[0], rows["width"].iloc[0]
+    x = np.linspace(-3.0 * width, 8.0 * width, 200_001)
+    tau = Prestress(level, 0.0, width)(x)
+    zero = np.flatnonzero(tau < 0.0)[-1] + 1
+    assert rows["exact"].to_numpy() == pytest.approx(0.5 * np.trapezoid(tau[zero:], x[zero:]), rel=1e-5)
+    assert found["spread"] < 1.0
+    assert abs(found["width"] - width) < 3.0 * found["width_error"]
+
+
+def test_an_unknown_quantity_is_named():
+    rupture = Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 6.0)
+    with pytest.raises(ValueError, match="quantity: 'colour'; allowed: front_speed_right"):
+        exact_values(rupture, ["colour"])
