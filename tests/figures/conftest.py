@@ -35,19 +35,19 @@ def draw(project, tmp_path_factory, study):
     folder = tmp_path_factory.mktemp("tables")
     simulated, drawn = {}, {}
 
-    def simulate(name: str):
-        if name not in simulated:
+    def simulate(name: str, coarser: float = 1.0):
+        if (name, coarser) not in simulated:
             block = copy.deepcopy(config["simulations"][name])
             if not name.startswith("regimes"):
                 for key, count in THIN.items():
                     if key in block:
                         block[key] = thinned(block[key], count)
-            block = resolve(block, config["model"], config["presets"]["draft"])
+            block = resolve(block, config["model"], config["presets"]["draft"], coarser)
             scenes, samples = expand(block)
             sweep = run_sweep(scenes, samples, block["record"], threads=2)
             save_table(measured_table(sweep, config["measure"]), folder / f"{name}.csv")
-            simulated[name] = (sweep, load_table(folder / f"{name}.csv"))
-        return simulated[name]
+            simulated[name, coarser] = (sweep, load_table(folder / f"{name}.csv"))
+        return simulated[name, coarser]
 
     def figure(name: str) -> SimpleNamespace:
         if name not in drawn:
@@ -57,6 +57,11 @@ def draw(project, tmp_path_factory, study):
             data = {source: simulate(source)[0] for source in needs.get("data", [])}
             measured = {source: simulate(source)[1] for source in needs.get("measured", [])}
             measured |= {source: study(source) for source in needs.get("studies", [])}
+            factor = config["presets"]["draft"]["coarser"][0]
+            measured |= {
+                f"coarser/{source}": simulate(source, factor)[1].assign(factor=factor)
+                for source in needs.get("coarser", [])
+            }
             save_table(module.table(data, measured, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")
             drawn[name] = SimpleNamespace(

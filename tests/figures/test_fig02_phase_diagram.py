@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -25,7 +23,7 @@ MEASURE = {
     "still": 0.05,
     "trailing_times": [5.0],
 }
-SETTINGS = {"measure": MEASURE}
+SETTINGS = {"measure": {name: MEASURE[name] for name in ("still", "steady_tolerance")}}
 STEP = 6.0
 
 
@@ -56,6 +54,12 @@ def inputs():
         "regimes_displacement": sweep(
             "displacement", [Prestress(tau, tau) for tau in (-0.2, 0.3, 0.6)], 16.0, (0.01, 0.1, 0.5)
         ),
+        "regimes_displacement_asymmetric": sweep(
+            "displacement",
+            [Prestress(left, right) for left in (-0.6, -0.3) for right in (0.0, 0.3, 0.7)],
+            14.0,
+            (0.3, 1.0),
+        ),
         "regimes_stress": sweep("stress", [Prestress(l_, r_) for l_ in levels for r_ in levels], 20.0),
         "regimes_beyond": sweep(
             "stress",
@@ -63,14 +67,18 @@ def inputs():
             60.0,
         ),
     }
-    return data, {name: measured_table(dataset, MEASURE) for name, dataset in data.items()}
+    measured = {name: measured_table(dataset, MEASURE) for name, dataset in data.items()}
+    return data, measured | {f"coarser/{name}": table.assign(factor=2.0) for name, table in measured.items()}
 
 
 @pytest.fixture(scope="module")
 def table(inputs, tmp_path_factory):
-    path = tmp_path_factory.mktemp("table") / "table.csv"
-    save_table(figure.table(*inputs, SETTINGS), path)
-    return load_table(path)
+    return through_csv(figure.table(*inputs, SETTINGS), tmp_path_factory.mktemp("table"))
+
+
+def through_csv(table, folder):
+    save_table(table, folder / "table.csv")
+    return load_table(folder / "table.csv")
 
 
 @pytest.fixture(scope="module")
@@ -89,33 +97,129 @@ def diagrams(drawn):
     }
 
 
+def shapes(axes) -> list:
+    """The lines of the markers, without rings."""
+    return [line for line in axes.lines if line.get_linestyle() == "None" and line.get_gid() != "ring"]
+
+
 def marked(axes) -> set:
     """(column, row, regime) of every marker drawn in a diagram."""
-    lines = [line for line in axes.lines if line.get_linestyle() == "None"]
     return {
-        (round(float(x)), round(float(y)), line.get_label()) for line in lines for x, y in line.get_xydata()
+        (round(float(x)), round(float(y)), line.get_label())
+        for line in shapes(axes)
+        for x, y in line.get_xydata()
     }
+
+
+def legend(drawn) -> list[str]:
+    """The texts of the legend."""
+    (found,) = [axes.get_legend() for axes in drawn.axes if axes.get_legend()]
+    return [text.get_text() for text in found.get_texts()]
+
+
+def belongs(letter: str, runs: pd.DataFrame) -> pd.DataFrame:
+    """The runs of a simulation that a diagram shows."""
+    if letter == "c":
+        return runs[runs["left"] == runs["right"]]
+    return runs[runs["left"] < 0.0] if letter == "d" else runs
 
 
 @pytest.mark.parametrize(("letter", "simulation", "x", "y"), figure.DIAGRAMS)
-def test_every_run_has_a_marker_of_its_class_at_its_levels(drawn, inputs, letter, simulation, x, y):
-    measured = inputs[1][simulation]
-    columns, rows = np.unique(measured[x]), np.unique(measured[y])
-    expected = {
-        (int(np.flatnonzero(columns == a)[0]), int(np.flatnonzero(rows == b)[0]), regime)
-        for a, b, regime in zip(measured[x], measured[y], measured["regime"], strict=True)
-    }
+def test_every_run_has_a_marker_at_its_levels(drawn, table, inputs, letter, simulation, x, y):
+    measured = belongs(letter, inputs[1][simulation])
+    if letter == "b":
+        pairs = sorted(set(zip(measured["left"], measured["right"], strict=True)))
+        across = [pairs.index(pair) for pair in zip(measured["left"], measured["right"], strict=True)]
+        labels = [right for _, right in pairs]
+    else:
+        labels = list(np.unique(measured[x]))
+        across = [labels.index(value) for value in measured[x]]
+    lines = list(np.unique(measured[y])) if y else [0]
+    up = [lines.index(value) for value in measured[y]] if y else [0] * len(measured)
     axes = diagrams(drawn)[letter]
-    assert marked(axes) == expected
-    assert [float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in axes.get_xticklabels()] == list(
-        columns
-    )
-    assert [float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in axes.get_yticklabels()] == list(
-        rows
-    )
+    assert {(i, j) for i, j, _ in marked(axes)} == set(zip(across, up, strict=True))
+    assert ticks(axes.get_xticklabels()) == labels
+    if y:
+        assert ticks(axes.get_yticklabels()) == lines
+    shown = table[(table["panel"] == letter) & (table["role"] == "marker")]
+    assert len(shown) == len(measured) == len(marked(axes))
 
 
-def test_classes_are_those_of_the_physics(inputs):
+def ticks(labels) -> list[float]:
+    return [float(text.get_text().replace("\N{MINUS SIGN}", "-")) for text in labels]
+
+
+def markers_of(table, letter: str, *keys: str) -> pd.DataFrame:
+    rows = table[(table["panel"] == letter) & (table["role"] == "marker")]
+    return rows.set_index(list(keys))
+
+
+def test_cells_are_of_the_regime_that_the_rupture_ends_in(table):
+    symmetric = markers_of(table, "a", "left", "gamma")["regime"]
+    assert set(symmetric[-0.2]) == {"arrested"}
+    # The runs at small gamma end before their transition.
+    assert set(symmetric[0.3]) == set(symmetric[0.6]) == {"pulses, two-way"}
+    asymmetric = markers_of(table, "b", "right")["regime"]
+    assert set(asymmetric[0.7]) == set(asymmetric[0.3]) == {"pulse, one-way, steady"}
+    assert set(asymmetric[0.0]) == {"pulse, one-way, decaying"}
+    assert markers_of(table, "c", "left")["regime"].to_dict() == {
+        -0.5: "arrested", 0.0: "crack-like, two-way", 0.5: "crack-like, two-way",
+    }  # fmt: skip
+    assert markers_of(table, "d", "right")["regime"].to_dict() == {
+        -0.5: "arrested", 0.0: "pulse, one-way, steady", 0.5: "crack-like, one-way",
+    }  # fmt: skip
+    beyond = markers_of(table, "e", "beyond")["regime"]
+    assert [name.rpartition(", ")[2] for name in beyond[[-0.02, 0.0, 0.02]]] == [
+        "decaying",
+        "steady",
+        "growing",
+    ]
+
+
+def test_markers_are_open_where_the_run_ends_too_early(drawn, table):
+    rows = markers_of(table, "a", "left", "gamma")
+    assert (rows.loc[(0.3, 0.01)]["run"], rows.loc[(0.3, 0.5)]["run"]) == (
+        "crack-like, two-way",
+        "pulses, two-way",
+    )
+    faces = {tuple(line.get_xydata()[0]): line.get_markerfacecolor() for line in shapes(diagrams(drawn)["a"])}
+    assert faces[1.0, 0.0] == "white" and faces[1.0, 2.0] == figure.LOOKS["pulses, two-way"][0]
+
+
+def test_rings_are_where_a_coarser_lattice_ends_in_another_regime(inputs, tmp_path):
+    data, measured = inputs
+    other = measured["coarser/regimes_stress"].copy()
+    changed = (other["left"] == -0.5) & (other["right"] == 0.5)
+    other.loc[changed, "regime"] = "arrested"
+    table = through_csv(figure.table(data, measured | {"coarser/regimes_stress": other}, SETTINGS), tmp_path)
+    assert table.loc[(table["coarser"] > 0) & (table["role"] == "marker"), "panel"].tolist() == ["d"]
+    drawn = figure.plot(table)
+    rings = {letter: rung(axes) for letter, axes in diagrams(drawn).items()}
+    assert rings == {"a": [], "b": [], "c": [], "d": [(2.0, 0.0)], "e": []}
+    assert any("ringed" in text for text in legend(drawn))
+
+
+def rung(axes) -> list:
+    return [tuple(line.get_xydata()[0]) for line in axes.lines if line.get_gid() == "ring"]
+
+
+def test_cells_that_the_exact_solution_does_not_cover_are_hatched(inputs, tmp_path):
+    data, measured = inputs
+    changed = measured | {
+        "regimes_displacement": measured["regimes_displacement"].replace(
+            {"left": {-0.2: 0.0}, "right": {-0.2: 0.0}}
+        )
+    }
+    drawn = figure.plot(through_csv(figure.table(data, changed, SETTINGS), tmp_path))
+    hatched = {
+        letter: [patch.get_center()[0] for patch in axes.patches if patch.get_hatch()]
+        for letter, axes in diagrams(drawn).items()
+    }
+    assert hatched == {"a": [0.0, 0.0, 0.0], "b": [], "c": [], "d": [], "e": []}
+    assert any("hatched" in text for text in legend(drawn))
+
+
+def test_classes_of_the_runs_are_those_of_the_physics(inputs):
     measured = inputs[1]
     displacement = measured["regimes_displacement"].set_index(["left", "gamma"])["regime"]
     assert set(displacement[-0.2]) == {"arrested"}
@@ -127,29 +231,6 @@ def test_classes_are_those_of_the_physics(inputs):
     beyond = measured["regimes_beyond"].set_index("beyond")["regime"]
     assert beyond[0.0] == "pulse, one-way, steady"
     assert beyond[-0.02] == "pulse, one-way, decaying"
-
-
-def test_theory_line_separates_cracks_from_pulses(drawn, table):
-    axes = diagrams(drawn)["a"]
-    (line,) = [line for line in axes.lines if line.get_label() == "theory"]
-    height = line.get_ydata()[0]
-    assert np.ptp(line.get_ydata()) == 0.0
-    gamma = table.loc[table["role"] == "line", "y"].iloc[0]
-    assert math.pi / math.sqrt(gamma) == pytest.approx(16.0)
-    # Between the levels of gamma, in proportion to its logarithm.
-    assert height == pytest.approx(math.log(gamma / 0.01) / math.log(0.1 / 0.01), abs=1e-6)
-    for _, row, regime in marked(axes):
-        if regime == "pulses, two-way":
-            assert row > height
-        if regime.startswith("crack"):
-            assert row < height
-
-
-def test_theory_line_is_left_out_where_the_levels_do_not_reach(table):
-    shifted = table.copy()
-    shifted.loc[shifted["role"] == "line", "y"] = 1e-6
-    axes = diagrams(figure.plot(shifted))["a"]
-    assert not [line for line in axes.lines if line.get_label() == "theory"]
 
 
 def test_examples_are_runs_of_their_class(table, inputs):
@@ -173,7 +254,10 @@ def test_examples_are_runs_of_their_class(table, inputs):
 def test_examples_are_drawn_and_lettered_in_the_diagrams(drawn, table):
     examples = table[table["role"] == "example"].set_index("series")
     letters = {
-        text.get_text(): axes.get_title("left") for axes in diagrams(drawn).values() for text in axes.texts
+        text.get_text(): axes.get_title("left")
+        for axes in diagrams(drawn).values()
+        for text in axes.texts
+        if len(text.get_text()) == 1
     }
     assert letters == {name: f"({panel})" for name, panel in examples["panel"].items()}
     strips = [axes for axes in drawn.axes if axes.get_xlabel() == r"$\bar x$"]
@@ -198,34 +282,32 @@ def test_looks_tell_all_regimes_apart():
 def test_axes_and_legend_say_what_they_show(drawn, table):
     for letter, symbols in (
         ("a", (r"\tau_0", r"\gamma")),
-        ("b", ("0,r", "0,l")),
-        ("c", (f"{STEP:g}", "0,l")),
+        ("b", ("0,r", r"\gamma")),
+        ("c", (r"\tau_0", "")),
+        ("d", ("0,r", "0,l")),
+        ("e", (f"{STEP:g}", "0,l")),
     ):
         axes = diagrams(drawn)[letter]
         assert symbols[0] in axes.get_xlabel() and symbols[1] in axes.get_ylabel()
-    (legend,) = [axes.get_legend() for axes in drawn.axes if axes.get_legend()]
-    said = [text.get_text() for text in legend.get_texts()]
+    said = legend(drawn)
     present = set(table.loc[table["role"] == "marker", "regime"])
     assert {text for text in said if text in REGIMES} == present
-    assert not any("flagged" in text for text in said)
+    assert not any(word in text for text in said for word in ("flagged", "ringed", "hatched"))
 
 
 def test_flagged_runs_are_open_counted_and_no_example(inputs):
     data, measured = inputs
     flagged = {name: frame.copy() for name, frame in measured.items()}
-    rows = flagged["regimes_beyond"]["regime"] == "pulse, one-way, steady"
+    rows = flagged["regimes_beyond"]["regime"] == "pulse, one-way, growing"
     flagged["regimes_beyond"]["run_flags"] = np.where(rows, "energy", "")
     table = figure.table(data, flagged, SETTINGS)
-    assert "pulse, one-way, steady" not in set(table.loc[table["role"] == "example", "regime"])
+    assert "pulse, one-way, growing" not in set(table.loc[table["role"] == "example", "regime"])
     drawn = figure.plot(table)
-    axes = diagrams(drawn)["c"]
-    (line,) = [line for line in axes.lines if line.get_label().startswith("flagged")]
-    assert line.get_markerfacecolor() == "none" and line.get_markeredgecolor() == GREY
-    assert len(line.get_xdata()) == rows.sum()
-    (legend,) = [axes.get_legend() for axes in drawn.axes if axes.get_legend()]
-    assert any(
-        f"({rows.sum()})" in text.get_text() for text in legend.get_texts() if "flagged" in text.get_text()
-    )
+    lines = [line for line in shapes(diagrams(drawn)["e"]) if line.get_label().startswith("flagged")]
+    assert len(lines) == rows.sum()
+    for line in lines:
+        assert line.get_markerfacecolor() == "none" and line.get_markeredgecolor() == GREY
+    assert any(f"({rows.sum()})" in text for text in legend(drawn) if "flagged" in text)
 
 
 def test_a_diagram_of_flagged_runs_alone_is_still_drawn(inputs):
@@ -242,7 +324,9 @@ def test_a_diagram_of_flagged_runs_alone_is_still_drawn(inputs):
 def test_inmost_run_is_far_from_other_classes_and_from_the_rim():
     columns, rows = np.meshgrid(np.arange(7), np.arange(7), indexing="ij")
     regime = np.where(columns.ravel() < 5, "crack-like, two-way", "arrested")
-    markers = pd.DataFrame({"x": columns.ravel(), "y": rows.ravel(), "regime": regime, "run_flags": ""})
+    markers = pd.DataFrame(
+        {"x": columns.ravel(), "y": rows.ravel(), "regime": regime, "end": regime, "run_flags": ""}
+    )
     chosen = markers.iloc[figure.inmost(markers, "crack-like, two-way")]
     assert (chosen["x"], chosen["y"]) == (2, 3)
     assert figure.inmost(markers, "pulses, two-way") is None

@@ -10,6 +10,7 @@ for figure, needs in NEEDS.items():
             data=[f"results/data/{name}.nc" for name in needs.get("data", [])],
             measured=tables("measurements", needs.get("measured", []))
             + [f"results/studies/{name}.csv" for name in needs.get("studies", [])],
+            coarser=tables("uncertainties/coarser", needs.get("coarser", [])),
         output:
             png=report(
                 f"results/figures/{figure}.png",

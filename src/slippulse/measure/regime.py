@@ -23,7 +23,8 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
 
     Parameters
     ----------
-    run : one run with samples of slip velocity over time and position
+    run : one run with samples of slip velocity over time and position; how it ends is taken from the blocks themselves
+        where their slip velocity at the end is there, since samples may miss what is narrow or far
     still : a velocity below this share of the largest one now (or, for arrest, of the largest one sampled) is rest
     steady_tolerance : a largest velocity that changes less than this share over the last third is steady; a front
         this share slower than the waves still keeps up with them
@@ -39,14 +40,17 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or *decaying* by the change of its largest
     velocity over the last third.
     """
-    x, times = run["sample_position"].values, run["sample_time"].values
-    velocity = run["sample_velocity"].values
-    now = velocity[-1]
-    largest_now, largest_ever = float(np.max(now)), float(np.max(velocity))
-    centre = float(now[int(np.argmin(np.abs(x)))])
+    times, velocity = run["sample_time"].values, run["sample_velocity"].values
     before = velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))]
     largest_before = float(np.max(before))
-    change = largest_now / largest_before - 1.0 if largest_before > 0.0 else -1.0
+    change = float(np.max(velocity[-1])) / largest_before - 1.0 if largest_before > 0.0 else -1.0
+    if "slip_velocity" in run:
+        x, now = run["x"].values, run["slip_velocity"].values
+    else:
+        x, now = run["sample_position"].values, velocity[-1]
+    largest_now = float(np.max(now))
+    largest_ever = max(largest_now, float(np.max(velocity)))
+    centre = float(now[int(np.argmin(np.abs(x)))])
     release = run["release_time"].values
     released = release[np.isfinite(release)]
     latest = float(np.max(released)) if released.size else 0.0

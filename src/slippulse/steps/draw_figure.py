@@ -11,11 +11,12 @@ from ..figures.style import save_figure
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: data, measured. Outputs: csv, png, pdf. Settings: figure (its module), values."""
+    """Files: data, measured, coarser. Outputs: csv, png, pdf. Settings: figure (its module), values."""
     module = import_module(f"slippulse.figures.{settings['figure']}")
     table = module.table(
         {Path(path).stem: load_dataset(path) for path in files["data"]},
-        {Path(path).stem: load_table(path) for path in files["measured"]},
+        {Path(path).stem: load_table(path) for path in files["measured"]}
+        | {f"coarser/{Path(path).stem}": load_table(path) for path in files["coarser"]},
         settings["values"],
     )
     save_table(table, outputs["csv"])

@@ -1,0 +1,73 @@
+"""The regime that a rupture ends in, however long it takes: from the exact solution, for the class of a finite run."""
+
+from __future__ import annotations
+
+from ..model.checks import check_number
+from ..theory.front_law import front_speed
+
+UNDECIDED = "undecided"
+
+
+def final_regime(
+    left: float, right: float, gamma: float, damping_ratio: float, release: str, still: float
+) -> str:
+    """The regime of `measure.regime` that a rupture between two levels comes to in the continuum limit.
+
+    Parameters
+    ----------
+    left, right : levels of the pre-stress, below 1, with one nucleation point between them
+    gamma : elasticity ratio, or 0 for the stress boundary
+    damping_ratio, release : beta/dx and the release rule, which set the front speed
+    still : share of the largest velocity below which the nucleation point counts as at rest, as in `classify`
+
+    Returns
+    -------
+    one of REGIMES; UNDECIDED where the exact solution does not say
+
+    With leaf springs a front into a negative level stops at a finite depth (`slow_front`), one into a positive level
+    outruns the waves for good, the nucleation point sticks (`trailing`), and a pulse is steady once it has forgotten
+    its past, which takes a finite distance. Into a level 0 a pulse gets narrower like 1/t and dies away slowly; of a
+    level 0 with no negative one opposite nothing is said.
+
+    Without them du/dt at a point is half the integral of tau between the two entry points of its characteristics. With
+    both levels >= 0 it never falls: a crack. With both < 0 the integral over all that slipped vanishes at a finite
+    size: arrest. With a negative level -n on one side and p >= 0 on the other the front into -n follows Int tau = 0
+    (module `arrest`), so that x = (p/n) e behind the other front at e. For large times du/dt at the nucleation point,
+    over its largest value, is then r/(1 + 1/v + 2 r), r = p/n, with the front speed v into p: a crack where that is
+    ``still`` or more, a growing pulse where it is less, and a steady pulse for p = 0.
+
+    Source: sections 5 and 6 of the theory of this project (`theory.rupture`), which the tests follow to these ends.
+    """
+    for name, level in (("left", left), ("right", right)):
+        check_number(name, level, below=1.0)
+    low, high = sorted((left, right))
+    if high < 0.0:
+        return "arrested"
+    if gamma > 0.0:
+        if low > 0.0:
+            return "pulses, two-way"
+        if low == 0.0:
+            return UNDECIDED
+        return "pulse, one-way, steady" if high > 0.0 else "pulse, one-way, decaying"
+    if low >= 0.0:
+        return "crack-like, two-way"
+    if high == 0.0:
+        return "pulse, one-way, steady"
+    ratio = high / -low
+    share = ratio / (1.0 + 1.0 / float(front_speed(high, damping_ratio, release)) + 2.0 * ratio)
+    return "crack-like, one-way" if share >= still else "pulse, one-way, growing"
+
+
+def growth_beyond(level: float) -> str:
+    """What a pulse of a stress boundary does in a level: the velocity on its characteristics grows by half of Int tau.
+
+    Parameters
+    ----------
+    level : of the pre-stress that it runs into
+
+    Returns
+    -------
+    "pulse, one-way, growing", "... steady" or "... decaying"
+    """
+    change = "growing" if level > 0.0 else "decaying" if level < 0.0 else "steady"
+    return f"pulse, one-way, {change}"

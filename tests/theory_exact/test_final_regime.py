@@ -1,0 +1,143 @@
+"""The regime that a rupture ends in, against the exact solution followed until it shows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slippulse.comparison.final_regime import UNDECIDED, final_regime, growth_beyond
+from slippulse.measure.regime import REGIMES
+from slippulse.model.prestress import Prestress
+from slippulse.theory.rupture import Rupture
+
+STILL, RATIO = 0.05, 0.1
+
+
+def regime(left: float, right: float, gamma: float) -> str:
+    return final_regime(left, right, gamma, RATIO, "total", STILL)
+
+
+def rupture(left: float, right: float, gamma: float, duration: float) -> Rupture:
+    found = Rupture(Prestress(left, right), gamma, RATIO, "total", duration)
+    assert found.limit is None
+    return found
+
+
+def ends(found: Rupture) -> tuple[str, str]:
+    ((left, right),) = found.front_ends
+    return left.reason, right.reason
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "gamma", "duration"),
+    [
+        (-0.2, -0.2, 1.0, 10.0),
+        (-0.1, -0.1, 0.1, 20.0),
+        (-0.6, -0.1, 0.65, 12.0),
+        (-0.1, -0.1, 1e-3, 40.0),
+        (-0.9, -0.9, 0.0, 10.0),
+        (-0.9, -0.02, 0.0, 120.0),
+        # Slow: long after the runs of the phase diagram.
+        (-0.02, -0.02, 0.0, 150.0),
+    ],
+)
+def test_between_two_negative_levels_both_fronts_stop_and_all_sticks(left, right, gamma, duration):
+    assert regime(left, right, gamma) == "arrested"
+    found = rupture(left, right, gamma, duration)
+    assert ends(found) == ("stops", "stops")
+    ((first, last),) = found.front_ends
+    x = np.linspace(first.x, last.x, 31)[1:-1]
+    assert np.isfinite(found.stick_time(x)).all()
+
+
+@pytest.mark.parametrize(("level", "gamma"), [(0.1, 1.0), (0.5, 0.1), (0.9, 1e-3)])
+def test_with_leaf_springs_a_symmetric_positive_level_ends_in_two_pulses(level, gamma):
+    assert regime(level, level, gamma) == "pulses, two-way"
+    duration = 1.5 * np.pi / np.sqrt(gamma)
+    found = rupture(level, level, gamma, duration)
+    assert ends(found) == ("duration", "duration")
+    assert float(found.stick_time(0.0)) < duration
+    assert found.pulse_width(duration) > 0.0
+
+
+@pytest.mark.parametrize(("left", "right", "gamma"), [(-0.6, 0.8, 0.65), (-0.1, 0.5, 1.0), (-0.3, 0.3, 0.3)])
+def test_with_leaf_springs_a_barrier_on_one_side_leaves_a_pulse_that_becomes_steady(left, right, gamma):
+    assert regime(left, right, gamma) == regime(right, left, gamma) == "pulse, one-way, steady"
+    found = rupture(left, right, gamma, 40.0)
+    assert ends(found) == ("stops", "duration")
+    assert float(found.stick_time(0.0)) < 40.0
+    widths = [found.pulse_width(time) for time in (30.0, 39.0)]
+    assert widths[1] == pytest.approx(widths[0], rel=5e-3)
+
+
+@pytest.mark.parametrize("gamma", [0.1, 1.0])
+def test_with_leaf_springs_a_pulse_without_prestress_gets_ever_narrower_and_slower(gamma):
+    assert regime(-0.3, 0.0, gamma) == "pulse, one-way, decaying"
+    found = rupture(-0.3, 0.0, gamma, 40.0)
+    peaks, widths = [], []
+    for time in (20.0, 40.0):
+        front, width = found.fronts_at(time)[1], found.pulse_width(time)
+        peaks.append(np.nanmax(found.slip_velocity(np.linspace(front - width, front, 201), time)))
+        widths.append(width)
+    assert widths[1] == pytest.approx(0.5 * widths[0], rel=0.15)
+    assert 0.4 < peaks[1] / peaks[0] < 0.8
+
+
+@pytest.mark.parametrize(("left", "right"), [(-0.02, 0.1), (-0.1, 0.02), (-0.6, 0.6), (-0.9, 0.02)])
+def test_without_leaf_springs_a_barrier_before_a_positive_level_leaves_the_centre_a_share_of_the_velocity(
+    left, right
+):
+    """The share for large times, a crack or a pulse as it is above or below what counts as still."""
+    times = np.array([1500.0, 3000.0])
+    found = rupture(left, right, 0.0, times[1])
+    speed = (found.front_ends[0][1].x - found.fronts_at(times[0])[1]) / np.diff(times)[0]
+    slope = right / -left
+    expected = slope / (1.0 + 1.0 / speed + 2.0 * slope)
+    off = []
+    for time in times:
+        largest = np.max(found.slip_velocity(np.linspace(0.8, speed, 301) * time, time))
+        off.append(abs(float(found.slip_velocity(0.0, time)) / largest / expected - 1.0))
+    # What the Gaussian adds is forgotten like 1/t.
+    assert off[1] < 0.1 and off[1] < 0.6 * off[0]
+    assert regime(left, right, 0.0) == (
+        "crack-like, one-way" if expected >= STILL else "pulse, one-way, growing"
+    )
+
+
+@pytest.mark.parametrize(("left", "right"), [(0.0, 0.0), (0.02, 0.9), (0.3, 0.3)])
+def test_without_leaf_springs_the_centre_never_slows_down_between_levels_that_are_not_negative(left, right):
+    assert regime(left, right, 0.0) == "crack-like, two-way"
+    found = rupture(left, right, 0.0, 80.0)
+    velocity = found.slip_velocity(0.0, np.linspace(5.0, 80.0, 31))
+    assert (np.diff(velocity) > -1e-9).all()
+    assert np.isnan(found.transition_time)
+
+
+def test_what_the_exact_solution_does_not_say_is_left_open():
+    assert regime(0.0, 0.0, 0.65) == regime(0.0, 0.3, 0.65) == UNDECIDED
+
+
+def test_a_pulse_grows_by_half_of_the_prestress_on_its_way():
+    assert growth_beyond(0.0) == "pulse, one-way, steady"
+    peaks = {}
+    for level in (-0.01, 0.01):
+        found = Rupture(Prestress(-0.6, 0.0, steps=((15.0, level),)), 0.0, RATIO, "total", 30.0)
+        peaks[level] = []
+        for time in (20.0, 30.0):
+            velocity = found.slip_velocity(np.linspace(0.6, 1.05, 401) * time, time)
+            assert np.isfinite(velocity).all()
+            peaks[level].append(np.max(velocity))
+    assert growth_beyond(0.01) == "pulse, one-way, growing" and peaks[0.01][1] > peaks[0.01][0] + 0.02
+    assert growth_beyond(-0.01) == "pulse, one-way, decaying" and peaks[-0.01][1] < peaks[-0.01][0] - 0.02
+
+
+def test_every_answer_is_a_regime():
+    levels = (-0.9, -0.02, 0.0, 0.02, 0.9)
+    found = {regime(left, right, gamma) for left in levels for right in levels for gamma in (0.0, 0.65)}
+    assert found - {UNDECIDED} <= set(REGIMES)
+    assert len(found - {UNDECIDED}) == len(REGIMES)
+
+
+def test_a_level_at_the_threshold_is_refused():
+    with pytest.raises(ValueError, match="right"):
+        regime(0.1, 1.0, 0.65)
