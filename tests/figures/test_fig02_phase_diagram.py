@@ -325,7 +325,14 @@ def test_inmost_run_is_far_from_other_classes_and_from_the_rim():
     columns, rows = np.meshgrid(np.arange(7), np.arange(7), indexing="ij")
     regime = np.where(columns.ravel() < 5, "crack-like, two-way", "arrested")
     markers = pd.DataFrame(
-        {"x": columns.ravel(), "y": rows.ravel(), "regime": regime, "end": regime, "run_flags": ""}
+        {
+            "x": columns.ravel(),
+            "y": rows.ravel(),
+            "regime": regime,
+            "end": regime,
+            "coarser": 0,
+            "run_flags": "",
+        }
     )
     chosen = markers.iloc[figure.inmost(markers, "crack-like, two-way")]
     assert (chosen["x"], chosen["y"]) == (2, 3)

@@ -176,11 +176,13 @@ def inmost(markers: pd.DataFrame, regime: str) -> int | None:
 
     Returns
     -------
-    row number; of equals the one nearest the middle of the regime's runs; None if no sound run ends in the regime
+    row number; of equals the one nearest the middle of the regime's runs; None if no sound run ends in the
+    regime on every lattice
     """
     column = markers["x"].rank(method="dense").to_numpy() - 1.0
     line = markers["y"].rank(method="dense").to_numpy() - 1.0
-    shown = (markers["regime"] == regime) & (markers["end"] == regime) & ~is_flagged(markers)
+    shown = (markers["regime"] == regime) & (markers["end"] == regime) & (markers["coarser"] == 0)
+    shown &= ~is_flagged(markers)
     own = shown.to_numpy()
     if not own.any():
         return None
