@@ -33,13 +33,14 @@ CHECK_OPTIONS = $(CHECK_PLACE); \
     case "$$CORES" in ""|*[!0-9]*|0|0[0-9]*) echo "CORES: $$CORES; allowed: a whole number from 1 on, such as CORES=2" >&2; exit 1;; esac; \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe reference replicate rulegraph verify test test-slow test-all faults slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe reference replicate rulegraph verify test test-pages test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
 	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
+	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility, narrow screens"
 	@echo "make test-all    these and the slow ones: every file and example, kills, Slurm"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
@@ -108,6 +109,9 @@ faults: $(READY)
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
+
+test-pages: $(READY)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest tests/browser/test_pages.py
 
 test-slow: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow

@@ -22,6 +22,7 @@ include: "workflow/rules/studies.smk"
 include: "workflow/rules/claims.smk"
 include: "workflow/rules/scenes.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/explorer.smk"
 include: "workflow/rules/provenance.smk"
 
 

@@ -44,6 +44,7 @@ RULES = (STEPS - {"__init__", "job", "reach", "draw_figure", "run_study"}) | DRA
 PAGE_OF = {
     "draw_scene": "scene.html",
     "write_claims": "claims.html",
+    "write_explorer": "explorer.html",
     "write_index": "index.html",
     "write_scenes_page": "scenes.html",
 }

@@ -155,3 +155,10 @@ SHOWN_DIGITS = 0.02
 EXACT_RUN = 1e-6
 # T_trans and L_trans of the draft preset against exact theory: first order in dx, a few blocks.
 DRAFT_TRANSITION = 0.05
+
+# --- The explorer ---------------------------------------------------------------------------------------------
+
+# What a page needs: below a pixel and in the fourth digit that it shows.
+EXPLORER = 1e-3
+# Cubics in a table of the front law; v follows ln(v - 1), so that fast fronts have the largest error.
+EXPLORER_SPEED = 1e-4

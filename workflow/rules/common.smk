@@ -45,6 +45,7 @@ FIGURES, STUDIES = (
 NEEDS = {name: declared(f"figures.{name}", "NEEDS") for name in FIGURES + STUDIES}
 SOLVER_STUDIES = sorted(config["studies"])
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
+EXPLORER_SIMULATIONS = declared("steps.write_explorer", "SIMULATIONS")
 REPORT_SIMULATIONS = declared("steps.write_report", "SIMULATIONS")
 
 # Sweeps that several jobs share. How many is in the name of each chunk: files left by another number are never taken.

@@ -15,6 +15,7 @@ RESULTS = [
     *OWN_SWEEPS,
     "results/claims.json",
     "results/claims.html",
+    "results/explorer.html",
     "results/manuscript/replication.html",
     "results/manuscript/replication.pdf",
 ]
@@ -71,6 +72,7 @@ rule write_index:
         claims="results/claims.json",
         provenance="results/provenance.json",
         report="results/manuscript/replication.html",
+        explorer="results/explorer.html",
     output:
         html="results/index.html",
     log:

@@ -149,5 +149,6 @@ COMMENTS = {
     "uncertainties": "grid study of every measured number",
     "manuscript": "the replication report",
     "claims.html": "the same as a table to read",
+    "explorer.html": "a rupture with sliders, the exact solution beside the paper's formulas",
     "claims.json": "what the paper says, what was measured, the verdict",
 }

@@ -17,6 +17,7 @@ from .claims import SIGNS, claim_groups
 from .render import markup_of, page, picture_size
 
 FILES = {
+    "explorer.html": "Explorer (a rupture with sliders)",
     "manuscript/replication.html": "Replication report (HTML)",
     "manuscript/replication.pdf": "Replication report (PDF)",
     "claims.html": "Ledger of claims (a table)",

@@ -1,0 +1,58 @@
+// The front law: the speed v of a front into pre-stress tau at b = beta/dx, from a table of ln(tau/(1 - tau)).
+
+// A table of numbers on an even grid, which begins at place 0, between its entries: six of them around the place.
+function between(values, place) {
+  const first = Math.min(Math.max(Math.floor(place) - 2, 0), values.length - 6);
+  let sum = 0;
+  for (let i = 0; i < 6; i++) {
+    let weight = 1;
+    for (let j = 0; j < 6; j++) if (j !== i) weight *= (place - first - j) / (i - j);
+    sum += weight * values[first + i];
+  }
+  return sum;
+}
+
+// First index k with values[k] <= target < values[k + 1], for rising values (falling ones with sign -1).
+function cell(values, target, sign = 1) {
+  let low = 0;
+  let high = values.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (sign * values[middle] <= sign * target) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+// A cubic from the values and slopes at the ends of an interval of a length, at a share of it.
+function hermite(share, length, value0, value1, slope0, slope1) {
+  const rest = 1 - share;
+  return rest * rest * ((1 + 2 * share) * value0 + share * length * slope0)
+    + share * share * ((1 + 2 * rest) * value1 - rest * length * slope1);
+}
+
+// 1/v as a function of 1 - tau (which does not cancel near the peak), at one b under one release rule.
+function frontLaw(table, ratio, release) {
+  if (ratio === 0) return (rest) => Math.sqrt(rest * (2 - rest));
+  const place = Math.asinh(ratio / table.ratio.scale) / table.ratio.step;
+  const count = table[release][0].length;
+  const { first, step } = table.excess;
+  const level = [];
+  for (let k = 0; k < count; k++) level.push(between(table[release].map((row) => row[k]), place));
+  // d ln(v - 1) / d level at the inner nodes, from five of them.
+  const slope = level.map((_, k) => 12 * step
+    / (level[k - 2] - 8 * level[k - 1] + 8 * level[k + 1] - level[k + 2]));
+  const inner = level.slice(2, -2);
+  const last = inner.length - 1;
+  return (rest) => {
+    if (rest <= 0) return 0;
+    const target = Math.log((1 - rest) / rest);
+    const k = cell(inner, target);
+    const length = inner[k + 1] - inner[k];
+    const low = first + (k + 2) * step;
+    const excess = target > inner[last]
+      ? low + step + (target - inner[last]) * slope[last + 2]
+      : hermite((target - inner[k]) / length, length, low, low + step, slope[k + 2], slope[k + 3]);
+    return 1 / (1 + Math.exp(excess));
+  };
+}

@@ -1,0 +1,29 @@
+"""Write the page on which a rupture is explored with sliders."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..data.files import write_text
+from ..data.store import load_table
+from ..pages.explorer import explorer_page
+
+FILES = (
+    "pages/templates/base.html",
+    "pages/templates/explorer.html",
+    "pages/templates/explorer/*",
+    "pages/templates/style.css",
+)
+# Sweeps that it shows beside the exact solution.
+SIMULATIONS = [
+    "scaling_displacement",
+    "damping_displacement",
+    "pulse_damping",
+    "steady_displacement",
+    "any_prestress",
+]
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Files: measured. Outputs: html."""
+    write_text(explorer_page(load_table(path) for path in files["measured"]), outputs["html"])

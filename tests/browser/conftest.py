@@ -1,0 +1,72 @@
+"""A real browser, where there is one: Debian's chromium, or the like of another system."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, sync_playwright
+
+NAMES = ("chromium", "chromium-browser", "google-chrome")
+WIDTHS, SCHEMES = (390, 1280), ("light", "dark")
+# Rules of WCAG at the levels A and AA.
+LEVELS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """Chromium without a window."""
+    path = next((found for name in NAMES if (found := shutil.which(name))), None)
+    if path is None:
+        pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")
+    with sync_playwright() as playwright:
+        # The sandbox refuses to run for root, as in a container.
+        options = ["--no-sandbox"] if os.geteuid() == 0 else []
+        browser = playwright.chromium.launch(executable_path=path, args=options)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def opened(browser):
+    """A function that opens a file as a reader would: what the page says, fetches or fails in ends the test."""
+
+    @contextmanager
+    def open_page(path: Path, width: int = 1280, scheme: str = "light") -> Iterator[Page]:
+        page = browser.new_page(viewport={"width": width, "height": 844}, color_scheme=scheme)
+        said, fetched = [], []
+        page.on("console", lambda message: said.append(message.text))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("request", lambda request: fetched.append(request.url))
+        page.goto(path.absolute().as_uri())
+        try:
+            yield page
+            assert said == []
+            assert [url for url in fetched if not url.startswith(("file:", "data:"))] == []
+        finally:
+            page.close()
+
+    return open_page
+
+
+@pytest.fixture(scope="session")
+def violations():
+    """A function that lists what is not accessible on a page, and what does not fit its width."""
+    axe = Axe()
+
+    def find(page: Page) -> list[str]:
+        found = axe.run(page, options={"runOnly": {"type": "tag", "values": LEVELS}}).response["violations"]
+        problems = [
+            f"{entry['id']}: {entry['help']}: {node['html'][:200]}"
+            for entry in found
+            for node in entry["nodes"]
+        ]
+        wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        return problems + [f"wider than the page by {wide}"] * (wide > 0)
+
+    return find

@@ -1,0 +1,182 @@
+"""The explorer alone: its numbers are those of the theory, and it works by keyboard, on a phone and in the dark."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from tolerances import EXPLORER, EXPLORER_SPEED
+
+from slippulse.model.prestress import Prestress
+from slippulse.pages.explorer import LARGEST_RATIO, explorer_page, simulated_runs
+from slippulse.theory import Rupture, front_speed, steady_pulse
+
+SLIDERS = ("beta", "dx", "left", "right", "width", "gamma")
+RUN = {
+    "boundary": "displacement", "left": 0.3, "right": 0.3, "width": 1.0, "peak": 1.0, "gamma": 0.5, "beta": 1e-3,
+    "steps_and_bumps": '{"steps": [], "bumps": []}', "damping_ratio": 0.1, "release": "total",
+    "front_speed_right": 1.1, "transition_time": 4.1, "transition_length": 10.1, "pulse_slip": 1.11,
+    "pulse_state": "steady",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
+    # The way back leads somewhere.
+    path.with_name("index.html").touch()
+    path.write_text(explorer_page([pd.DataFrame([RUN])]), encoding="utf-8")
+    return path
+
+
+def settled(page) -> None:
+    """Wait until the page has drawn what it was told."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def random_scenes(count: int) -> list[dict]:
+    """Settings over the whole reach of the sliders, half of them symmetric, a fifth undamped, both rules."""
+    random = np.random.default_rng(16)
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    scenes = []
+    for k in range(count):
+        left, right = random.uniform(0.05, 0.95, 2).tolist()
+        scenes.append(
+            {
+                "left": left, "right": left if k % 2 else right, "gamma": between(0.02, 2.0),
+                "width": between(0.2, 5.0), "ratio": 0.0 if k % 5 == 0 else between(2e-3, LARGEST_RATIO),
+                "release": "total" if k % 4 < 2 else "elastic",
+            }
+        )  # fmt: skip
+    return scenes
+
+
+def from_python(scene: dict, pulse: dict) -> dict[str, float]:
+    """The same numbers by the library, the pulse at the time and place that the page found."""
+    prestress = Prestress(scene["left"], scene["right"], scene["width"])
+    rupture = Rupture(prestress, scene["gamma"], scene["ratio"], scene["release"], 1.001 * pulse["time"])
+    return {
+        "speed": front_speed(scene["right"], scene["ratio"], scene["release"]),
+        "speedLeft": front_speed(scene["left"], scene["ratio"], scene["release"]),
+        "transitionTime": rupture.transition_time,
+        "transitionLength": rupture.transition_length,
+        "width": rupture.pulse_width(pulse["time"]),
+        "slip": float(rupture.final_slip(pulse["edge"])),
+        "slipCentre": float(rupture.final_slip(0.0)),
+    }
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
+def test_its_numbers_are_those_of_the_library(count, file, opened):
+    scenes = random_scenes(count)
+    with opened(file) as page:
+        found = page.evaluate(
+            """scenes => scenes.map((scene) => {
+                const rupture = new Rupture(scene, DATA.law);
+                const first = rupture.transition();
+                const pulse = rupture.pulse(MULTIPLE * first.transitionTime, first.firstStick);
+                return { ...first, ...pulse, slipCentre: rupture.slip(0, rupture.stick(0)) };
+            })""",
+            scenes,
+        )
+    for scene, numbers in zip(scenes, found, strict=True):
+        exact = from_python(scene, numbers)
+        assert {name: numbers[name] for name in exact} == pytest.approx(exact, rel=EXPLORER), scene
+
+
+def test_its_front_law_and_damped_pulse_are_those_of_the_library(file, opened):
+    scenes = random_scenes(400)
+    with opened(file) as page:
+        speeds = page.evaluate(
+            "scenes => scenes.map((s) => 1 / frontLaw(DATA.law, s.ratio, s.release)(1 - s.right))", scenes
+        )
+        slips = page.evaluate(
+            "pairs => pairs.map(([scene, v]) => steadySlip({ ...scene, beta: 0.1 * scene.ratio }, v))",
+            [list(pair) for pair in zip(scenes, speeds, strict=True)],
+        )
+    for scene, speed, slip in zip(scenes, speeds, slips, strict=True):
+        exact = front_speed(scene["right"], scene["ratio"], scene["release"])
+        assert speed == pytest.approx(exact, rel=EXPLORER_SPEED), scene
+        pulse = steady_pulse(scene["left"], scene["gamma"], 0.1 * scene["ratio"], speed)
+        assert slip == pytest.approx(pulse.slip, rel=EXPLORER_SPEED), scene
+
+
+def speed(page) -> str:
+    settled(page)
+    return page.locator("#exact tbody tr td").first.text_content()
+
+
+def test_beta_over_dx_alone_sets_the_speed(file, opened):
+    with opened(file) as page:
+        first = speed(page)
+        finer, both = page.locator("[data-beta]").all()[1:3]
+        finer.press("Enter")
+        assert float(speed(page)) > float(first)
+        both.press("Enter")
+        assert speed(page) == first
+        assert page.locator("#ratio").text_content() == "0.1"
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_a_slider_works_by_keyboard(name, file, opened):
+    with opened(file) as page:
+        slider, shown = page.locator(f"#{name}"), page.locator(f"#{name}-shown")
+        values = [shown.text_content()]
+        pictures = [page.locator("#map").inner_html()]
+        for key in ("ArrowRight", "End", "Home"):
+            slider.press(key)
+            settled(page)
+            assert slider.get_attribute("aria-valuetext") == shown.text_content()
+            values.append(shown.text_content())
+            pictures.append(page.locator("#map").inner_html())
+        assert len(set(values)) == 4
+        # Spacing and damping at the end of their range may give the b that there was.
+        assert len(set(pictures)) >= 3
+
+
+def test_each_control_is_reached_by_the_keyboard_and_named(file, opened):
+    with opened(file) as page:
+        reached = []
+        for _ in range(20):
+            page.keyboard.press("Tab")
+            reached.append(page.evaluate("document.activeElement.id"))
+        assert [name for name in reached if name in SLIDERS] == list(SLIDERS)
+        for name in SLIDERS:
+            assert page.locator(f"label[for={name}]").text_content()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1280])
+def test_everybody_can_use_it(width, scheme, file, opened, violations):
+    with opened(file, width, scheme) as page:
+        settled(page)
+        assert violations(page) == []
+
+
+def test_the_nearest_run_can_be_visited(file, opened):
+    with opened(file) as page:
+        page.locator("#visit").press("Enter")
+        settled(page)
+        shown = [page.locator(f"#{name}-shown").text_content() for name in SLIDERS]
+        assert shown == ["0.001", "0.01", "0.3", "0.3", "1", "0.5"]
+
+
+def test_only_runs_that_the_page_can_compute_are_shown():
+    others = [
+        RUN | {"boundary": "stress"}, RUN | {"left": 0.2}, RUN | {"left": -0.3, "right": -0.3},
+        RUN | {"steps_and_bumps": '{"steps": [[1.0, 0.2]], "bumps": []}'}, RUN | {"damping_ratio": 6.0},
+    ]  # fmt: skip
+    unsteady = RUN | {"pulse_state": "unsteady"}
+    runs = simulated_runs(pd.DataFrame([RUN, *others, unsteady]))
+    settings = [0.3, 0.5, 1.0, 1e-3, 0.1, "total", 1.1, 4.1, 10.1]
+    assert runs == [[*settings, 1.11], [*settings, None]]
+
+
+def test_the_page_says_what_the_sliders_reach(project):
+    """Their ends are those of the settings above."""
+    text = (project / "src/slippulse/pages/templates/explorer.html").read_text(encoding="utf-8")
+    for ends in ('"1e-4", "1e-2"', '"2e-3", "5e-2"', '"0.05", "0.95"', '"0.2", "5"', '"0.02", "2"'):
+        assert ends in text

@@ -1,0 +1,20 @@
+# The page on which a rupture is explored with sliders: the exact solution in the browser, with measured runs beside it.
+
+
+rule write_explorer:
+    input:
+        sources("steps.write_explorer"),
+        measured=tables("measurements", EXPLORER_SIMULATIONS),
+    output:
+        html="results/explorer.html",
+    log:
+        "results/logs/write_explorer.log",
+    benchmark:
+        "results/benchmarks/write_explorer.tsv"
+    params:
+        step="write_explorer",
+        configuration=configuration(EXPLORER_SIMULATIONS, measure=config["measure"]),
+    message:
+        "Writing results/explorer.html"
+    script:
+        "../scripts/step.py"
