@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from ..data.files import write_whole
 from ..data.origin import configuration
+from .shared.png import save_png
 
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
@@ -87,7 +88,6 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
     # With an engine, a mere stand-in too, each file would be drawn twice.
     figure.set_layout_engine(None)
     made_by = f"configuration {configuration()}" if configuration() else None
-    pixels = {"Software": None} | ({"Comment": made_by} if made_by else {})
     vectors = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": made_by}
-    write_whole(png, lambda part: figure.savefig(part, format="png", metadata=pixels))
+    save_png(figure, png, made_by)
     write_whole(pdf, lambda part: figure.savefig(part, format="pdf", metadata=vectors))
