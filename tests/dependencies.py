@@ -58,6 +58,7 @@ READ_BY = {
     "shipped_verdicts.yaml": {"write_report"},
     "style.css": {"write_report"},
     "summary.yaml": {"write_index"},
+    "template.html": {"write_report"},
     "template.typ": {"write_report"},
 }
 # Notes a digest of every source.

@@ -13,6 +13,7 @@ rule write_report:
                 "references.bib",
                 "shipped_verdicts.yaml",
                 "style.css",
+                "template.html",
                 "template.typ",
             )
         ],

@@ -49,7 +49,7 @@ class Gallery:
         text = f"**Figure {number}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alternative = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         # No extension: the vector file for print, the picture for the browser.
-        return f"![{text}]({self.folder / name}){{width=100% alt='{alternative}'}}"
+        return f"![{text}]({self.folder / name}){{#{name} width=100% alt='{alternative}'}}"
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
         """A reference to a figure between two texts; nothing at all if it is not included."""

@@ -11,6 +11,7 @@ import typst
 
 from ..data.files import write_whole
 from ..texts.pandoc import pandoc
+from .page import as_page
 
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0
@@ -22,12 +23,13 @@ def render_html(text: str, manuscript: str | Path, output: str | Path) -> None:
     Parameters
     ----------
     text : Markdown
-    manuscript : folder with metadata.yaml, references.bib, style.css
+    manuscript : folder with metadata.yaml, references.bib, style.css, template.html
     output : HTML file
     """
     manuscript = Path(manuscript)
     options = [
         "--to=html5",
+        f"--template={manuscript / 'template.html'}",
         "--mathml",
         "--embed-resources",
         "--default-image-extension=png",
@@ -35,7 +37,7 @@ def render_html(text: str, manuscript: str | Path, output: str | Path) -> None:
         "--toc",
         "--toc-depth=2",
     ]
-    html = _pandoc(text, manuscript, options)
+    html = as_page(_pandoc(text, manuscript, options))
     write_whole(output, lambda part: part.write_text(html, encoding="utf-8"))
 
 

@@ -1,0 +1,94 @@
+"""The pages of a results folder as readers meet them, in a browser: links, accessibility, narrow screens, the dark.
+
+`make test-pages` says which folder; without one, or with an unfinished one, nothing is tested here.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+RESULTS = os.environ.get("PAGES", "")
+PAGES = (
+    "index.html", "claims.html", "manuscript/replication.html", "explorer.html", "scenes/barrier.html",
+)  # fmt: skip
+# What the explorer may weigh, and the report with all its figures inside.
+LARGEST = {"explorer.html": 300e3, "manuscript/replication.html": 5e6}
+
+
+@pytest.fixture(scope="module")
+def results(project) -> Path:
+    """A results folder with every page."""
+    if not RESULTS:
+        pytest.skip("no results folder named: make test-pages")
+    folder = project / RESULTS
+    missing = [name for name in PAGES if not (folder / name).exists()]
+    if missing:
+        pytest.skip(f"{RESULTS} is not whole: no {missing[0]}; make replicate TARGET=everything")
+    return folder
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("name", PAGES)
+def test_everybody_can_read_it(name, width, scheme, results, opened, violations):
+    with opened(results / name, width, scheme) as page:
+        assert violations(page) == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_it_has_one_title_and_landmarks(name, results, opened):
+    with opened(results / name) as page:
+        assert page.locator("h1").count() == 1
+        assert page.locator("main").count() == 1
+        page.keyboard.press("Tab")
+        assert page.evaluate("document.activeElement.getAttribute('href')") == "#content"
+        if name != "index.html":
+            assert page.locator("a[href$='index.html']").count() > 0
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_every_link_resolves(name, results, opened):
+    anchors: dict[Path, set[str]] = {}
+
+    def anchors_of(path: Path) -> set[str]:
+        if path not in anchors:
+            with opened(path) as page:
+                found = page.evaluate("[...document.querySelectorAll('[id]')].map((tag) => tag.id)")
+            anchors[path] = set(found)
+        return anchors[path]
+
+    with opened(results / name) as page:
+        links = page.evaluate(
+            "[...document.querySelectorAll('a[href], img[src], link[href]')].map((tag) => tag.href || tag.src)"
+        )
+    inside = [link for link in links if link.startswith("file:")]
+    assert inside
+    assert all(link.startswith(("file:", "https://", "data:")) for link in links)
+    for link in sorted(set(inside)):
+        parts = urlsplit(link)
+        path = Path(unquote(parts.path))
+        assert path.exists(), link
+        if parts.fragment:
+            assert unquote(parts.fragment) in anchors_of(path), link
+
+
+@pytest.mark.parametrize("name", LARGEST)
+def test_it_is_not_too_large_to_be_sent(name, results):
+    assert (results / name).stat().st_size < LARGEST[name]
+
+
+def test_a_figure_of_the_report_enlarges(results, opened):
+    with opened(results / "manuscript/replication.html") as page:
+        figures = page.locator("figure")
+        assert figures.count() == page.locator("figure > a[href$='.png'] > img").count() > 10
+
+
+def test_print_unfolds_what_is_folded(results, opened):
+    with opened(results / "index.html") as page:
+        page.emulate_media(media="print")
+        hidden = page.locator("details:not([open]) table").first
+        assert hidden.bounding_box()["height"] > 0
