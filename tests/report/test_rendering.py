@@ -51,6 +51,19 @@ def test_the_html_loads_nothing(html):
     assert "@import" not in styles and not re.search(r"url\(\s*['\"]?(?!data:|#)", styles)
 
 
+def test_the_html_is_a_page_with_one_title_and_a_way_back(html):
+    parser = Resources()
+    parser.feed(html)
+    assert parser.tags["h1"] == parser.tags["main"] == 1 and parser.tags["h2"] > 5
+    assert html.count('<div class="scroll" tabindex="0"') == parser.tags["table"] == html.count("</table></div>")
+    assert html.index('href="#content"') < html.index('href="../index.html"') < html.index('id="TOC"')
+
+
+def test_its_figures_have_anchors_and_enlarge(html, report):
+    names = re.findall(r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img [^>]*></a>', html)
+    assert sorted(names) == sorted((name, name) for name in report.inputs.figures)
+
+
 def test_its_equations_are_mathml(html):
     assert html.count("<math") > 150
     text = re.sub(r"<annotation.*?</annotation>", "", html, flags=re.S)

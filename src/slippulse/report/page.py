@@ -1,4 +1,4 @@
-"""The report's HTML as pandoc writes it, made a page: one title, tables that scroll by keyboard, figures that enlarge."""
+"""The report as pandoc writes it, made a page: one title, tables that scroll by keyboard, figures that enlarge."""
 
 from __future__ import annotations
 
