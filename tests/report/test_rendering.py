@@ -55,7 +55,9 @@ def test_the_html_is_a_page_with_one_title_and_a_way_back(html):
     parser = Resources()
     parser.feed(html)
     assert parser.tags["h1"] == parser.tags["main"] == 1 and parser.tags["h2"] > 5
-    assert html.count('<div class="scroll" tabindex="0"') == parser.tags["table"] == html.count("</table></div>")
+    assert (
+        html.count('<div class="scroll" tabindex="0"') == parser.tags["table"] == html.count("</table></div>")
+    )
     assert html.index('href="#content"') < html.index('href="../index.html"') < html.index('id="TOC"')
 
 
