@@ -164,6 +164,14 @@ def test_the_nearest_run_can_be_visited(file, opened):
         assert shown == ["0.001", "0.01", "0.3", "0.3", "1", "0.5"]
 
 
+def test_without_a_run_to_compare_with_there_is_no_comparison(tmp_path, opened):
+    (tmp_path / "explorer.html").write_text(explorer_page([]), encoding="utf-8")
+    with opened(tmp_path / "explorer.html") as page:
+        settled(page)
+        assert page.locator("#exact tbody tr").count() == 5
+        assert not page.locator("#simulated").is_visible()
+
+
 def test_only_runs_that_the_page_can_compute_are_shown():
     others = [
         RUN | {"boundary": "stress"}, RUN | {"left": 0.2}, RUN | {"left": -0.3, "right": -0.3},

@@ -197,6 +197,7 @@ function draw() {
   drawPulse(rupture, found);
   drawSpeeds(scene, found.exact, found.paper);
   fill(at("exact"), found.rows);
+  at("runs").hidden = !DATA.runs.length;
   if (DATA.runs.length) showNearest(scene);
   report(ratio, found.exact.speed, found.paper.speed);
   return { ratio, speed: found.exact.speed };
