@@ -168,7 +168,7 @@ def test_without_a_run_to_compare_with_there_is_no_comparison(tmp_path, opened):
     (tmp_path / "explorer.html").write_text(explorer_page([]), encoding="utf-8")
     with opened(tmp_path / "explorer.html") as page:
         settled(page)
-        assert page.locator("#exact tbody tr").count() == 5
+        assert page.locator("#exact tbody tr").count() == 6
         assert not page.locator("#simulated").is_visible()
 
 

@@ -19,11 +19,11 @@ function ticks(low, high, count = 5) {
 
 // A picture with axes, as wide as its place on the page so that its letters keep their size.
 class Picture {
-  constructor(element, { x, y, labels, height, xTicks = ticks(...x), place = (value) => value }) {
+  constructor(element, { x, y, labels, height, top: above = 12, xTicks = ticks(...x), place = (value) => value }) {
     this.element = element;
     this.width = Math.max(element.parentElement.clientWidth - 24, 240);
     this.height = height;
-    this.box = { left: 52, right: this.width - 10, top: 12, bottom: height - 42 };
+    this.box = { left: 58, right: this.width - 10, top: above, bottom: height - 42 };
     this.inside = [];
     const { left, right, top, bottom } = this.box;
     const [low, high] = x.map(place);
@@ -61,12 +61,12 @@ class Picture {
       + ` height="${this.y(y0) - this.y(y1)}" preserveAspectRatio="none" clip-path="url(#outline)"/>`);
   }
 
-  // A scale of colours in the upper left corner.
+  // A scale of colours above the axes.
   scale(colours, text) {
-    const { left, top } = this.box;
-    this.outside += colours.map((colour, k) => `<rect x="${left + 10 + 4 * k}" y="${top + 10}" width="4.5" height="10"`
+    const { left } = this.box;
+    this.outside += colours.map((colour, k) => `<rect x="${left + 4 * k}" y="6" width="4.5" height="10"`
       + ` fill="rgb(${colour})"/>`).join("");
-    this.write(left + 10, top + 34, text);
+    this.write(left + 4 * colours.length + 8, 15, text);
   }
 
   // Show it; what it says is its alternative text.

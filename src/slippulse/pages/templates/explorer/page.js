@@ -48,8 +48,9 @@ function compared(rupture, { left, right, gamma }) {
   rows.push(
     ["T_trans", exact.transitionTime, paper.time],
     ["L_trans", exact.transitionLength, paper.time * (paper.speed + paperLeft.speed)],
-    ["width of the right pulse", pulse.width, paper.width],
-    ["slip behind it", pulse.slip, paper.slip],
+    ["width of the right pulse at the end", pulse.width, paper.width],
+    ["its width once steady", paper.time * Math.sqrt(exact.speed ** 2 - 1), paper.width],
+    ["slip behind it at the end", pulse.slip, paper.slip],
   );
   return { exact, pulse, paper, rows };
 }
@@ -66,7 +67,7 @@ function drawMap(rupture, scene, { exact, pulse }) {
   const largest = Math.max(...found.flatMap((column) => column.velocity));
   const [low, high] = rupture.fronts(end);
   const map = new Picture(at("map"), {
-    x: [0, end], y: [1.04 * low, 1.04 * high], labels: ["time", "position x"], height: Math.min(520, 80 + 0.62 * innerWidth),
+    x: [0, end], y: [1.04 * low, 1.04 * high], labels: ["time", "position x"], height: Math.min(520, 80 + 0.62 * innerWidth), top: 26,
   });
   map.image(velocityImage(found, end, largest, DATA.colours), [0, end], [low, high],
     [...found.map(({ y, start }) => [start, y]), ...found.map(({ y, stop }) => [stop, y]).reverse()]);
@@ -183,7 +184,7 @@ function report(ratio, speed, paper) {
     ? `b went from ${format(before.ratio)} to ${format(ratio)}, and v from ${format(before.speed)} to ${format(speed)}.`
     : before && `b is still ${format(ratio)}, and nothing has changed: v = ${format(speed)}.`;
   at("finding").textContent = change
-    || `At b = ${format(ratio)} fronts run at v = ${format(speed)}, where the paper’s formula, b = 0, says ${format(paper)}.`;
+    || `At b = ${format(ratio)} ${settings.left === settings.right ? "fronts run" : "the right front runs"} at v = ${format(speed)}, where the paper’s formula, b = 0, says ${format(paper)}.`;
 }
 
 function draw() {
