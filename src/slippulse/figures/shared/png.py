@@ -42,14 +42,25 @@ def with_palette(picture: Image.Image) -> Image.Image:
     Palettes that average, as those of Pillow, change small fills or cut maps into bands.
     """
     found = sorted(picture.getcolors(picture.width * picture.height), key=lambda entry: (-entry[0], entry[1]))
-    chosen = np.empty((COLOURS, 3), dtype=np.int16)
+    colours = np.array([colour for _, colour in found])
+    chosen = np.empty((COLOURS, 3), dtype=int)
     count = 0
-    for _, colour in found:
+    for colour in colours:
         if np.abs(chosen[:count] - colour).max(axis=1).min(initial=APART) >= APART:
             chosen[count] = colour
             count += 1
             if count == COLOURS:
                 break
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(chosen[:count].astype(np.uint8).tobytes())
-    return picture.quantize(palette=palette, dither=Image.Dither.NONE)
+    chosen = chosen[:count]
+    # The nearest by |a - b|^2 = |a|^2 - 2 a b + |b|^2; Pillow's own search is for the nearest of a coarser colour.
+    nearest = (np.sum(chosen**2, axis=1) - 2.0 * colours @ chosen.T).argmin(axis=1)
+    index = np.zeros(1 << 24, dtype=np.uint8)
+    index[_packed(colours)] = nearest
+    out = Image.fromarray(index[_packed(np.asarray(picture))])
+    out.putpalette(chosen.astype(np.uint8).tobytes())
+    return out
+
+
+def _packed(colours: np.ndarray) -> np.ndarray:
+    """Each colour as one number."""
+    return colours.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], dtype=np.int32)
