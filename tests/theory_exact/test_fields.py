@@ -196,3 +196,10 @@ def test_with_soft_springs_the_peak_is_a_point():
     """Soft leaf springs are as quick to solve as stiff ones, and their transition is that of uniform pre-stress."""
     time = exact_transition_displacement(sp.Prestress(0.5, 0.5), 1e-12, 0.1).time
     assert 1e-6 * time == pytest.approx(uniform_transition_time(0.5, 1.0, 0.1), rel=1e-4)
+
+
+@pytest.mark.parametrize("duration", [20.0, 30.0])
+def test_the_width_of_a_pulse_is_known_until_the_very_end(duration):
+    rupture = Rupture(sp.Prestress(0.63, 0.416, 1.352), 0.215, 1.703, duration=duration)
+    assert rupture.pulse_width(duration) == pytest.approx(rupture.pulse_width(0.999999 * duration), rel=1e-4)
+    assert rupture.pulse_width(duration) > 1.0

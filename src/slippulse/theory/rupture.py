@@ -185,7 +185,8 @@ class Rupture:
 
         def late(place: float) -> float:
             stick = float(self.stick_time(np.array(place)))
-            return (stick if np.isfinite(stick) else 2.0 * self.duration) - time
+            # At the end itself the front's own point is said to stick as it is released.
+            return (stick if stick < self.duration else 2.0 * self.duration) - time
 
         if late(front) <= 0.0 or time >= float(self.horizon(np.array(front))):
             return 0.0 if late(front) <= 0.0 else np.nan
