@@ -1,4 +1,4 @@
-"""`python -m slippulse.benchmark config/config.yaml results/benchmarks`: measure, and write benchmark.json there."""
+"""`python -m benchmarks config/config.yaml results/benchmarks`: measure, and write benchmark.json there."""
 
 from __future__ import annotations
 

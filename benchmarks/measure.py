@@ -16,7 +16,6 @@ from slippulse.measure.fronts import front_speed
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
-from slippulse.solver import taylor
 from slippulse.solver.lattice import Lattice, run_scene
 from slippulse.theory.front_law import front_speed as exact_speed
 from slippulse.theory.pulse import steady_pulse
@@ -78,13 +77,13 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
         object.__setattr__(scene, "duration", start)
         lattice = Lattice(scene, None, scene.beta)
         lattice.run(None)
-        updates, steps = (int(lattice.counts[i]) for i in (taylor.BLOCK_UPDATES, taylor.STEPS))
+        updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
         object.__setattr__(scene, "duration", until)
         began = time.process_time()
         lattice.run(None)
         taken = time.process_time() - began
-        updates = int(lattice.counts[taylor.BLOCK_UPDATES]) - updates
-        rates.append((updates / taken, updates / (int(lattice.counts[taylor.STEPS]) - steps)))
+        updates = int(lattice.tally.block_updates) - updates
+        rates.append((updates / taken, updates / (int(lattice.tally.steps) - steps)))
     return max(rates)
 
 
@@ -200,7 +199,7 @@ def textbook_numba_step(blocks: int) -> float:
         half_lattice=False,
     )  # fmt: skip
     lattice = Lattice(scene, None, scene.beta)
-    size = lattice.w.shape[1]
+    size = lattice.size
     seconds = best(lambda: Lattice(scene, None, scene.beta).run(None), 2)
     return seconds / (duration / (step * DX)) * blocks / size
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from slippulse.solver.jit import compiled
+from slippulse.solver.jit import entry, inner
 
 
-@compiled()
+@inner()
 def second_difference(out, lower, upper, per_dx2, leaf, damping):
     """One derivative of slip from the two before it, over a whole array between fixed ends."""
     for i in range(out.shape[0]):
@@ -18,7 +18,7 @@ def second_difference(out, lower, upper, per_dx2, leaf, damping):
         )
 
 
-@compiled()
+@inner()
 def advance_polynomials(slip, velocity, a, b, c, d, h):
     """Slip and velocity by the Taylor polynomial of order 4."""
     for i in range(slip.shape[0]):
@@ -26,7 +26,7 @@ def advance_polynomials(slip, velocity, a, b, c, d, h):
         velocity[i] += h * (a[i] + h / 2.0 * (b[i] + h / 3.0 * (c[i] + h / 4.0 * d[i])))
 
 
-@compiled(entry=True)
+@entry
 def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
     """Order 4 steps of slip w[0] and velocity w[1], with no state, no event, no bookkeeping: w has 6 rows."""
     n = tau.shape[0]
@@ -39,7 +39,7 @@ def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
         advance_polynomials(w[0], w[1], w[2], w[3], w[4], w[5], h)
 
 
-@compiled()
+@inner()
 def force_and_velocity(velocity, force, slip, tau, h, per_dx2, leaf, damping):
     """First stage: the force, damping included."""
     for i in range(force.shape[0]):
@@ -51,7 +51,7 @@ def force_and_velocity(velocity, force, slip, tau, h, per_dx2, leaf, damping):
         )
 
 
-@compiled()
+@inner()
 def kick_and_drift(slip, velocity, force, h):
     """Second stage: velocity, then slip."""
     for i in range(slip.shape[0]):
@@ -59,7 +59,7 @@ def kick_and_drift(slip, velocity, force, h):
         slip[i] += h * velocity[i]
 
 
-@compiled(entry=True)
+@entry
 def two_stage_steps(slip, velocity, force, tau, steps, h, per_dx2, leaf, damping):
     """Symplectic Euler in two branch-free passes: the least that any scheme does to a block."""
     n = tau.shape[0]

@@ -10,18 +10,18 @@ import tolerances as tol
 from reference.from_python import from_python
 
 from slippulse.model.scene import ORDERS
-from slippulse.solver import events, stencils
+from slippulse.solver import arrays, events, stencils
 
 
 @pytest.mark.parametrize("order", ORDERS)
 def test_a_difference_some_time_later(order):
     """Every derivative of a polynomial a time later, against numpy."""
     top, s = order + 1, -0.3
-    difference = np.random.default_rng(order).standard_normal((top + 1, events.COLUMNS))
-    values = np.zeros(events.COLUMNS)
+    difference = np.random.default_rng(order).standard_normal((top + 1, arrays.COLUMNS))
+    values = np.zeros(arrays.COLUMNS)
     for lowest in range(top + 1):
         from_python(events.evaluate)(values, difference, lowest, top, s)
-        for p in range(events.COLUMNS - 1):
+        for p in range(arrays.COLUMNS - 1):
             row = np.polynomial.Polynomial([difference[k, p] / math.factorial(k) for k in range(top + 1)])
             expected = row.deriv(lowest)(s) if lowest else row(s)
             assert values[p] == pytest.approx(expected, rel=tol.STENCIL, abs=tol.STENCIL)
@@ -74,18 +74,24 @@ class Event:
         return np.tensordot(powers, w[derivative:], 1)
 
     def happen(self):
-        """Take the event. Returns the first block that changed and the one after the last, and the kink."""
-        runs = np.flatnonzero(np.diff(np.concatenate([[0.0], self.after, [0.0]]))).reshape(-1, 2)
-        starts, ends = np.zeros((2, self.size), dtype=np.int64)
-        starts[: len(runs)], ends[: len(runs)] = runs.T
+        """Take the event. Returns the first block that changed and the one after the last, ..., and the kink."""
+        found = np.flatnonzero(np.diff(np.concatenate([[0.0], self.after, [0.0]]))).reshape(-1, 2)
+        segments = arrays.make_segments(self.size)
+        n = segments.count.n = len(found)
+        segments.starts[:n], segments.ends[:n] = found.T
         strain = np.append(np.diff(self.slip) / self.dx, 0.0)
-        top, scratch = self.top, np.zeros((2, self.top + 1))
-        return from_python(events.change_course)(
-            self.w, self.offset, strain, self.tau, self.velocity, starts, ends, len(runs), self.block, self.stuck,
-            self.now, self.h, np.full(self.size, np.inf), np.zeros(self.size, dtype=np.int64), np.zeros(self.size), 0,
-            np.zeros((top + 1, events.COLUMNS)), np.zeros(top + 3), np.zeros(events.COLUMNS), scratch[0], scratch[1],
-            False, True, self.dx, self.leaf, self.beta, top,
-        )  # fmt: skip
+        finite, *rest = from_python(events.change_course)(
+            arrays.make_medium(self.dx, self.leaf, self.beta, False, True),
+            arrays.Motion(self.w, self.offset, self.velocity, strain, self.tau),
+            segments,
+            arrays.make_forecast(self.size, self.top - 1),
+            arrays.make_scratch(self.size, self.top - 1).difference,
+            arrays.Event(self.block, self.now, self.stuck),
+            self.h,
+            self.top,
+        )
+        assert finite
+        return rest
 
     def difference(self):
         """Derivatives at the event of what it changes, over the whole lattice, from the polynomials before it."""
@@ -116,7 +122,7 @@ def test_an_event_changes_what_the_whole_lattice_would_change(order, stuck, beta
     """What spreads from an event over the whole lattice, within reach and beyond it."""
     event = Event(order, stuck, beta, 25 if stuck else 40, 20, 40)
     expected = event.difference()
-    _, first, last, *_ = event.happen()
+    first, last, *_ = event.happen()
     change = event.w - event.before
     change[0] = event.offset
     reach = order - 1 if beta else (order - 1) // 2

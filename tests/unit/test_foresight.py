@@ -9,22 +9,36 @@ import pytest
 import tolerances as tol
 from reference.from_python import from_python
 
-from slippulse.solver import foresight, stencils
+from slippulse.solver import arrays, foresight, polynomials, stencils
+
+
+def blocks_at(w: np.ndarray) -> arrays.Motion:
+    """Blocks with these derivatives of slip, nothing else."""
+    motion = arrays.make_motion(*w.shape)
+    motion.w[:] = w
+    return motion
+
+
+def found_sticks(w: np.ndarray, last: int, suspects: int, h: float, now: float = 0.0):
+    """Blocks 1..last-1 whose velocity passes 0 between ``now`` and h, and when; None if one is not finite."""
+    motion, forecast = blocks_at(w), arrays.make_forecast(w.shape[1], w.shape[0] - 2)
+    from_python(stencils.velocity_after)(motion.velocity, motion.w, 1, last, h, w.shape[0] - 2)
+    finite = from_python(foresight.find_sticks)(motion, forecast, 1, last, suspects, now, h, w.shape[0] - 1)
+    n = forecast.sticks.n
+    return (forecast.stick_block[:n], forecast.stick_time[:n]) if finite else None
 
 
 def stopping_time(velocity_coefficients: np.ndarray, h: float, now: float = 0.0) -> tuple[int, float]:
-    """What `find_sticks` says of one block whose velocity is this polynomial: how many sticks, and when."""
+    """How many sticks (-1: not finite) `find_sticks` says of one block whose velocity is this polynomial, and when."""
     top = velocity_coefficients.size
     w = np.zeros((top + 1, 3))
     w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(velocity_coefficients)]
-    velocity = np.zeros(3)
-    from_python(stencils.velocity_after)(velocity, w, 1, 2, h, top - 1)
-    blocks, times, scratch = np.zeros(3, dtype=np.int64), np.zeros(3), np.zeros((2, top + 1))
-    number = from_python(foresight.find_sticks)(
-        w, velocity, 1, 2, 1, blocks, times, 0, scratch[0], scratch[1], now, top, h
-    )
-    assert number != 1 or blocks[0] == 1
-    return number, times[0]
+    found = found_sticks(w, 2, 1, h, now)
+    if found is None:
+        return -1, math.nan
+    blocks, times = found
+    assert list(blocks) in ([], [1])
+    return len(blocks), times[0] if len(times) else math.nan
 
 
 def test_find_sticks_finds_the_zero_of_a_velocity():
@@ -48,23 +62,11 @@ def test_find_sticks_skips_the_zero_at_the_start_of_a_block_just_released(releas
 
 def test_find_sticks_of_many_stops_at_the_last_that_may():
     """Of four blocks that all stop it looks at no more than it is told there are."""
-    w, velocity = np.zeros((6, 6)), np.zeros(6)
+    w = np.zeros((6, 6))
     w[1], w[2] = 1.0, -2.0
-    from_python(stencils.velocity_after)(velocity, w, 1, 5, 1.0, 4)
-    blocks, times, scratch = np.zeros(6, dtype=np.int64), np.zeros(6), np.zeros((2, 6))
-    assert (
-        from_python(foresight.find_sticks)(
-            w, velocity, 1, 5, 4, blocks, times, 0, scratch[0], scratch[1], 0.0, 5, 1.0
-        )
-        == 4
-    )
-    assert list(blocks[:4]) == [1, 2, 3, 4] and times[:4] == pytest.approx(0.5, abs=tol.ROOT)
-    assert (
-        from_python(foresight.find_sticks)(
-            w, velocity, 1, 5, 2, blocks, times, 0, scratch[0], scratch[1], 0.0, 5, 1.0
-        )
-        == 2
-    )
+    blocks, times = found_sticks(w, 5, 4, 1.0)
+    assert list(blocks) == [1, 2, 3, 4] and times == pytest.approx(0.5, abs=tol.ROOT)
+    assert list(found_sticks(w, 5, 2, 1.0)[0]) == [1, 2]
 
 
 def test_find_sticks_reports_a_velocity_that_is_not_finite():
@@ -79,9 +81,9 @@ def test_find_sticks_places_a_stick_at_the_end_of_the_step_there():
         coefficients = np.array(
             [random.uniform(0.1, 1.0), random.uniform(-3.0, -1.0), *random.uniform(-1, 1, 3)]
         )
-        if from_python(stencils.polynomial)(coefficients, 4, 1.0) >= 0.0:
+        if from_python(polynomials.polynomial)(coefficients, 4, 1.0) >= 0.0:
             continue
-        root = from_python(stencils.crossing)(coefficients, 4, 0.0, 1.0)
+        root = from_python(polynomials.crossing)(coefficients, 4, 0.0, 1.0)
         for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
             number, first = stopping_time(coefficients, h)
             if number:
@@ -111,11 +113,10 @@ def stressed(height: float, speed: float, slowing: float, h: float, now: float =
     """When a stuck block is released whose neighbour moves with ``speed`` and ``slowing``."""
     w = np.zeros((6, 5))
     w[1, 1], w[2, 1] = speed, -slowing
-    tau = np.array([0.0, 0.0, height, 0.0, 0.0])
-    scratch, zeros = np.zeros((2, 6)), np.zeros(5)
-    when, stress = from_python(foresight.foresee_release)(
-        scratch[0], scratch[1], w, zeros, zeros, tau, 2, now, h, 1.0, 0.0, 0.0, True, 5
-    )
+    motion, forecast = blocks_at(w), arrays.make_forecast(5, 4)
+    motion.tau[2] = height
+    medium = arrays.make_medium(1.0, 0.0, 0.0, False, True)
+    when, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
     assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)
     return when
 

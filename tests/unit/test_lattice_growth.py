@@ -17,9 +17,10 @@ def test_rows_begin_at_different_places_of_their_pages(profile):
     """In a page of 4096 bytes the beginnings of any two are three lines of the cache apart, or more."""
     lattice = Lattice(Scene("displacement", profile, 1.0, 0.1, gamma=0.5, order=8), None, 0.0)
     for _ in range(6):
-        size = lattice.w.shape[1]
-        places = np.sort(np.arange(10) * lattice.w.strides[0] % 4096)
+        size = lattice.size
+        rows = [*lattice.motion.w, *lattice.motion[1:]]
+        places = np.sort([row.ctypes.data % 4096 for row in rows])
         assert np.diff(places, append=places[0] + 4096).min() >= 3 * 64
-        assert np.abs(lattice.tau[-lattice.first_block] - 1.0) < 1e-12
+        assert np.abs(lattice.motion.tau[-lattice.first_block] - 1.0) < 1e-12
         lattice._grow()
-        assert 2 * size <= lattice.w.shape[1] < 3 * size + 512
+        assert 2 * size <= lattice.size < 3 * size + 512

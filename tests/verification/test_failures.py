@@ -57,11 +57,11 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     lattice = Lattice(scene, None, scene.beta)
     lattice.run(None)
     object.__setattr__(scene, "duration", 8.0)
-    moving = np.flatnonzero(lattice.w[1] > 0.0)
+    moving = np.flatnonzero(lattice.motion.w[1] > 0.0)
     block = moving[int(place * moving.size)]
-    lattice.w[row, block] = value
+    lattice.motion.w[row, block] = value
     if row == 0 and scheme == "localised":
-        lattice.strain[block] = value
+        lattice.motion.strain[block] = value
     with pytest.raises(sp.UnstableRun, match="not finite"):
         lattice.run(at_most(20))
 

@@ -13,7 +13,8 @@ from ..data.versions import versions
 from ..model.checks import short_repr
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..solver.lattice import LatticeRun, UnstableRun, run_scene
+from ..solver.lattice import UnstableRun, run_scene
+from ..solver.result import LatticeRun
 from .continuum import ContinuumRun, solve_scene
 from .progress import bar
 
@@ -120,7 +121,7 @@ def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:
     sliding = np.isfinite(run.release_time) & ~np.isfinite(run.stick_time)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], sliding, [False]]).astype(np.int8)))
     lengths = edges[1::2] - edges[0::2]
-    # The pulses are the outermost sliding runs; pieces left over behind them are not.
+    # The pulses are the outermost segments; pieces left over behind them are not.
     return int(min(lengths[0], lengths[-1])) if lengths.size else 0
 
 

@@ -7,113 +7,123 @@ from __future__ import annotations
 
 import math
 
-from .jit import compiled
-from .taylor import (
-    ALL_STUCK,
-    BLOCK_UPDATES,
-    BLOW_UP,
-    CONTINUE,
-    DONE,
-    FIRST_STICK,
-    FIRST_STUCK,
-    GROW,
-    MIN_STUCK_STRESS,
-    MIN_VELOCITY,
-    NEXT_SAMPLE,
-    RE_RELEASES,
-    RELEASES,
-    STEPS,
-    STICK_LOSS,
-    STICKS,
-    TIME,
-    UNSTABLE,
-    VISCOUS_LOSS,
-)
+from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, UNSTABLE
+from .jit import entry, inner
+from .notes import note_release, note_stick
+from .taylor import BLOW_UP
 
 
-@compiled(entry=True)
-def advance_fixed(
-    slip, velocity, force, sliding, tau,
-    release_time, stick_time, counts, totals,
-    sample_times, sample_blocks, sample_slip, sample_velocity,
-    mirror, total, dx, leaf, beta, step, end_time, largest_force, call_steps,
-):  # fmt: skip
-    """Advance by at most ``call_steps`` steps of ``step``, to ``end_time`` at most. Returns why it stopped."""
-    size = tau.shape[0]
-    per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
-    for _ in range(call_steps):
-        t = totals[TIME]
-        if t >= end_time:
+@inner()
+def forces(medium, motion, sliding, history, t):
+    """Fill w[2] with the force on each block, and release those at the threshold. Returns how many slide."""
+    slip, velocity, force, tau = motion.w[0], motion.w[1], motion.w[2], motion.tau
+    per_dx2, damping, tally = medium.per_dx2, medium.damping, history.tally
+    moving = 0
+    for i in range(1, tau.shape[0] - 1):
+        stress = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - medium.leaf * slip[i] + tau[i]
+        drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
+        force[i] = stress + drag
+        if not sliding[i]:
+            if not medium.total:
+                drag = 0.0
+            tally.min_stuck_stress = min(tally.min_stuck_stress, stress + drag)
+            if stress + drag >= 1.0:
+                sliding[i] = True
+                note_release(history, i, t)
+        moving += sliding[i]
+    return moving
+
+
+@inner()
+def move(medium, motion, sliding, history, dt, end):
+    """Advance velocity, then slip, and hold what would move backwards. Returns the largest velocity, or inf."""
+    slip, velocity, force = motion.w[0], motion.w[1], motion.w[2]
+    tally = history.tally
+    fastest = 0.0
+    for i in range(1, slip.shape[0] - 1):
+        if not sliding[i]:
+            continue
+        before = velocity[i]
+        after = before + dt * force[i]
+        if after <= 0.0:
+            weight = 2.0 if medium.mirror and i > 1 else 1.0
+            tally.stick_loss += weight * 0.5 * before * before * medium.dx
+            tally.min_velocity = min(tally.min_velocity, after)
+            after = 0.0
+            sliding[i] = False
+            note_stick(history, i, end)
+        velocity[i] = after
+        slip[i] += dt * after
+        if not after < math.inf:
+            return math.inf
+        fastest = max(fastest, after)
+    return fastest
+
+
+@inner()
+def viscous_loss(medium, velocity, dt):
+    """Viscous loss of a step, from the velocities at its end."""
+    square = 0.0
+    for i in range(1 if medium.mirror else 0, velocity.shape[0] - 1):
+        dv = velocity[i + 1] - velocity[i]
+        square += dv * dv
+    return (2.0 if medium.mirror else 1.0) * dt * medium.beta / medium.dx * square
+
+
+@inner()
+def take_samples(recorder, motion, tally, end):
+    """Take the samples that are due by ``end``, on a straight line back from there."""
+    times, blocks = recorder.times, recorder.blocks
+    while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
+        n = tally.samples_taken
+        back = end - times[n]
+        for p in range(blocks.shape[0]):
+            i = blocks[p]
+            if i >= 0:
+                recorder.slip[n, p] = motion.w[0, i] - back * motion.w[1, i]
+                recorder.velocity[n, p] = motion.w[1, i]
+        tally.samples_taken += 1
+
+
+@entry
+def advance_fixed(medium, motion, sliding, history, recorder, limits):
+    """Advance by at most ``limits.steps`` steps, to ``limits.end_time`` at most.
+
+    Parameters
+    ----------
+    medium, motion, history, recorder, limits : of one run, see `arrays`; w has three rows: slip, velocity, force
+    sliding : whether each block slides, shape (N,)
+
+    Returns
+    -------
+    why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK
+    """
+    size, tally = motion.tau.shape[0], history.tally
+    slip, velocity = motion.w[0], motion.w[1]
+    for _ in range(limits.steps):
+        t = tally.time
+        if t >= limits.end_time:
             return DONE
-        if sliding[size - 3] or (sliding[2] and not mirror):
+        if sliding[size - 3] or (sliding[2] and not medium.mirror):
             return GROW
-        dt = min(step, end_time - t)
-        end = end_time if dt == end_time - t else t + dt
-        if mirror:
+        dt = min(limits.largest_step, limits.end_time - t)
+        end = limits.end_time if dt == limits.end_time - t else t + dt
+        if medium.mirror:
             slip[0], velocity[0] = slip[2], velocity[2]
-        moving = 0
-        for i in range(1, size - 1):
-            stress = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - leaf * slip[i] + tau[i]
-            drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
-            force[i] = stress + drag
-            if not sliding[i]:
-                if not total:
-                    drag = 0.0
-                totals[MIN_STUCK_STRESS] = min(totals[MIN_STUCK_STRESS], stress + drag)
-                if stress + drag >= 1.0:
-                    sliding[i] = True
-                    counts[RELEASES] += 1
-                    if math.isnan(release_time[i]):
-                        release_time[i] = t
-                    else:
-                        counts[RE_RELEASES] += 1
-                        stick_time[i] = math.nan
-            moving += sliding[i]
+        moving = forces(medium, motion, sliding, history, t)
         if moving == 0:
             return ALL_STUCK
-        fastest = 0.0
-        for i in range(1, size - 1):
-            if not sliding[i]:
-                continue
-            before = velocity[i]
-            after = before + dt * force[i]
-            if after <= 0.0:
-                weight = 2.0 if mirror and i > 1 else 1.0
-                totals[STICK_LOSS] += weight * 0.5 * before * before * dx
-                totals[MIN_VELOCITY] = min(totals[MIN_VELOCITY], after)
-                after = 0.0
-                sliding[i] = False
-                stick_time[i] = end
-                if counts[STICKS] == 0:
-                    totals[FIRST_STICK] = end
-                    counts[FIRST_STUCK] = i
-                counts[STICKS] += 1
-            velocity[i] = after
-            slip[i] += dt * after
-            if not after < math.inf:
-                return UNSTABLE
-            fastest = max(fastest, after)
-        if mirror:
-            velocity[0] = velocity[2]
-        if beta > 0.0:
-            first = 1 if mirror else 0
-            lost = 0.0
-            for i in range(first, size - 1):
-                now = velocity[i + 1] - velocity[i]
-                lost += now * now
-            totals[VISCOUS_LOSS] += (2.0 if mirror else 1.0) * dt * beta / dx * lost
-        counts[STEPS] += 1
-        counts[BLOCK_UPDATES] += moving
-        totals[TIME] = end
-        if not fastest <= BLOW_UP * (1.0 + largest_force * end):
+        fastest = move(medium, motion, sliding, history, dt, end)
+        if fastest == math.inf:
             return UNSTABLE
-        while counts[NEXT_SAMPLE] < sample_times.shape[0] and sample_times[counts[NEXT_SAMPLE]] <= end:
-            s = counts[NEXT_SAMPLE]
-            back = end - sample_times[s]
-            for p in range(sample_blocks.shape[0]):
-                i = sample_blocks[p]
-                if i >= 0:
-                    sample_slip[s, p] = slip[i] - back * velocity[i]
-                    sample_velocity[s, p] = velocity[i]
-            counts[NEXT_SAMPLE] += 1
+        if medium.mirror:
+            velocity[0] = velocity[2]
+        if medium.beta > 0.0:
+            tally.viscous_loss += viscous_loss(medium, velocity, dt)
+        tally.steps += 1
+        tally.block_updates += moving
+        tally.time = end
+        if not fastest <= BLOW_UP * (1.0 + limits.largest_force * end):
+            return UNSTABLE
+        take_samples(recorder, motion, tally, end)
     return CONTINUE

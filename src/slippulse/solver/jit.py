@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 
 import numba
-from numba.core.registry import CPUDispatcher
+from numba.extending import register_jitable
 
 SOURCES = Path(__file__).resolve().parent
 
@@ -59,41 +59,18 @@ if not os.environ.get("NUMBA_CACHE_DIR"):
 
 # Sums may be reordered so that they vectorise; NaN keeps its meaning, since it is how a failed run is noticed.
 REORDER = {"reassoc", "contract", "nsz"}
+FLAGS = {"error_model": "numpy", "_nrt": False, "fastmath": {"contract"}}
+
+# A function that Python calls. Only these are cached: their machine code holds all that they call.
+entry = numba.njit(cache=True, nogil=True, **FLAGS)
 
 
-def compiled(*, entry: bool = False, reorder: bool = False, inline: bool = False):
-    """Decorator: machine code without the interpreter's lock, cached.
+def inner(*, inline: bool = False, reorder: bool = False):
+    """Decorator of a function that kernels call. Called from Python, it is a function of Python.
 
-    ``entry`` is for what Python calls: any other kernel has no way in from there, which takes a sixth of all compiling,
-    and says so. ``reorder`` lets sums vectorise. ``inline`` is for what an event calls, from one place or few: handing
-    on a dozen arrays takes as long as using them. Arrays are not counted as references, which was half of the time of a
-    narrow pulse (an atomic operation for each of them in each call): they belong to whoever calls from Python, and no
-    kernel makes or returns one.
+    Parameters
+    ----------
+    inline : put its machine code into that of its caller, rather than hand on groups of arrays at each call
+    reorder : let its sums vectorise
     """
-    translate = numba.njit(
-        cache=True,
-        nogil=True,
-        error_model="numpy",
-        _nrt=False,
-        forceinline=inline,
-        fastmath=REORDER if reorder else {"contract"},
-        no_cfunc_wrapper=True,
-        no_cpython_wrapper=not entry,
-    )
-    return translate if entry else lambda function: _inner(translate(function))
-
-
-class InnerKernel(CPUDispatcher):
-    """A kernel for kernels: numba itself would jump to an address that is not there."""
-
-    def __call__(self, *arguments):
-        raise TypeError(
-            f"{self.__name__}: called from Python; allowed: from a kernel, or with entry=True where it is compiled"
-        )
-
-
-def _inner(kernel):
-    # Without the compiler (NUMBA_DISABLE_JIT) it is a function of Python.
-    if isinstance(kernel, CPUDispatcher):
-        kernel.__class__ = InnerKernel
-    return kernel
+    return register_jitable(forceinline=inline, **FLAGS | ({"fastmath": REORDER} if reorder else {}))

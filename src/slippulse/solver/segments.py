@@ -1,69 +1,91 @@
-"""The sliding part of the lattice as a sorted list of contiguous runs, [start, end) each."""
+"""The sliding blocks as a sorted list of segments: contiguous stretches, [start, end) each."""
 
 from __future__ import annotations
 
-from .jit import compiled
+from .jit import inner
 
 
-@compiled(inline=True)
-def release_block(starts, ends, n, block):
-    """Add a stuck block to the runs: extend, join or begin one. Returns the new number of runs."""
+@inner()
+def release_block(segments, block):
+    """Add a stuck block to the segments: extend, join or begin one."""
+    starts, ends, n = segments.starts, segments.ends, segments.count.n
     r = 0
     while r < n and ends[r] < block:
         r += 1
-    joins_left = r < n and ends[r] == block
-    if joins_left:
+    if r < n and ends[r] == block:
         ends[r] = block + 1
         if r + 1 < n and starts[r + 1] == block + 1:
             ends[r] = ends[r + 1]
-            for q in range(r + 1, n - 1):
-                starts[q] = starts[q + 1]
-                ends[q] = ends[q + 1]
-            return n - 1
-        return n
-    if r < n and starts[r] == block + 1:
+            remove(segments, r + 1)
+    elif r < n and starts[r] == block + 1:
         starts[r] = block
-        return n
-    for q in range(n, r, -1):
-        starts[q] = starts[q - 1]
-        ends[q] = ends[q - 1]
-    starts[r] = block
-    ends[r] = block + 1
-    return n + 1
+    else:
+        insert(segments, r, block, block + 1)
 
 
-@compiled(inline=True)
-def stick_block(starts, ends, n, block):
-    """Take a sliding block out of the runs: shorten, split or end one. Returns the new number of runs."""
+@inner()
+def stick_block(segments, block):
+    """Take a sliding block out of the segments: shorten, split or end one."""
+    starts, ends = segments.starts, segments.ends
     r = 0
     while ends[r] <= block:
         r += 1
     at_start = starts[r] == block
     at_end = ends[r] == block + 1
     if at_start and at_end:
-        for q in range(r, n - 1):
-            starts[q] = starts[q + 1]
-            ends[q] = ends[q + 1]
-        return n - 1
-    if at_start:
+        remove(segments, r)
+    elif at_start:
         starts[r] = block + 1
-        return n
-    if at_end:
+    elif at_end:
         ends[r] = block
-        return n
-    for q in range(n, r + 1, -1):
-        starts[q] = starts[q - 1]
-        ends[q] = ends[q - 1]
-    starts[r + 1] = block + 1
-    ends[r + 1] = ends[r]
-    ends[r] = block
-    return n + 1
+    else:
+        insert(segments, r + 1, block + 1, ends[r])
+        ends[r] = block
 
 
-@compiled(inline=True)
-def holds(starts, ends, n, block):
-    """Whether a block is in one of the runs."""
+@inner()
+def insert(segments, r, start, end):
+    """Make [start, end) segment number r."""
+    starts, ends = segments.starts, segments.ends
+    for q in range(segments.count.n, r, -1):
+        starts[q], ends[q] = starts[q - 1], ends[q - 1]
+    starts[r], ends[r] = start, end
+    segments.count.n += 1
+
+
+@inner()
+def remove(segments, r):
+    """Take segment number r out of the list."""
+    starts, ends = segments.starts, segments.ends
+    for q in range(r, segments.count.n - 1):
+        starts[q], ends[q] = starts[q + 1], ends[q + 1]
+    segments.count.n -= 1
+
+
+@inner()
+def copy_segments(to, segments):
+    """Make one list equal to another."""
+    for r in range(segments.count.n):
+        to.starts[r], to.ends[r] = segments.starts[r], segments.ends[r]
+    to.count.n = segments.count.n
+
+
+@inner(inline=True)
+def holds(segments, block):
+    """Whether a block is in one of the segments."""
     r = 0
-    while r < n and ends[r] <= block:
+    while r < segments.count.n and segments.ends[r] <= block:
         r += 1
-    return r < n and starts[r] <= block
+    return r < segments.count.n and segments.starts[r] <= block
+
+
+@inner(inline=True)
+def sliding_beside(segments, block):
+    """Number of blocks that slide without a gap to the left of a block, and to its right."""
+    left, right = 0, 0
+    for r in range(segments.count.n):
+        if segments.starts[r] < block <= segments.ends[r]:
+            left = block - segments.starts[r]
+        if segments.starts[r] <= block + 1 < segments.ends[r]:
+            right = segments.ends[r] - block - 1
+    return left, right

@@ -9,28 +9,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from .jit import compiled
+from .jit import inner
 
 ONE = np.uint64(1)
-# How far an event reaches on either side at order 8, the highest there is.
-REACH = 7
-# 1/j, for Taylor polynomials in derivatives.
-SHARE = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
 
 
-@compiled()
+@inner(inline=True)
 def blocks(first, last):
     """The blocks first..last-1, as unsigned integers."""
     return range(np.uint64(first), np.uint64(max(first, last)))
 
 
-@compiled()
+@inner(inline=True)
 def second_difference(w, k, i):
     """Second difference of row k around block i, as the difference of two differences."""
     return (w[k, i + ONE] - w[k, i]) - (w[k, i] - w[k, i - ONE])
 
 
-@compiled()
+@inner(inline=True)
 def elastic(w, strain, tau, i, per_dx, leaf):
     """Stress of block i less kinetic friction, without damping.
 
@@ -40,7 +36,7 @@ def elastic(w, strain, tau, i, per_dx, leaf):
     return per_dx * (strain[i] - strain[i - ONE]) - leaf * w[0, i] + tau[i]
 
 
-@compiled()
+@inner(inline=True)
 def first_acceleration(w, strain, tau, first, last, per_dx, leaf, damping):
     """Acceleration of each block: strain difference, leaf spring, pre-stress, damping."""
     if damping == 0.0:
@@ -51,7 +47,7 @@ def first_acceleration(w, strain, tau, first, last, per_dx, leaf, damping):
             w[2, i] = elastic(w, strain, tau, i, per_dx, leaf) + damping * second_difference(w, 1, i)
 
 
-@compiled()
+@inner(inline=True)
 def derivative(w, k, i, per_dx2, leaf, damping):
     """Time derivative k of the slip of block i from the two before it."""
     return (
@@ -61,7 +57,7 @@ def derivative(w, k, i, per_dx2, leaf, damping):
     )
 
 
-@compiled()
+@inner(inline=True)
 def next_derivative(w, k, first, last, per_dx2, leaf, damping):
     """Time derivative k of slip from the two before it."""
     if damping == 0.0:
@@ -72,14 +68,14 @@ def next_derivative(w, k, first, last, per_dx2, leaf, damping):
             w[k, i] = derivative(w, k, i, per_dx2, leaf, damping)
 
 
-@compiled()
+@inner(inline=True)
 def nest(inner, w, k, share, lower_share, first, last):
     """Two levels of a Taylor polynomial from the inside out, in place: w[k-1] + lower_share (w[k] + share inner)."""
     for i in blocks(first, last):
         inner[i] = w[k - 1, i] + lower_share * (w[k, i] + share * inner[i])
 
 
-@compiled()
+@inner(inline=True)
 def may_stop(after, now, tangent):
     """Whether a velocity is below 0 after a step, not a number, or slowing down so as to pass 0 within it.
 
@@ -88,7 +84,7 @@ def may_stop(after, now, tangent):
     return (not (after >= 0.0)) | (now + tangent < 0.0)
 
 
-@compiled()
+@inner(inline=True)
 def velocity_after(out, w, first, last, step, order):
     """Velocity of blocks first..last-1 a time ``step`` later, and how many of them may stop on the way."""
     share = step / order
@@ -113,7 +109,7 @@ def velocity_after(out, w, first, last, step, order):
     return count
 
 
-@compiled()
+@inner(inline=True)
 def advance_slip(w, velocity, first, last, step, order):
     """Advance slip by its Taylor polynomial and take over the new velocity; the slip increment is left in w[2]."""
     inner = w[order + 1]
@@ -138,14 +134,14 @@ def advance_slip(w, velocity, first, last, step, order):
             w[1, i] = velocity[i]
 
 
-@compiled()
+@inner(inline=True)
 def advance_strain(strain, w, first, last, per_dx):
     """Strain between each block and the next from the slip increments in w[2]."""
     for i in blocks(first, last):
         strain[i] += per_dx * (w[2, i + ONE] - w[2, i])
 
 
-@compiled(reorder=True)
+@inner(reorder=True)
 def stretching(w, first, last):
     """Sums of (dv)^2 and dv da between each block and the next: viscous dissipation and half its slope."""
     square, product = 0.0, 0.0
@@ -154,52 +150,3 @@ def stretching(w, first, last):
         square += dv * dv
         product += dv * (w[2, i + ONE] - w[2, i])
     return square, product
-
-
-@compiled()
-def polynomial(coefficients, degree, h):
-    """Value at h of a polynomial, lowest power first."""
-    value = coefficients[degree]
-    for k in range(degree - 1, -1, -1):
-        value = coefficients[k] + h * value
-    return value
-
-
-@compiled()
-def slope(coefficients, degree, h):
-    """Slope at h of a polynomial, lowest power first."""
-    value = degree * coefficients[degree]
-    for k in range(degree - 1, 0, -1):
-        value = k * coefficients[k] + h * value
-    return value
-
-
-@compiled()
-def crossing(coefficients, degree, lower, upper):
-    """Root of a polynomial that changes sign between two times: Newton steps from the secant, kept by bisection.
-
-    The sign at the earlier one tells the direction: at the later it may be lost to rounding, and then it is the root.
-    """
-    start = polynomial(coefficients, degree, lower)
-    end = polynomial(coefficients, degree, upper)
-    rising = start < 0.0
-    root = 0.5 * (lower + upper)
-    if (end > 0.0) == rising and end != start:
-        root = lower + (upper - lower) * start / (start - end)
-    # The last of Newton's steps is as good as the square of the one before.
-    close = 1e-9 * upper
-    for _ in range(100):
-        value = coefficients[degree]
-        change = 0.0
-        for k in range(degree - 1, -1, -1):
-            change = value + root * change
-            value = coefficients[k] + root * value
-        if (value > 0.0) == rising:
-            upper = root
-        else:
-            lower = root
-        candidate = root - value / change if change != 0.0 else upper
-        if abs(candidate - root) <= close or upper - lower <= close:
-            return min(max(candidate, lower), upper)
-        root = candidate if lower < candidate < upper else 0.5 * (lower + upper)
-    return root

@@ -98,8 +98,5 @@ def bytes_a_block(settings: Mapping, order: int) -> float:
     object.__setattr__(scene, "order", order)
     lattice = Lattice(scene, None, scene.beta)
     lattice.run(None)
-    blocks = lattice.w.shape[1]
-    arrays = [
-        value for value in vars(lattice).values() if isinstance(value, np.ndarray) and value.size >= blocks
-    ]
-    return sum(array.nbytes for array in arrays) / blocks
+    blocks = lattice.size
+    return sum(array.nbytes for array in lattice.arrays() if array.size >= blocks) / blocks

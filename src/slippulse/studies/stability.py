@@ -11,7 +11,6 @@ from ..model.scene import ORDERS, Scene
 from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import UnstableRun
 from ..solver.lattice import Lattice
-from ..solver.taylor import STICKS
 
 # Keys of the configuration that it reads besides studies.stability.
 SETTINGS = ("presets",)
@@ -88,14 +87,14 @@ def sound(make, step: float, scheme: str, order: int, ratio: float, blocks: int,
     lattice.call_steps = LOOK_AFTER
 
     def stop_at_the_first_stick(share: float) -> None:
-        if lattice.counts[STICKS] > 0:
+        if lattice.tally.sticks > 0:
             raise UnstableRun
 
     try:
         lattice.run(stop_at_the_first_stick)
     except UnstableRun:
         return False
-    return bool(lattice.counts[STICKS] == 0)
+    return bool(lattice.tally.sticks == 0)
 
 
 def chain(duration: float, step: float, scheme: str, order: int, ratio: float, blocks: int) -> Scene:

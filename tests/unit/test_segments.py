@@ -1,4 +1,4 @@
-"""The list of sliding runs against a mask of blocks."""
+"""The list of segments against a mask of sliding blocks."""
 
 from __future__ import annotations
 
@@ -6,35 +6,37 @@ import numpy as np
 import pytest
 from reference.from_python import from_python
 
-from slippulse.solver.segments import release_block, stick_block
+from slippulse.solver.arrays import make_segments
+from slippulse.solver.segments import holds, release_block, sliding_beside, stick_block
 
 BLOCKS = 24
 
 
-def runs_of(mask: np.ndarray) -> list[tuple[int, int]]:
+def segments_of(mask: np.ndarray) -> list[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
     return list(zip(edges[0::2].tolist(), edges[1::2].tolist(), strict=True))
 
 
-class RunList:
-    """The list as the lattice keeps it: two arrays and a number."""
+class SegmentList:
+    """The list as the lattice keeps it."""
 
-    def __init__(self, runs: list[tuple[int, int]]) -> None:
-        self.starts, self.ends = np.zeros(BLOCKS, dtype=np.int64), np.zeros(BLOCKS, dtype=np.int64)
-        self.n = len(runs)
-        for r, (start, end) in enumerate(runs):
-            self.starts[r], self.ends[r] = start, end
+    def __init__(self, segments: list[tuple[int, int]]) -> None:
+        self.kept = make_segments(BLOCKS)
+        self.kept.count.n = len(segments)
+        for r, (start, end) in enumerate(segments):
+            self.kept.starts[r], self.kept.ends[r] = start, end
 
     def release(self, block: int) -> list[tuple[int, int]]:
-        self.n = from_python(release_block)(self.starts, self.ends, self.n, block)
-        return self.runs()
+        from_python(release_block)(self.kept, block)
+        return self.segments()
 
     def stick(self, block: int) -> list[tuple[int, int]]:
-        self.n = from_python(stick_block)(self.starts, self.ends, self.n, block)
-        return self.runs()
+        from_python(stick_block)(self.kept, block)
+        return self.segments()
 
-    def runs(self) -> list[tuple[int, int]]:
-        return list(zip(self.starts[: self.n].tolist(), self.ends[: self.n].tolist(), strict=True))
+    def segments(self) -> list[tuple[int, int]]:
+        n = self.kept.count.n
+        return list(zip(self.kept.starts[:n].tolist(), self.kept.ends[:n].tolist(), strict=True))
 
 
 @pytest.mark.parametrize(
@@ -52,7 +54,7 @@ class RunList:
     ids=["first", "extend right", "extend left", "join", "join of three", "before", "after", "between"],
 )
 def test_release(before, block, after):
-    assert RunList(before).release(block) == after
+    assert SegmentList(before).release(block) == after
 
 
 @pytest.mark.parametrize(
@@ -68,16 +70,24 @@ def test_release(before, block, after):
     ids=["last", "end one of three", "shorten left", "shorten right", "split", "split one of three"],
 )
 def test_stick(before, block, after):
-    assert RunList(before).stick(block) == after
+    assert SegmentList(before).stick(block) == after
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_random_sequences_agree_with_a_mask(seed):
     random = np.random.default_rng(seed)
     mask = random.random(BLOCKS) < random.random()
-    runs = RunList(runs_of(mask))
+    segments = SegmentList(segments_of(mask))
     for _ in range(300):
         block = int(random.integers(BLOCKS))
-        changed = runs.stick(block) if mask[block] else runs.release(block)
+        changed = segments.stick(block) if mask[block] else segments.release(block)
         mask[block] = not mask[block]
-        assert changed == runs_of(mask)
+        assert changed == segments_of(mask)
+        inside = int(random.integers(1, BLOCKS - 1))
+        assert from_python(holds)(segments.kept, inside) == mask[inside]
+        left, right = from_python(sliding_beside)(segments.kept, inside)
+        assert mask[inside - left : inside].all() and (left == inside or not mask[inside - left - 1])
+        assert (
+            mask[inside + 1 : inside + 1 + right].all()
+            and not mask[inside + 1 + right : inside + 2 + right].any()
+        )

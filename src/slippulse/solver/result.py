@@ -1,0 +1,144 @@
+"""What a run leaves behind: energies, counters, and the lattice unfolded and trimmed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .arrays import ALL_STUCK, TALLY
+
+if TYPE_CHECKING:
+    from .lattice import Lattice
+
+# Blocks at rest that are kept beyond the outermost released one.
+MARGIN = 16
+
+
+@dataclass
+class LatticeRun:
+    """What a run leaves behind; arrays over the whole lattice, left to right, the mirrored half restored."""
+
+    x: np.ndarray
+    prestress: np.ndarray
+    release_time: np.ndarray
+    stick_time: np.ndarray
+    slip: np.ndarray
+    slip_velocity: np.ndarray
+    slip_acceleration: np.ndarray
+    sample_slip: np.ndarray | None
+    sample_velocity: np.ndarray | None
+    numbers: dict = field(default_factory=dict)
+
+
+def energies(lattice: Lattice, tally: dict) -> dict:
+    """Energy balance per unit depth of the whole lattice, and its residual relative to the largest part."""
+    medium, motion, size = lattice.medium, lattice.motion, lattice.size
+    dx, u, v = medium.dx, motion.w[0], motion.w[1]
+    strain = motion.strain
+    if not lattice.localised:
+        strain = np.append(np.diff(u) / dx, 0.0)
+    weight = np.full(size, 2.0 if medium.mirror else 1.0)
+    bond = weight.copy()
+    if medium.mirror:
+        weight[0], weight[1] = 0.0, 1.0
+        bond[0] = 0.0
+    parts = {
+        "work_of_prestress": float(np.sum(weight * motion.tau * u) * dx),
+        "kinetic_energy": float(0.5 * np.sum(weight * v * v) * dx),
+        "elastic_energy": float(0.5 * np.sum(bond * strain * strain) * dx),
+        "leaf_spring_energy": float(0.5 * medium.leaf * np.sum(weight * u * u) * dx),
+        "viscous_loss": tally["viscous_loss"],
+        "event_loss": tally["stick_loss"],
+    }
+    stored = sum(value for key, value in parts.items() if key != "work_of_prestress")
+    largest = max(abs(value) for value in parts.values())
+    parts["energy_residual"] = abs(parts["work_of_prestress"] - stored) / largest if largest else 0.0
+    return parts
+
+
+def stress(lattice: Lattice) -> np.ndarray:
+    """Stress of every block at the end, damping included where the release rule includes it."""
+    medium, motion = lattice.medium, lattice.motion
+    dx, u, v = medium.dx, motion.w[0], motion.w[1]
+    found = motion.tau - medium.leaf * u
+    if lattice.localised:
+        found[1:-1] += np.diff(motion.strain[:-1]) / dx
+    else:
+        found[1:-1] += np.diff(u, 2) / dx**2
+    if medium.total:
+        found[1:-1] += medium.beta * np.diff(v, 2) / dx**2
+    return found
+
+
+def numbers_of(lattice: Lattice, status: int) -> dict:
+    """Energies, counters and extremes of a run."""
+    tally = dict(zip(TALLY.names, lattice.tally.tolist(), strict=True))
+    stuck_stress = stress(lattice)[1:-1][~lattice.sliding[1:-1]]
+    lowest = float(min(tally["min_stuck_stress"], np.min(stuck_stress, initial=np.inf)))
+    first_stuck = (tally["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
+    return energies(lattice, tally) | {
+        "end_time": tally["time"],
+        "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
+        "steps": tally["steps"],
+        "block_updates": tally["block_updates"],
+        "event_updates": tally["event_updates"],
+        "releases": tally["releases"],
+        "sticks": tally["sticks"],
+        "re_releases": tally["re_releases"],
+        "min_velocity": tally["min_velocity"],
+        "min_stuck_stress": lowest,
+        "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
+        "first_stick_time": tally["first_stick_time"],
+        "first_stick_position": float(first_stuck) if tally["sticks"] else math.nan,
+        "half_lattice_used": int(lattice.mirror),
+    }
+
+
+def take_last_samples(lattice: Lattice) -> None:
+    """Fill the samples that a run that stopped early did not take: all is at rest; NaN beyond the duration."""
+    recorder, w = lattice.recorder, lattice.motion.w
+    inside = recorder.blocks >= 0
+    for n in range(lattice.tally.samples_taken, recorder.times.size):
+        if recorder.times[n] > lattice.scene.duration:
+            recorder.slip[n] = recorder.velocity[n] = np.nan
+        else:
+            recorder.slip[n, inside] = w[0, recorder.blocks[inside]]
+            recorder.velocity[n, inside] = w[1, recorder.blocks[inside]]
+
+
+def kept_blocks(lattice: Lattice) -> np.ndarray:
+    """Mask of the blocks that are kept: those released and a margin; without ghosts."""
+    blocks = np.arange(lattice.size) + lattice.first_block
+    keep = (blocks >= 0) if lattice.mirror else np.ones(blocks.size, dtype=bool)
+    keep[0] = keep[-1] = False
+    released = blocks[np.isfinite(lattice.history.release_time)]
+    if not released.size:
+        return keep & (np.abs(blocks) <= MARGIN)
+    return keep & (blocks >= released.min() - MARGIN) & (blocks <= released.max() + MARGIN)
+
+
+def assemble(lattice: Lattice, status: int) -> LatticeRun:
+    """The result of a run whose kernel has stopped for the reason ``status``."""
+    take_last_samples(lattice)
+    motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
+    keep = kept_blocks(lattice)
+
+    def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
+        kept = values[keep]
+        return np.concatenate([sign * kept[:0:-1], kept]) if lattice.mirror else kept.copy()
+
+    return LatticeRun(
+        x=unfold(np.arange(lattice.size) + lattice.first_block, -1) * lattice.scene.dx,
+        prestress=unfold(motion.tau),
+        release_time=unfold(history.release_time),
+        stick_time=unfold(history.stick_time),
+        slip=unfold(motion.w[0]),
+        slip_velocity=unfold(motion.w[1]),
+        slip_acceleration=unfold(np.where(lattice.sliding, motion.w[2], 0.0)),
+        sample_slip=recorder.slip if lattice.samples else None,
+        sample_velocity=recorder.velocity if lattice.samples else None,
+        numbers=numbers_of(lattice, status),
+    )
