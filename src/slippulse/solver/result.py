@@ -33,7 +33,7 @@ class LatticeRun:
     numbers: dict = field(default_factory=dict)
 
 
-def energies(lattice: Lattice, tally: dict) -> dict:
+def energies(lattice: Lattice, totals: dict) -> dict:
     """Energy balance per unit depth of the whole lattice, and its residual relative to the largest part."""
     medium, motion, size = lattice.medium, lattice.motion, lattice.size
     dx, u, v = medium.dx, motion.w[0], motion.w[1]
@@ -50,8 +50,8 @@ def energies(lattice: Lattice, tally: dict) -> dict:
         "kinetic_energy": float(0.5 * np.sum(weight * v * v) * dx),
         "elastic_energy": float(0.5 * np.sum(bond * strain * strain) * dx),
         "leaf_spring_energy": float(0.5 * medium.leaf * np.sum(weight * u * u) * dx),
-        "viscous_loss": tally["viscous_loss"],
-        "event_loss": tally["stick_loss"],
+        "viscous_loss": totals["viscous_loss"],
+        "event_loss": totals["stick_loss"],
     }
     stored = sum(value for key, value in parts.items() if key != "work_of_prestress")
     largest = max(abs(value) for value in parts.values())
@@ -75,24 +75,24 @@ def stress(lattice: Lattice) -> np.ndarray:
 
 def numbers_of(lattice: Lattice, status: int) -> dict:
     """Energies, counters and extremes of a run."""
-    tally = dict(zip(TALLY.names, lattice.tally.tolist(), strict=True))
+    totals = dict(zip(TALLY.names, lattice.tally.tolist(), strict=True))
     stuck_stress = stress(lattice)[1:-1][~lattice.sliding[1:-1]]
-    lowest = float(min(tally["min_stuck_stress"], np.min(stuck_stress, initial=np.inf)))
-    first_stuck = (tally["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
-    return energies(lattice, tally) | {
-        "end_time": tally["time"],
+    lowest = float(min(totals["min_stuck_stress"], np.min(stuck_stress, initial=np.inf)))
+    first_stuck = (totals["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
+    return energies(lattice, totals) | {
+        "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
-        "steps": tally["steps"],
-        "block_updates": tally["block_updates"],
-        "event_updates": tally["event_updates"],
-        "releases": tally["releases"],
-        "sticks": tally["sticks"],
-        "re_releases": tally["re_releases"],
-        "min_velocity": tally["min_velocity"],
+        "steps": totals["steps"],
+        "block_updates": totals["block_updates"],
+        "event_updates": totals["event_updates"],
+        "releases": totals["releases"],
+        "sticks": totals["sticks"],
+        "re_releases": totals["re_releases"],
+        "min_velocity": totals["min_velocity"],
         "min_stuck_stress": lowest,
         "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
-        "first_stick_time": tally["first_stick_time"],
-        "first_stick_position": float(first_stuck) if tally["sticks"] else math.nan,
+        "first_stick_time": totals["first_stick_time"],
+        "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
         "half_lattice_used": int(lattice.mirror),
     }
 
