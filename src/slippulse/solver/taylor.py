@@ -62,14 +62,17 @@ def near_the_end(segments, size, mirror):
 
 
 @inner(inline=True)
-def foresee_sticks(motion, segments, forecast, order, h):
-    """Velocity at h of all segments, and the sticks until then. Returns whether all velocities are finite."""
+def foresee(medium, motion, segments, forecast, tally, h, top):
+    """Velocity at h of all segments, the sticks and releases until then. Returns whether all velocities are finite."""
     forecast.sticks.n = 0
     for r in range(segments.count.n):
         a, b = segments.starts[r], segments.ends[r]
-        suspects = velocity_after(motion.velocity, motion.w, a, b, h, order)
-        if suspects > 0 and not find_sticks(motion, forecast, a, b, suspects, 0.0, h, order + 1):
+        suspects = velocity_after(motion.velocity, motion.w, a, b, h, top - 1)
+        if suspects > 0 and not find_sticks(motion, forecast, a, b, suspects, 0.0, h, top):
             return False
+    size = motion.tau.shape[0]
+    lowest = foresee_releases(medium, motion, segments, forecast, np.int64(0), size, 0.0, h, top)
+    tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     return True
 
 
@@ -195,10 +198,8 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
 
         h = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if h == limits.end_time - t else t + h
-        if not foresee_sticks(motion, segments, forecast, order, h):
+        if not foresee(medium, motion, segments, forecast, tally, h, top):
             return UNSTABLE
-        lowest = foresee_releases(medium, motion, segments, forecast, np.int64(0), size, 0.0, h, top)
-        tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
         copy_segments(moved, segments)
         changed.count.n = 0
 
