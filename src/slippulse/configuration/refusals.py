@@ -189,6 +189,15 @@ def name_problems(config: Mapping, shipped: Mapping | None) -> list[str]:
                     f"{dotted(['claims', name])}: unknown claim{nearest(name, known)}; allowed: the names in"
                     " config/config.yaml"
                 )
+    for name, entry in config["claims"].items():
+        for other in entry.get("follows_from", []):
+            if other not in config["claims"] or other == name:
+                key = f"{dotted(['claims', name])}.follows_from"
+                hint = nearest(other, config["claims"])
+                lines.append(f"{key}: {short_repr(other)}{hint}; allowed: names of other claims")
+        if ("tolerance_exponent" in entry) and entry.get("kind") != "approximate":
+            key = f"{dotted(['claims', name])}.tolerance_exponent"
+            lines.append(f"{key}: given; allowed: where kind is approximate")
     ranges = {
         "figures.fig07_damage_zone.stiffness_ratios": config["figures"]["fig07_damage_zone"][
             "stiffness_ratios"

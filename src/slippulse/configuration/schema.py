@@ -31,6 +31,7 @@ from .keys import (
     key,
     number,
 )
+from .kinds import KINDS
 from .schema_simulations import NamedScene, Simulation
 from .schema_studies import Studies
 
@@ -119,10 +120,17 @@ class Figures(Block):
 
 
 class Claim(Block):
-    """When a claim counts as reproduced."""
+    """What kind of statement a claim is, and when it counts as reproduced."""
 
-    tolerance: NonNegative = key("largest relative deviation; absolute where the prediction is 0")
-    reason: Sentence = key("why this much")
+    kind: choice(KINDS) = key("which rule gives its verdict", otherwise="none")
+    tolerance: NonNegative = key("what counts as agreement, by kind")
+    tolerance_exponent: Positive = key(
+        "of an approximate claim: largest distance of the exponent from 1", otherwise="none"
+    )
+    follows_from: different(str, "a list of different names of claims, at least one") = key(
+        "claims that it follows from, so that it is not counted again", otherwise="none"
+    )
+    reason: Sentence = key("why this kind and this much")
 
 
 class Reading(Block):

@@ -1,0 +1,182 @@
+"""From deviation and uncertainty to a verdict: one rule for each kind of claim."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+VERDICTS = (
+    "reproduced",
+    "reproduced with caveat",
+    "not reproduced",
+    "inconclusive",
+    "not testable",
+)
+# Of several verdicts the first of these counts.
+WORST_FIRST = (
+    "not reproduced",
+    "inconclusive",
+    "not testable",
+    "reproduced with caveat",
+    "reproduced",
+)
+# More undecided runs than this share leave a qualitative claim open.
+UNDECIDED = 0.1
+# Below this p the readings exclude every parameter, not only most.
+EXCLUDED = 0.003
+
+
+def within(deviation: float, uncertainty: float, tolerance: float) -> str:
+    """Verdict on one number.
+
+    Parameters
+    ----------
+    deviation : how far it is from its prediction, >= 0
+    uncertainty : of that
+    tolerance : largest deviation that counts as agreement
+
+    Returns
+    -------
+    "not testable" without both numbers; "not reproduced" if the deviation exceeds the tolerance by more than the
+    uncertainty; "inconclusive" if the uncertainty itself exceeds the tolerance; "reproduced with caveat" if the
+    tolerance lies within the uncertainty; else "reproduced"
+    """
+    if not np.isfinite([deviation, uncertainty]).all():
+        return "not testable"
+    if deviation - uncertainty > tolerance:
+        return "not reproduced"
+    if uncertainty > tolerance:
+        return "inconclusive"
+    return "reproduced with caveat" if deviation + uncertainty > tolerance else "reproduced"
+
+
+def worst(verdicts: Iterable[str]) -> str:
+    """The worst of several verdicts; "not testable" of none."""
+    return min(verdicts, key=WORST_FIRST.index, default="not testable")
+
+
+def exact(
+    deviations: Sequence[float], uncertainties: Sequence[float], tolerance: float
+) -> tuple[str, int | None]:
+    """Verdict on an equation, which leaves no run out: the worst verdict of any run that has numbers.
+
+    Parameters
+    ----------
+    deviations, uncertainties : one a run, relative to the prediction; NaN where a run has none
+    tolerance : as in `within`
+
+    Returns
+    -------
+    the verdict, and which run it is: of those with this verdict the one that deviates most; None without any
+    """
+    verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
+    tested = [i for i, verdict in enumerate(verdicts) if verdict != "not testable"]
+    if not tested:
+        return "not testable", None
+    found = worst(verdicts[i] for i in tested)
+    return found, max((i for i in tested if verdicts[i] == found), key=lambda i: deviations[i])
+
+
+def approximate(
+    median: tuple[float, float],
+    tolerance: float,
+    exponent: tuple[float, float] | None = None,
+    tolerance_exponent: float | None = None,
+) -> str:
+    """Verdict on an estimate: the worse of those on median and exponent. The single worst run does not decide.
+
+    Parameters
+    ----------
+    median : of the relative deviations of all runs, and its uncertainty
+    tolerance : of that median
+    exponent : of measured against predicted in logarithmic axes, and its uncertainty; None where none is claimed
+    tolerance_exponent : of its distance from 1
+    """
+    verdicts = [within(*median, tolerance)]
+    if exponent is not None:
+        verdicts.append(within(abs(exponent[0] - 1.0), exponent[1], tolerance_exponent))
+    return worst(verdicts)
+
+
+def at_shares(shares: Sequence[str], last: str) -> str:
+    """Verdict on a time that has no end, from those at several shares of the way and at the last release.
+
+    Parameters
+    ----------
+    shares : verdict at each share
+    last : verdict at the last release on the lattice
+
+    Returns
+    -------
+    "reproduced" if it is at every share; "not reproduced" if it is at none of them nor at the last release; else
+    "reproduced with caveat", which of them being the caveat; "inconclusive" if that is the best there is
+    """
+    every = [*shares, last]
+    if all(verdict == "reproduced" for verdict in shares):
+        return "reproduced"
+    if "reproduced" in every or "reproduced with caveat" in every:
+        return "reproduced with caveat"
+    return "inconclusive" if "inconclusive" in every else worst(every)
+
+
+def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:
+    """Verdict on an always, never or every, from how many runs it holds in.
+
+    Parameters
+    ----------
+    held, failed : runs on which the two finest lattices agree, or which the exact solution decides
+    undecided : the others
+    condition : whether it holds only under a condition that the paper does not state
+
+    Returns
+    -------
+    "not reproduced" if it fails in a decided run; "inconclusive" if more than a tenth are undecided; "reproduced with
+    caveat" if some are, or under a condition; "not testable" without runs; else "reproduced"
+    """
+    runs = held + failed + undecided
+    if runs == 0:
+        return "not testable"
+    if failed:
+        return "not reproduced"
+    if undecided > UNDECIDED * runs:
+        return "inconclusive"
+    return "reproduced with caveat" if undecided or condition else "reproduced"
+
+
+def existence(held: Sequence[int]) -> str:
+    """Verdict on "there are": one decided run of each case suffices.
+
+    Parameters
+    ----------
+    held : decided runs that show it, one number for each case
+    """
+    return "reproduced" if held and all(held) else "inconclusive"
+
+
+def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
+    """Verdict on a figure read off, from the chi-square of all its readings at the best fit.
+
+    Parameters
+    ----------
+    p : probability of a chi-square at least as large
+    degrees_of_freedom : readings less fitted parameters
+    tolerance : smallest p that counts as agreement
+
+    Returns
+    -------
+    "inconclusive" with fewer than two degrees of freedom; "not reproduced" below `EXCLUDED`, "reproduced with caveat"
+    below the tolerance, else "reproduced"
+    """
+    if not np.isfinite(p):
+        return "not testable"
+    if degrees_of_freedom < 2:
+        return "inconclusive"
+    if p < EXCLUDED:
+        return "not reproduced"
+    return "reproduced with caveat" if p < tolerance else "reproduced"
+
+
+def arithmetic(deviation: float, tolerance: float) -> str:
+    """Verdict on a formula: it is that of the derivation to rounding, or it is not."""
+    return "reproduced" if deviation <= tolerance else "not reproduced"
