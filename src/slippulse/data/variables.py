@@ -103,6 +103,27 @@ VARIABLES = {
     "pulse_acceleration": ("1", "amplitude of slip acceleration in the right pulse"),
     "pulse_state": ("text", "steady, unsteady, thick_front, or none"),
     "slip_variation": ("1", "relative variation of the slip behind the right pulse"),
+    "pulse_half_width": ("1", "breadth of the right pulse's slip velocity at half its peak, in units of H"),
+    "pulse_shape_deviation": (
+        "1",
+        "largest distance of the right pulse's slip velocity from the paper's equation (9), over its peak, the peaks"
+        " aligned, two blocks from its ends",
+    ),
+    "lattice_noise": (
+        "1",
+        "share of the power of slip velocity on the right in waves of a few blocks, by a fourth difference",
+    ),
+    "sliding_at_once": (
+        "count",
+        "largest number of blocks on the right that slide at once over the second half",
+    ),
+    "profile_change": (
+        "1",
+        "largest change over the last third of the run of the right pulse's velocity profile, moved at the wave speed,"
+        " over its largest velocity",
+    ),
+    "energy_change": ("1", "relative change of its kinetic plus strain energy meanwhile"),
+    "strain_left": ("1", "strain left behind where it entered, over the largest strain"),
     "regime": ("text", "crack-like or pulse-like, one-way or two-way, arrested"),
     "centre_velocity_share": ("1", "slip velocity at the centre over the largest"),
     "late_front_speed_left": ("1", "speed of the left front between the last samples"),

@@ -11,13 +11,15 @@ QUANTITIES = dict.fromkeys(
 ) | dict.fromkeys(
     (
         "largest_velocity", "pulse_front", "pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop",
-        "pulse_acceleration", "slip_variation",
+        "pulse_acceleration", "slip_variation", "pulse_half_width", "pulse_shape_deviation", "lattice_noise",
+        "sliding_at_once",
     ),
     "fields",
 ) | dict.fromkeys(
     (
         "slip_time_background", "slip_time_nucleation", "slip_length_background", "slip_length_nucleation",
         "centre_velocity_share", "largest_velocity_change", "late_front_speed_left", "late_front_speed_right",
+        "profile_change", "energy_change", "strain_left",
     ),
     "samples",
 )  # fmt: skip

@@ -11,6 +11,7 @@ import xarray as xr
 from .fronts import front_speed, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, leading_pulse, slip_variation
 from .regime import classify
+from .shape import far_field, half_width, lattice_noise, sliding_at_once
 from .transition import transition_displacement, transition_stress
 
 # What names a run rather than measures it; enough to have its scene back (`Scene.from_attributes`).
@@ -64,7 +65,12 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
             "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
             "pulse_acceleration": acceleration_amplitude(run, pulse),
             "slip_variation": slip_variation(run, pulse),
+            "pulse_half_width": half_width(run, pulse),
+            "lattice_noise": lattice_noise(run),
+            "sliding_at_once": sliding_at_once(run),
         }
     if "sample_velocity" in run and run.sizes["sample_position"] > 1:
         row |= classify(run, settings["still"], settings["steady_tolerance"])
+        if run.attrs["boundary"] == "stress":
+            row |= far_field(run)
     return row, pulse

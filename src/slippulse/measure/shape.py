@@ -1,0 +1,98 @@
+"""The shape of a pulse: how broad, how smooth, how many blocks, and whether it stays as it is."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import xarray as xr
+
+from .pulses import LeadingPulse, comoving
+
+# Fewer sliding blocks show no waves of the lattice.
+FEWEST = 12
+# Beyond so many widths of the Gaussian the pre-stress is that of the side, to rounding of what is shown.
+FAR = 6.0
+NAN = float("nan")
+
+
+def half_width(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> float:
+    """Breadth of the slip velocity at half its peak, on one side; NaN where it does not fall to half on both sides."""
+    fields = comoving(run, pulse, side)
+    xi, velocity = fields["xi"], fields["slip_velocity"]
+    if velocity.size < 3:
+        return NAN
+    top, half = int(np.argmax(velocity)), 0.5 * float(np.max(velocity))
+    below = velocity < half
+    behind, ahead = np.flatnonzero(below[:top]), np.flatnonzero(below[top:])
+    if not behind.size or not ahead.size:
+        return NAN
+    i, j = int(behind[-1]), top + int(ahead[0])
+    left = np.interp(half, velocity[[i, i + 1]], xi[[i, i + 1]])
+    right = np.interp(half, velocity[[j, j - 1]], xi[[j, j - 1]])
+    return float(right - left)
+
+
+def lattice_noise(run: xr.Dataset) -> float:
+    """Power that a fourth difference passes, which is waves of a few blocks, over that of slip velocity on the right.
+
+    Over the blocks that slide, without the two at each end, where the velocity has corners.
+    """
+    moving = run["slip_velocity"].values[(run["x"].values >= 0.0) & (run["slip_velocity"].values > 0.0)]
+    if moving.size < FEWEST:
+        return NAN
+    # Gain 1 for waves of two blocks, sin^4(pi/n) for waves of n.
+    short = np.diff(moving, 4)[2:-2] / 16.0
+    return float(np.sum(short**2) / np.sum(moving**2))
+
+
+def sliding_at_once(run: xr.Dataset, side: str = "right") -> float:
+    """Largest number of blocks on one side that slide at once, over the second half of a run."""
+    start = 0.5 * run.attrs["end_time"]
+    sign = 1.0 if side == "right" else -1.0
+    chosen = (sign * run["x"].values > 0.0) & np.isfinite(run["release_time"].values)
+    release, stick = run["release_time"].values[chosen], run["stick_time"].values[chosen]
+    stick = np.where(np.isfinite(stick), stick, np.inf)
+    # The number rises at a release only, so that it is largest right after one, or at the start.
+    times = [start, *release[release > start]]
+    return float(max(np.sum((release <= time) & (stick > time)) for time in times))
+
+
+def far_field(run: xr.Dataset) -> dict[str, float]:
+    """Change of the right pulse far from nucleation, where the pre-stress is uniform, over the last third of a run.
+
+    Parameters
+    ----------
+    run : one run with samples
+
+    Returns
+    -------
+    dict of profile_change (largest difference of the velocity profile from itself moved at the wave speed, over its
+    largest velocity), energy_change (relative change of kinetic plus strain energy) and strain_left (largest strain
+    left where it entered, over the largest strain); NaN where nothing slides there at two thirds of the run
+    """
+    out = {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
+    steps = json.loads(run.attrs["steps_and_bumps"])["steps"]
+    start = max([FAR * run.attrs["width"], *(abs(position) for position, _ in steps)])
+    times, x = run["sample_time"].values, run["sample_position"].values
+    early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
+    moved = float(times[-1] - times[early])
+    velocity, slip = run["sample_velocity"].values, run["sample_slip"].values
+    far = x >= start
+    if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
+        return out
+    strain = np.gradient(slip[:, far], x[far], axis=1)
+    energies = [
+        np.trapezoid(0.5 * (velocity[i][far] ** 2 + s**2), x[far])
+        for i, s in ((early, strain[early]), (-1, strain[-1]))
+    ]
+    inside = far & (x + moved <= x[-1])
+    later = np.interp(x[inside] + moved, x, velocity[-1])
+    entered = x[far] <= start + run.attrs["width"]
+    return {
+        "profile_change": float(
+            np.max(np.abs(later - velocity[early][inside])) / np.max(velocity[early][far])
+        ),
+        "energy_change": float(energies[1] / energies[0] - 1.0),
+        "strain_left": float(np.max(np.abs(strain[-1][entered])) / np.max(np.abs(strain[-1]))),
+    }

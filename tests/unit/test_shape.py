@@ -1,0 +1,102 @@
+"""The shape of made-up pulses: half-width, waves of the lattice, blocks at once, and what changes far away."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from slippulse.measure.pulses import LeadingPulse
+from slippulse.measure.shape import FAR, far_field, half_width, lattice_noise, sliding_at_once
+
+PULSE = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0)
+
+
+def fields(velocity: np.ndarray) -> xr.Dataset:
+    """A run with slip velocity at the end, at a spacing of 0.01."""
+    x = 0.01 * np.arange(velocity.size)
+    zero = np.zeros(velocity.size)
+    return xr.Dataset(
+        {"slip_velocity": ("x", velocity), "slip": ("x", zero), "slip_acceleration": ("x", zero)}, {"x": x}
+    )
+
+
+def test_the_half_width_of_a_gaussian():
+    x = 0.01 * np.arange(1601)
+    run = fields(np.exp(-0.5 * ((x - 8.0) / 0.7) ** 2))
+    assert half_width(run, PULSE) == pytest.approx(2.0 * 0.7 * np.sqrt(2.0 * np.log(2.0)), rel=1e-4)
+    assert np.isnan(half_width(fields(np.exp(-x)), PULSE))
+
+
+def test_waves_of_the_lattice_count_and_a_smooth_pulse_has_none():
+    x = 0.01 * np.arange(1601)
+    smooth = np.where(np.abs(x - 8.0) < 2.0, np.cos(0.25 * np.pi * (x - 8.0)), 0.0)
+    assert lattice_noise(fields(smooth)) < 1e-15
+    # Waves of two blocks pass wholly, waves of four to a sixteenth of their power.
+    for period, gain in ((2, 1.0), (4, 1.0 / 16.0)):
+        wave = np.where(smooth > 0.0, 1e-2 * np.cos(2.0 * np.pi * np.arange(x.size) / period), 0.0)
+        power = np.sum(wave**2) / np.sum(smooth**2)
+        assert lattice_noise(fields(smooth + np.abs(smooth > 0.05) * wave)) == pytest.approx(
+            gain * power, rel=0.1
+        )
+    assert np.isnan(lattice_noise(fields(np.zeros(100))))
+
+
+def test_blocks_that_slide_at_once():
+    x = np.arange(-6.0, 7.0)
+    release = np.abs(x)
+    # Each slides for 1.5; the last two to the right are still sliding.
+    stick = np.where(x > 4.0, np.nan, release + 1.5)
+    run = xr.Dataset(
+        {"release_time": ("x", release), "stick_time": ("x", stick)}, {"x": x}, {"end_time": 6.5}
+    )
+    assert sliding_at_once(run, "left") == 2.0
+    stick = np.where(x > 3.0, np.nan, stick)
+    run["stick_time"] = "x", stick
+    assert sliding_at_once(run) == 3.0
+
+
+def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
+    """A Gaussian pulse of slip velocity that runs right, u = f(x - t), with a strain left behind."""
+    times, x = np.linspace(0.0, 30.0, 4), np.linspace(-40.0, 40.0, 8001)
+    centre = 2.0 + speed * times[:, None]
+    size = 1.0 + growth * times[:, None]
+    velocity = size * np.exp(-0.5 * ((x - centre) / 0.8) ** 2)
+    velocity[velocity < 1e-5] = 0.0
+    slip = np.cumsum(velocity[:, ::-1], axis=1)[:, ::-1] * (x[1] - x[0]) - left * np.where(
+        x < centre, x, centre
+    )
+    return xr.Dataset(
+        {"sample_velocity": (("sample_time", "sample_position"), velocity),
+         "sample_slip": (("sample_time", "sample_position"), slip)},
+        {"sample_time": times, "sample_position": x},
+        {"width": 1.0, "steps_and_bumps": '{"steps": [], "bumps": []}'},
+    )  # fmt: skip
+
+
+def test_a_pulse_that_keeps_its_shape_changes_nothing():
+    found = far_field(moving(1.0))
+    assert (
+        found["profile_change"] < 1e-3 and abs(found["energy_change"]) < 1e-3 and found["strain_left"] < 1e-3
+    )
+
+
+@pytest.mark.parametrize(
+    ("run", "quantity", "value"),
+    [
+        (moving(1.0, growth=0.01), "energy_change", (1.3 / 1.2) ** 2 - 1.0),
+        (moving(1.0, growth=0.01), "profile_change", 0.1 / 1.2),
+        (moving(1.0, left=0.1), "strain_left", 0.1 / 1.1),
+    ],
+)
+def test_what_changes_is_measured(run, quantity, value):
+    assert far_field(run)[quantity] == pytest.approx(value, rel=0.03)
+
+
+def test_a_slower_pulse_does_not_keep_its_profile_at_the_wave_speed():
+    assert far_field(moving(0.95))["profile_change"] > 0.2
+
+
+def test_nothing_is_said_of_a_pulse_that_never_comes_far():
+    assert np.isnan(far_field(moving(0.0))["profile_change"])
+    assert FAR > 4.0
