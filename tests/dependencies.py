@@ -51,11 +51,13 @@ PAGE_OF = {
 # Texts beside the package, by the rules that read them.
 READ_BY = {
     "captions.yaml": {"write_report", "write_index"},
+    "claims.yaml": {"write_claims"},
     "errata.yaml": {"write_report"},
     "metadata.yaml": {"write_report"},
     "references.bib": {"write_report"},
     "replication.md": {"write_report"},
     "shipped_verdicts.yaml": {"write_report"},
+    "statements.yaml": {"write_claims", "write_report"},
     "style.css": {"write_report"},
     "summary.yaml": {"write_index"},
     "template.html": {"write_report"},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -13,7 +14,7 @@ import pytest
 import yaml
 from matplotlib.figure import Figure
 
-from slippulse.claims.ledger import judge
+from slippulse.claims.rules import within
 from slippulse.configuration.expand import expand, resolve
 from slippulse.data.store import save_table
 from slippulse.measure.uncertainty import grid_tables
@@ -26,39 +27,67 @@ EDGE = {
     "family": "level", "value": "tau_0 = 0.999", "quantity": "front speed", "error": 1e-4, "tolerance": 1e-2,
     "verdict": "right", "message": "",
 }  # fmt: skip
+# Names of further numbers that the texts ask for.
+FURTHER = (
+    "median gap in H", "slip off by at most", "peak on the lattice, with damping, off by at most",
+    "half-width on the lattice, with damping, off by at most", r"$\mu_k/(\mu_s-\mu_k)$ needed",
+    r"at $\tau_{0,r}=0$, without a verdict: pulse, one-way, decaying",
+)  # fmt: skip
 KEYS = ("left", "gamma", "beta", "damping_ratio", "release")
 
 
 def invented_claims(config: dict, scale: float = 1.0) -> list[dict]:
     """One entry for each claim of the configuration, each with numbers of its own."""
     claims = []
+    further = {r"$\beta/\Delta x$": 0.1} | {name: 0.1 for name in FURTHER}
+    further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
     for i, (id, entry) in enumerate(config["claims"].items()):
-        reading = config["published"].get(id.removeprefix("published_"))
-        predicted = reading["value"] if reading else 1.0
-        measured = scale * predicted * (1.0 + 0.00137 * (i + 1))
+        deviation = abs(scale * (1.0 + 0.00137 * (i + 1)) - 1.0)
+        runs = {"held": i, "failed": 0, "undecided": 3} if entry["kind"] == "qualitative" else {}
         claims.append(
             {
                 "id": id,
                 "figure_or_section": "section III A",
                 "statement": rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$",
-                "predicted": predicted,
-                "measured": measured,
+                "kind": entry["kind"],
+                "counted": "follows_from" not in entry,
+                "follows_from": entry.get("follows_from", []),
+                "predicted": 1.0,
+                "measured": 1.0 + deviation,
                 "uncertainty": 0.00021,
                 "tolerance": entry["tolerance"],
-                "verdict": judge(predicted, measured, 0.00021, entry["tolerance"]),
+                "deviation": deviation,
+                "verdict": within(deviation, 0.00021, entry["tolerance"]),
+                "why": "since $x$ is so",
                 "note": r"measured at $\Delta x=0$",
                 "source": "invented",
                 "runs": i + 3,
                 "left_out": i % 2,
-                "median": 1e-3 * (i + 1),
+                "held": None,
+                "failed": None,
+                "undecided": None,
+                "ninety": 1e-3 * (i + 1),
                 "largest": 2e-3 * (i + 1),
+                "exponent": 1.01 if "tolerance_exponent" in entry else None,
+                "exponent_uncertainty": 0.002,
+                "tolerance_exponent": entry.get("tolerance_exponent"),
                 "exact_median": 1e-5 * (i + 1),
                 "exact_largest": 2e-5 * (i + 1),
-                "further": {r"$\beta/\Delta x$": 0.1},
+                "further": further,
                 "figure": "fig05_scaling",
             }
+            | runs
         )
     return claims
+
+
+def invented_findings(project: Path) -> list[dict]:
+    """Each finding of the texts with a number of its own for everything that any text asks of it."""
+    findings = yaml.safe_load((project / "manuscript/claims.yaml").read_text(encoding="utf-8"))["findings"]
+    names = set(re.findall(r"\bn\.(\w+)", " ".join(findings.values())))
+    names |= {"displacement_undamped", "stress_undamped"}
+    numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))} | {"release": "total"}
+    return [{"id": id, "numbers": numbers, "text": f"found {id.replace('_', ' ')}"} for id in findings]
 
 
 def invented_table(config: dict, simulation: str, error: float) -> pd.DataFrame:
@@ -107,6 +136,7 @@ def make_inputs(project, shipped, tmp_path_factory):
         folder = tmp_path_factory.mktemp("run")
         config = copy.deepcopy(config or shipped)
         (folder / "claims.json").write_text(json.dumps(invented_claims(config, scale)), encoding="utf-8")
+        (folder / "findings.json").write_text(json.dumps(invented_findings(project)), encoding="utf-8")
         measured, studies = {}, {}
         for name in SIMULATIONS:
             tables = tuple(invented_table(config, name, error) for error in (1e-3, 2e-3, 4e-3))
@@ -128,6 +158,7 @@ def make_inputs(project, shipped, tmp_path_factory):
         return Inputs(
             config=config,
             claims_file=str(folder / "claims.json"),
+            findings_file=str(folder / "findings.json"),
             measured=measured,
             uncertainties=studies,
             figures=figures,

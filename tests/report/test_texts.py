@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 from slippulse import Prestress
+from slippulse.claims.coverage import coverage, problems
 from slippulse.report.accuracy import sticking
 from slippulse.report.errata import KEYS, check_errata
 from slippulse.report.figures import Gallery, placed_figures
@@ -40,9 +41,45 @@ def test_every_claim_that_is_mentioned_is_in_the_ledger(source, errata, shipped)
     assert names <= set(shipped["claims"])
 
 
+def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(manuscript, shipped):
+    statements = yaml.safe_load((manuscript / "statements.yaml").read_text(encoding="utf-8"))["statements"]
+    assert problems(statements, list(shipped["claims"])) == []
+    counts = coverage(statements)
+    assert counts["tested"] > 150
+    assert sum(count for key, count in counts.items() if key != "all") == counts["all"] == len(statements)
+
+
+@pytest.mark.parametrize(
+    ("changed", "problem"),
+    [
+        ({"claim": "no_such"}, "a: no_such: no such claim"),
+        ({"claim": None}, "a: allowed: a claim, or why there is none"),
+        ({"why_none": "background"}, "a: allowed: a claim, or why there is none"),
+        ({"claim": None, "why_none": "too hard"}, "a: 'too hard'; allowed: background"),
+        ({"claim": None, "why_none": "repeats b"}, "a: 'repeats b'; allowed: background"),
+        ({"claim": None, "why_none": "no model"}, "c: tests no sentence"),
+        ({"paraphrase": "word " * 26}, "a: paraphrase of more than 25 words"),
+    ],
+)
+def test_a_gap_in_the_map_is_found(changed, problem):
+    sentence = {"id": "a", "place": "section I", "paraphrase": "so it is", "claim": "c"}
+    assert problems([sentence], ["c"]) == []
+    sentence = {key: value for key, value in (sentence | changed).items() if value is not None}
+    assert any(line.startswith(problem) for line in problems([sentence], ["c"]))
+
+
+def test_every_claim_has_a_text(manuscript, shipped):
+    texts = yaml.safe_load((manuscript / "claims.yaml").read_text(encoding="utf-8"))
+    assert list(texts["claims"]) == list(shipped["claims"])
+    figures = set(read_captions(manuscript / "captions.yaml"))
+    for text in texts["claims"].values():
+        assert set(text) <= {"statement", "figure"} and text["statement"].endswith(".")
+        assert text.get("figure", "fig05_scaling") in figures
+
+
 def test_every_erratum_is_whole_and_shown(errata, source):
     check_errata(errata)
-    assert len(errata) >= 20
+    assert len(errata) >= 15
     headings = set(re.findall(r"^#+ (.+?)(?: \{.*)?$", source, re.M))
     for entry in errata:
         for title in re.findall(r'[Dd]erivation "([^"]+)"|Section "([^"]+)"', entry["shown"]):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slippulse.claims.ledger import judge
 from slippulse.measure.uncertainty import grid_study
 
 
@@ -28,21 +27,3 @@ def test_without_an_order_the_spread_is_the_uncertainty():
 
 def test_a_missing_coarse_value_leaves_no_uncertainty():
     assert np.isnan(grid_study((1.0, np.nan, 1.0), (2.0, 4.0)).uncertainty)
-
-
-@pytest.mark.parametrize(
-    ("predicted", "measured", "uncertainty", "tolerance", "caveat", "verdict"),
-    [
-        (1.0, 1.001, 1e-4, 0.01, False, "reproduced"),
-        (1.0, 1.001, 1e-4, 0.01, True, "reproduced with caveat"),
-        (1.0, 1.0095, 1e-3, 0.01, False, "reproduced with caveat"),
-        (1.0, 1.0105, 1e-3, 0.01, False, "reproduced with caveat"),
-        (1.0, 1.02, 1e-3, 0.01, False, "not reproduced"),
-        (0.0, 0.02, 1e-3, 0.01, False, "not reproduced"),
-        (0.0, 0.002, 1e-3, 0.01, False, "reproduced"),
-        (2.0, 2.1, float("nan"), 0.1, False, "not testable"),
-        (2.0, float("nan"), 0.1, 0.1, False, "not testable"),
-    ],
-)
-def test_verdicts(predicted, measured, uncertainty, tolerance, caveat, verdict):
-    assert judge(predicted, measured, uncertainty, tolerance, caveat) == verdict

@@ -19,14 +19,23 @@ from slippulse.pages.scene import scenes_page
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 CLAIM = {
     "id": "speed", "figure_or_section": "III A", "statement": r"fronts <outrun> the waves & keep $\gamma<1$",
+    "kind": "exact", "counted": True, "follows_from": [], "why": "", "deviation": 8e-5,
     "predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "tolerance": 1e-3, "verdict": "reproduced",
-    "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0, "median": 1e-5, "largest": 8e-5,
+    "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0, "held": None, "failed": None, "undecided": None,
+    "ninety": None, "largest": None, "exponent": None, "exponent_uncertainty": None, "tolerance_exponent": None,
     "exact_median": None, "exact_largest": None, "further": {}, "figure": "fig01_one",
 }  # fmt: skip
-FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "measured": 1.5, "figure": ""}
+FAILED = CLAIM | {
+    "id": "width", "verdict": "not reproduced", "measured": 1.5, "deviation": 0.2, "figure": "", "why": "It is *off*.",
+}  # fmt: skip
+OPEN = CLAIM | {
+    "id": "always", "kind": "qualitative", "verdict": "inconclusive", "counted": False, "follows_from": ["speed"],
+    "held": 3, "failed": 0, "undecided": 2, "runs": 5, "deviation": 0.0, "tolerance": 0.0,
+}  # fmt: skip
+FINDING = {"id": "ours", "numbers": {"gap": 0.5}, "text": "a gap of $x$"}
 NEVER = CLAIM | {
     "id": "length", "verdict": "not testable", "predicted": None, "measured": None, "uncertainty": None, "runs": None,
-    "median": None, "largest": None, "note": "",
+    "deviation": None, "note": "",
 }  # fmt: skip
 NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
@@ -65,8 +74,9 @@ def page(project, config, tmp_path) -> str:
         figure.subplots().plot([0.0, 1.0])
         save_figure(figure, results / f"figures/{name}.png", results / f"figures/{name}.pdf")
         (results / f"figures/{name}.csv").write_text("x\n0\n")
-    claims = [CLAIM, FAILED, NEVER]
+    claims = [CLAIM, FAILED, NEVER, OPEN]
     (results / "claims.json").write_text(json.dumps(claims), encoding="utf-8")
+    (results / "findings.json").write_text(json.dumps([FINDING]), encoding="utf-8")
     (results / "claims.html").write_text(claims_page(claims), encoding="utf-8")
     (results / "benchmarks/one.tsv").write_text("s\th:m:s\n1.5\t0:00:01\n")
     (results / "scenes/made.html").write_text("<p>")
@@ -82,7 +92,9 @@ def page(project, config, tmp_path) -> str:
     summary = {
         "picture": "fig01_one",
         "accuracy": "It took {{ facts['times']['seconds_of_jobs'].values() | sum | number }} s.",
-        "verdict": [{"topic": "Fronts", "claims": ["speed", "width"], "text": "Off by $x$."}],
+        "verdict": [
+            {"topic": "Fronts", "claims": ["speed", "width"], "text": "Gap {{ found('ours').gap }}."}
+        ],
     }
     texts = {}
     for name, content in (("captions", captions), ("summary", summary)):
@@ -147,7 +159,8 @@ def test_links_lead_somewhere_and_only_the_paper_is_outside(page, tmp_path):
 
 
 def test_it_says_what_was_found_and_from_what(page):
-    assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable" in page
+    assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable. 1 more follow from these." in page
+    assert "Gap 0.500." in page and '<td>qualitative</td><td class="n">0</td><td class="n">0 + 1</td>' in page
     assert "fronts &lt;outrun&gt; the waves &amp; keep <math" in page
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
     assert "Found in 4 runs." in page and "It took 1.50 s." in page
@@ -161,11 +174,13 @@ def test_a_line_has_the_worst_verdict_of_its_claims(page):
 
 
 def test_the_ledger_has_a_page_with_failures_first():
-    text = claims_page([CLAIM, FAILED, NEVER])
+    text = claims_page([CLAIM, FAILED, NEVER, OPEN], findings=[FINDING])
     outline = check_accessible(text)
-    assert [row["id"] for row in outline.all("tr") if "id" in row] == ["width", "length", "speed"]
+    assert [row["id"] for row in outline.all("tr") if "id" in row] == ["width", "always", "length", "speed"]
     assert outline.all("a")[1] == {"href": "index.html"}
     assert "20 %, tolerance 0.1 %" in text and 'aria-label="200 × tolerance"' in text
+    assert '<p class="why">It is <em>off</em>.</p>' in text and "3 of 5, 2 undecided" in text
+    assert '<li id="ours">a gap of <math' in text and "follows from <code>speed</code>" in text
     assert "1.25010(10)" in text and "not measured" in text
     assert "\\gamma" not in re.sub("<annotation.*?</annotation>", "", text)
     assert '<a href="figures/fig01_one.png">figure 1, one</a>' in text

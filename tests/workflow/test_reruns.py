@@ -145,7 +145,7 @@ CONFIGURATIONS = {
     "another title": (
         {"scenes": {"barrier": {"title": "Uno"}}}, {"draw_scene": 1, "animate_scene": 1, "write_scenes_page": 1},
     ),
-    "another tolerance": ({"claims": {"front_speed_undamped": {"tolerance": 0.5}}}, {"write_claims": 1}),
+    "another tolerance": ({"claims": {"front_speed": {"tolerance": 0.5}}}, {"write_claims": 1}),
     "permission for large sweeps": ({"allow_large": True}, {}),
 }  # fmt: skip
 

@@ -7,8 +7,12 @@ rule write_claims:
         measured=tables("measurements", CLAIM_SIMULATIONS),
         coarser=tables("uncertainties/coarser", CLAIM_SIMULATIONS),
         uncertainties=tables("uncertainties", CLAIM_SIMULATIONS),
+        study="results/studies/published_figure.csv",
+        texts="manuscript/claims.yaml",
+        statements="manuscript/statements.yaml",
     output:
         json="results/claims.json",
+        findings="results/findings.json",
         html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
     log:
         "results/logs/write_claims.log",
@@ -18,7 +22,8 @@ rule write_claims:
         step="write_claims",
         claims=plain(config["claims"]),
         published=plain(config["published"]),
-        share=config["measure"]["share"],
+        measure=plain(config["measure"]),
+        damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
         configuration=digest_of(config),
     message:

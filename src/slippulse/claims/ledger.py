@@ -1,12 +1,10 @@
-"""One claim, and the rule that turns prediction, measurement and uncertainty into a verdict."""
+"""One claim of the ledger: what the paper says, what was found, the verdict."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-
-VERDICTS = ("reproduced", "reproduced with caveat", "not reproduced", "not testable")
 
 
 @dataclass(frozen=True)
@@ -16,76 +14,68 @@ class Claim:
     Attributes
     ----------
     id : short name
-    figure_or_section : where the paper says it
-    statement : what it says, in our words; Markdown with TeX, as note and the keys of further
-    predicted, measured : numbers; for a yes-or-no claim the share of tested points, 1 predicted
-    uncertainty : numerical uncertainty of `measured`, from a grid study or the arithmetic
-    tolerance : largest |measured - predicted| / |predicted| that counts as reproduced, fixed in the configuration
-    verdict : one of VERDICTS, by `judge`
-    note : what `predicted` and `measured` are, and what else there is to know
+    kind : one of `slippulse.configuration.kinds.KINDS`
+    predicted, measured : numbers; for an approximate claim 1 and the median ratio, for a qualitative one the runs and
+        how many it holds in, for a reading the degrees of freedom and chi-square
+    uncertainty : numerical uncertainty of `measured`; for a qualitative claim how many runs are undecided
+    tolerance : as the configuration has it, by kind
+    deviation : what stands beside the tolerance: relative deviation, its median, share of the runs that contradict, p
+    verdict : one of `slippulse.claims.rules.VERDICTS`
+    note : what was measured, and what else there is to know; Markdown with TeX, as the keys of further
     source : the data, function or derivation behind it
-    runs : how many runs it was judged by
-    left_out : runs without a grid study, which were not
-    median, largest : of the relative deviations of these runs from the prediction
-    exact_median, exact_largest : of their relative deviations from the exact theory
-    further : other numbers, by what they are
+    figure_or_section : where the paper says it
+    statement : what it says, in our words
+    follows_from : claims that it follows from; it is not counted again
     figure : name of the figure that shows it
+    runs : how many runs it was judged by
+    left_out : runs without numbers, which were not
+    held, failed, undecided : of a qualitative claim, how many runs
+    ninety, largest : of an approximate claim, 90 % quantile and largest deviation of the runs
+    exponent, exponent_uncertainty, tolerance_exponent : of measured against predicted, in logarithmic axes
+    exact_median, exact_largest : of the deviations of the runs at spacing 0 from the exact theory
+    further : other numbers, by what they are
+    why : one sentence on why it is not simply reproduced
     """
 
     id: str
-    figure_or_section: str
-    statement: str
+    kind: str
     predicted: float
     measured: float
     uncertainty: float
     tolerance: float
+    deviation: float
     verdict: str
     note: str
     source: str
+    figure_or_section: str = ""
+    statement: str = ""
+    counted: bool = True
+    follows_from: tuple[str, ...] = ()
+    figure: str = ""
     runs: int | None = None
     left_out: int = 0
-    median: float | None = None
+    held: int | None = None
+    failed: int | None = None
+    undecided: int | None = None
+    ninety: float | None = None
     largest: float | None = None
+    exponent: float | None = None
+    exponent_uncertainty: float | None = None
+    tolerance_exponent: float | None = None
     exact_median: float | None = None
     exact_largest: float | None = None
     further: Mapping[str, float] = field(default_factory=dict)
-    figure: str = ""
+    why: str = ""
 
     def as_dict(self) -> dict:
         """Builtins for JSON, which has no NaN: what was not measured is None."""
-        return _measured(asdict(self))
+        return finite(asdict(self))
 
 
-def judge(
-    predicted: float, measured: float, uncertainty: float, tolerance: float, caveat: bool = False
-) -> str:
-    """Verdict on a claim.
-
-    Parameters
-    ----------
-    predicted, measured, uncertainty : numbers
-    tolerance : relative to |predicted| (absolute where it is 0)
-    caveat : the claim holds only under a condition that the paper does not state
-
-    Returns
-    -------
-    "not testable" without a finite measurement, uncertainty or prediction; "not reproduced" if the deviation exceeds
-    the tolerance by more than the numerical uncertainty; "reproduced with caveat" if the tolerance lies within the
-    uncertainty of the deviation, or a condition is attached; else "reproduced"
-    """
-    if not all(math.isfinite(value) for value in (predicted, measured, uncertainty)):
-        return "not testable"
-    scale = abs(predicted) if predicted != 0.0 else 1.0
-    deviation = abs(measured - predicted) / scale
-    blur = abs(uncertainty) / scale
-    if deviation - blur > tolerance:
-        return "not reproduced"
-    if caveat or deviation + blur > tolerance:
-        return "reproduced with caveat"
-    return "reproduced"
-
-
-def _measured(value: object) -> object:
+def finite(value: object) -> object:
+    """Builtins with None for every number that JSON does not have."""
     if isinstance(value, Mapping):
-        return {key: _measured(entry) for key, entry in value.items()}
+        return {key: finite(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,27 +1,39 @@
-"""The whole ledger: every claim, in the order of the paper."""
+"""The whole ledger: every claim with its text, in the order of the configuration."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import pandas as pd
+
+from .coverage import places
 from .evidence import Evidence
 from .formulas import formula_claims
 from .ledger import Claim
 from .published import published_claims
-from .pulse import pulse_claims
+from .pulses import pulse_claims
+from .reading import why_text
 from .regimes import regime_claims
+from .stress_pulses import stress_pulse_claims
 from .transition import transition_claims
 
 # Whose measured numbers, grid studies and coarser tables the claims are computed from.
 SIMULATIONS = [
     "any_prestress",
+    "arrest_profiles",
+    "burridge_knopoff_chain",
     "burridge_knopoff_speed",
+    "burridge_knopoff_stress",
     "damping_displacement",
     "damping_stress",
+    "front_speed_undamped",
+    "nucleation_widths",
     "pulses_across_a_step",
+    "pulses_across_wide_steps",
     "regimes_beyond",
     "regimes_displacement",
+    "regimes_displacement_asymmetric",
     "regimes_stress",
     "scaling_displacement",
     "scaling_stress",
@@ -29,47 +41,51 @@ SIMULATIONS = [
     "space_time_stress",
     "speed_against_gamma",
     "steady_displacement",
-    "steady_stress",
+    "stress_pulses",
 ]
-# The figure that shows what a claim is judged by, per simulation; of a claim without one, by its id.
-SHOWN_IN = {
-    "any_prestress": "fig03_steady_state",
-    "burridge_knopoff_speed": "fig06_burridge_knopoff",
-    "damage_zone_limit": "fig07_damage_zone",
-    "damping_displacement": "fig10_damping_displacement",
-    "damping_stress": "fig11_damping_stress",
-    "pulses_across_a_step": "study_stability_of_pulses",
-    "regimes_beyond": "fig02_phase_diagram",
-    "regimes_displacement": "fig02_phase_diagram",
-    "regimes_stress": "fig02_phase_diagram",
-    "scaling_displacement": "fig05_scaling",
-    "scaling_stress": "fig05_scaling",
-    "space_time_displacement": "fig04_space_time",
-    "space_time_stress": "fig04_space_time",
-    "speed_against_gamma": "study_front_speed",
-    "steady_displacement": "fig03_steady_state",
-    "steady_stress": "fig03_steady_state",
-}
 
 
-def all_claims(evidence: Evidence, share: float, readings: Mapping) -> list[Claim]:
+def all_claims(
+    evidence: Evidence,
+    share: float,
+    readings: Mapping,
+    study: pd.DataFrame,
+    texts: Mapping,
+    statements: Sequence[Mapping],
+) -> list[Claim]:
     """The ledger.
 
     Parameters
     ----------
     evidence : measured tables, grid studies and tolerances
-    share : share of |x_minus| that defines T_trans under a stress boundary
+    share : share of |x_minus| at which a stress boundary's sweeps were measured
     readings : numbers read off the published space-time figure
+    study : what they say together, results/studies/published_figure.csv
+    texts : per claim, its statement and the figure that shows it
+    statements : sentences of the paper, which name the claims that test them
+
+    Raises
+    ------
+    ValueError
+        If the configuration, the texts and what is computed are not about the same claims.
     """
     claims = [
         *pulse_claims(evidence),
         *transition_claims(evidence, share),
         *regime_claims(evidence),
+        *stress_pulse_claims(evidence),
+        *published_claims(evidence, readings, study),
         *formula_claims(evidence),
-        *published_claims(evidence, readings),
     ]
-    return [replace(claim, figure=_figure(claim)) for claim in claims]
-
-
-def _figure(claim: Claim) -> str:
-    return SHOWN_IN.get(claim.source.partition(":")[0], SHOWN_IN.get(claim.id, ""))
+    found = {claim.id: claim for claim in claims}
+    for what, names in (("configuration", evidence.settings), ("texts", texts)):
+        if odd := sorted({*names} ^ {*found}):
+            raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the {what} and in the ledger")
+    where = places(statements)
+    return [
+        replace(
+            found[id], statement=texts[id]["statement"], figure=texts[id].get("figure", ""),
+            figure_or_section=where.get(id, ""), why=why_text(found[id]),
+        )
+        for id in evidence.settings
+    ]  # fmt: skip

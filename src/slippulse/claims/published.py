@@ -1,32 +1,52 @@
-"""Our runs beside the published space-time figure, read off by pixel with a stated reading error."""
+"""The published space-time figure, all its readings as one claim."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
+import pandas as pd
+from scipy.special import gammaincc
+
+from ..comparison.published_figure import inference, right_panel
+from ..texts.numerals import rounded
+from . import rules
 from .evidence import Evidence
 from .ledger import Claim
 
+# Fitted parameters of the left panel.
+FITTED = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
+ID = "published_space_time_figure"
 
-def published_claims(evidence: Evidence, readings: Mapping) -> list[Claim]:
-    """Each number read off the published figure against ours; the tolerance is the reading error.
+
+def published_claims(evidence: Evidence, readings: Mapping, study: pd.DataFrame) -> list[Claim]:
+    """One claim from all readings: is there a run of this model that the published figure may show?
 
     Parameters
     ----------
     readings : per name: simulation, quantity, statement, value, reading_error
+    study : results/studies/published_figure.csv
     """
-    claims = []
-    for name, reading in readings.items():
-        point = evidence.points(reading["simulation"], reading["quantity"]).iloc[0]
-        claim = evidence.number(
-            f"published_{name}",
-            "figure 4 as published",
-            reading["statement"],
-            reading["value"],
-            point["value"],
-            point["uncertainty"],
-            f"{reading['simulation']}: {reading['quantity']}",
+    left, right = inference(study)["best"], right_panel(study)
+    chi_square, degrees = left["chi2"] + right["chi2"], left["dof"] + right["dof"]
+    p = float(gammaincc(0.5 * degrees, 0.5 * chi_square)) if degrees > 0 else float("nan")
+    fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
+    return [
+        evidence.claim(
+            ID, "studies.published_figure; space_time_displacement, space_time_stress",
+            rules.reading(p, degrees, evidence.tolerance(ID)), predicted=float(degrees), measured=chi_square,
+            deviation=p,
+            note=f"chi-square of all readings of both panels at the best fit of the left one, {fit}, release rule"
+            f" `{left['release']}`; then the readings in our own figure",
+            further=in_our_runs(evidence, readings),
         )
-        claims.append(replace(claim, further={"reading error": float(reading["reading_error"])}))
-    return claims
+    ]  # fmt: skip
+
+
+def in_our_runs(evidence: Evidence, readings: Mapping) -> dict[str, float]:
+    """Of each reading what the runs of our figure have, by what was read off."""
+    return {
+        reading["statement"]: float(
+            evidence.points(reading["simulation"], reading["quantity"])["value"].iloc[0]
+        )
+        for reading in readings.values()
+    }

@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from types import SimpleNamespace
 
-from ..texts.numerals import percent, rounded, with_uncertainty
-from .ledger import VERDICTS
+from ..configuration.kinds import KINDS
+from ..texts.numerals import number, percent, rounded, setting, with_uncertainty
+from .rules import EXCLUDED, VERDICTS
 
 # What a reader looks for first.
-FAILURES_FIRST = ("not reproduced", "reproduced with caveat", "not testable", "reproduced")
+FAILURES_FIRST = ("not reproduced", "inconclusive", "not testable", "reproduced with caveat", "reproduced")
+# A tolerance below this is for rounding alone.
+SLIGHT = 1e-6
+
+
+class Numbers(SimpleNamespace):
+    """Numbers by name; None for every name of a finding that this run has no runs for."""
+
+    def __init__(self, numbers: Mapping[str, float | None]) -> None:
+        super().__init__(**numbers)
+
+    def __getattr__(self, name: str) -> None:
+        if self.__dict__:
+            raise AttributeError(name)
 
 
 class Ledger:
@@ -19,10 +32,12 @@ class Ledger:
     Parameters
     ----------
     claims : the ledger, as in claims.json
+    findings : numbers of ours, as in findings.json
     """
 
-    def __init__(self, claims: Iterable[Mapping]) -> None:
+    def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
         self.claims = {claim["id"]: SimpleNamespace(**claim) for claim in claims}
+        self.findings = {finding["id"]: finding for finding in findings}
 
     def __iter__(self):
         return iter(self.claims.values())
@@ -35,59 +50,197 @@ class Ledger:
         ValueError
             Naming the id and those that there are.
         """
-        if id not in self.claims:
-            raise ValueError(f"claim: {id!r}; allowed: {', '.join(self.claims)}")
-        return self.claims[id]
+        return self.claims[_known("claim", id, self.claims)]
+
+    def found(self, id: str) -> Numbers:
+        """The numbers of one finding; an unknown name is refused as in a call."""
+        return Numbers(self.findings[_known("finding", id, self.findings)]["numbers"])
 
     def measured(self, id: str) -> str:
-        """Measured value with its uncertainty."""
+        """Measured value, as `measured_text`."""
         return measured_text(self(id))
 
     def deviation(self, id: str) -> float:
-        """Deviation from the prediction, as `deviation_of`."""
-        return deviation_of(self(id))
+        """What stands beside the tolerance; NaN where nothing was measured."""
+        deviation = self(id).deviation
+        return float("nan") if deviation is None else deviation
 
     def verdict(self, id: str) -> str:
         """The verdict, emphasised."""
         return f"*{self(id).verdict}*"
 
+    def listed(self, id: str, words: str) -> str:
+        """How many runs there are of each kind that the further numbers of a claim name behind some words."""
+        found = {name: value for name, value in self(id).further.items() if words in name}
+        return ", ".join(f"{number(value)} {name.rpartition(': ')[2]}" for name, value in found.items())
+
     def count(self, *verdicts: str) -> int:
-        """How many claims have one of these verdicts; all of them if none is named."""
-        return sum(not verdicts or claim.verdict in verdicts for claim in self)
+        """How many counted claims have one of these verdicts; all of them if none is named."""
+        return sum(claim.counted and (not verdicts or claim.verdict in verdicts) for claim in self)
+
+    def following(self) -> int:
+        """How many claims follow from others."""
+        return sum(not claim.counted for claim in self)
 
     def summary(self) -> str:
         """How many claims there are of each verdict, in words."""
-        counts = Counter(claim.verdict for claim in self)
-        listed = ", ".join(f"{counts[verdict]} {verdict}" for verdict in VERDICTS if counts[verdict])
-        return f"{self.count()} claims: {listed}."
+        listed = ", ".join(f"{self.count(name)} {name}" for name in VERDICTS if self.count(name))
+        rest = f" {self.following()} more follow from these." if self.following() else ""
+        return f"{self.count()} claims: {listed}.{rest}"
+
+    def by_kind(self) -> list[tuple[str, list[str]]]:
+        """Of each kind how many claims have each verdict, counted ones and, behind a plus, those that follow."""
+        return [
+            (
+                kind,
+                [
+                    _counted([c for c in self if c.kind == kind and c.verdict == name])
+                    for name in FAILURES_FIRST
+                ],
+            )
+            for kind in KINDS
+            if any(claim.kind == kind for claim in self)
+        ]
 
 
-def deviation_of(claim: SimpleNamespace) -> float:
-    """|measured - predicted|, relative to |predicted| where that is not 0; NaN where one is missing."""
-    if claim.measured is None or claim.predicted is None:
-        return float("nan")
-    return abs(claim.measured - claim.predicted) / (abs(claim.predicted) or 1.0)
+def _known(what: str, id: str, names: Iterable[str]) -> str:
+    if id not in names:
+        raise ValueError(f"{what}: {id!r}; allowed: {', '.join(names)}")
+    return id
+
+
+def _counted(claims: list[SimpleNamespace]) -> str:
+    counted = sum(claim.counted for claim in claims)
+    return f"{counted} + {len(claims) - counted}" if len(claims) > counted else str(counted)
+
+
+def predicted_text(claim: SimpleNamespace) -> str:
+    """What the paper has, as its kind says it."""
+    if claim.predicted is None:
+        return number(None)
+    if claim.kind == "qualitative":
+        return f"all of {claim.predicted:.0f}"
+    if claim.kind == "reading":
+        return f"{claim.predicted:.0f} degrees of freedom"
+    return number(claim.predicted, 4)
 
 
 def measured_text(claim: SimpleNamespace) -> str:
-    """Measured value with its uncertainty."""
+    """What was measured, with its uncertainty; of a qualitative claim whole numbers of runs."""
+    if claim.kind == "qualitative":
+        if claim.held is None:
+            return number(None)
+        counts = {"against": claim.failed, "undecided": claim.undecided}
+        rest = [f"{count} {name}" for name, count in counts.items() if count]
+        return ", ".join([f"{claim.held} of {claim.held + claim.failed + claim.undecided}", *rest])
+    if claim.kind == "reading":
+        return f"\N{GREEK SMALL LETTER CHI}² = {number(claim.measured, 3)}"
+    if claim.kind == "arithmetic":
+        return number(claim.measured, 4)
     return with_uncertainty(claim.measured, claim.uncertainty)
+
+
+def compared_text(claim: SimpleNamespace) -> str:
+    """What stands beside the tolerance, and the tolerance, in words."""
+    if claim.deviation is None:
+        return number(None)
+    if claim.kind == "qualitative":
+        equal = f" (equal within {setting(100.0 * claim.tolerance)} %)" if claim.tolerance > SLIGHT else ""
+        return f"no run may contradict{equal}"
+    if claim.kind == "reading":
+        return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"
+    if claim.kind == "arithmetic" or claim.predicted == 0.0:
+        return f"{number(claim.deviation, 2)}, tolerance {setting(claim.tolerance)}"
+    middle = "median " if claim.kind == "approximate" else ""
+    text = f"{middle}{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
+    if claim.exponent is None:
+        return text
+    exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
+    return f"{text}; exponent {exponent}, tolerance {setting(claim.tolerance_exponent)}"
+
+
+def why_text(claim) -> str:
+    """One sentence on why a claim is not simply reproduced; empty if it is."""
+    if claim.verdict == "reproduced" or claim.why:
+        return claim.why
+    if claim.verdict == "not testable":
+        return "This run leaves no number to judge by."
+    return WHY[claim.kind](claim)
+
+
+def _why_number(claim) -> str:
+    relative = claim.predicted != 0.0
+    scale = abs(claim.predicted) if relative else 1.0
+    write = percent if relative else number
+    off, blur, allowed = write(claim.deviation), write(claim.uncertainty / scale), write(claim.tolerance)
+    if claim.verdict == "not reproduced":
+        return f"It is off by {off}, where {allowed} is allowed."
+    if claim.verdict == "inconclusive":
+        return f"Its uncertainty, {blur}, exceeds the tolerance of {allowed}."
+    return (
+        f"It is off by {off} with an uncertainty of {blur}, so that the tolerance of {allowed} lies within."
+    )
+
+
+def _why_estimate(claim) -> str:
+    off, allowed = percent(claim.deviation), percent(claim.tolerance)
+    if claim.deviation > claim.tolerance:
+        return f"The median run is off by {off}, where {allowed} is allowed."
+    if (
+        claim.exponent is not None
+        and abs(claim.exponent - 1.0) + claim.exponent_uncertainty > claim.tolerance_exponent
+    ):
+        exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
+        return f"The exponent is {exponent}, where 1 within {setting(claim.tolerance_exponent)} is allowed."
+    return f"The median run is off by {off}, and the tolerance of {allowed} lies within the uncertainty."
+
+
+def _why_always(claim) -> str:
+    if claim.failed:
+        return f"{claim.failed} of {claim.runs} runs contradict it."
+    if claim.undecided:
+        return f"In {claim.undecided} of {claim.runs} runs the lattices disagree."
+    return "It needs a condition that the paper does not state."
+
+
+def _why_reading(claim) -> str:
+    if claim.verdict == "inconclusive":
+        return "The best fit is not known."
+    least = claim.tolerance if claim.verdict == "reproduced with caveat" else EXCLUDED
+    return f"At the best fit p is {number(claim.deviation, 2)}, below {setting(least)}."
+
+
+def _why_formula(claim) -> str:
+    return f"Printed over derived is {number(claim.measured, 4)}."
+
+
+WHY = {
+    "exact": _why_number,
+    "approximate": _why_estimate,
+    "qualitative": _why_always,
+    "reading": _why_reading,
+    "arithmetic": _why_formula,
+}
 
 
 def evidence_text(claim: SimpleNamespace) -> str:
     """What the verdict rests on besides the numbers shown, as Markdown."""
-    parts = []
-    if claim.runs is not None:
+    parts = [claim.note] if claim.note else []
+    if claim.runs is not None and claim.kind != "qualitative":
         parts.append(f"{claim.runs} runs")
     if claim.largest is not None:
-        parts.append(f"deviation: median {percent(claim.median)}, largest {percent(claim.largest)} (shown)")
+        parts.append(
+            f"90 % of them within {percent(claim.ninety)}, the largest deviation {percent(claim.largest)}"
+        )
     if claim.left_out:
-        parts.append(f"{claim.left_out} runs without a grid study left out")
+        parts.append(f"{claim.left_out} runs without numbers left out")
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
-    if claim.note:
-        parts.append(claim.note)
     if claim.exact_largest is not None:
         parts.append(
-            f"from the exact theory: median {percent(claim.exact_median)}, largest {percent(claim.exact_largest)}"
+            f"runs off the exact theory by {percent(claim.exact_median)} (median) to {percent(claim.exact_largest)}"
+        )
+    if claim.follows_from:
+        parts.append(
+            f"follows from {', '.join(f'`{id}`' for id in claim.follows_from)} and is not counted again"
         )
     return "; ".join(parts)

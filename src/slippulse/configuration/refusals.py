@@ -179,14 +179,11 @@ def name_problems(config: Mapping, shipped: Mapping | None) -> list[str]:
             lines.append(f"scenes.{name}: also the name of a simulation; allowed: a name of its own")
     for name, entry in config["published"].items():
         lines += _reading_problems(f"published.{name}", entry, config)
-        if f"published_{name}" not in config["claims"]:
-            lines.append(f"claims.published_{name}: missing; it is required by published.{name}")
     if shipped is not None:
-        known = {*shipped["claims"], *(f"published_{name}" for name in config["published"])}
         for name in config["claims"]:
-            if name not in known:
+            if name not in shipped["claims"]:
                 lines.append(
-                    f"{dotted(['claims', name])}: unknown claim{nearest(name, known)}; allowed: the names in"
+                    f"{dotted(['claims', name])}: unknown claim{nearest(name, shipped['claims'])}; allowed: those in"
                     " config/config.yaml"
                 )
     for name, entry in config["claims"].items():

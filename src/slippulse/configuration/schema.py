@@ -122,7 +122,7 @@ class Figures(Block):
 class Claim(Block):
     """What kind of statement a claim is, and when it counts as reproduced."""
 
-    kind: choice(KINDS) = key("which rule gives its verdict", otherwise="none")
+    kind: choice(KINDS) = key("which rule gives its verdict")
     tolerance: NonNegative = key("what counts as agreement, by kind")
     tolerance_exponent: Positive = key(
         "of an approximate claim: largest distance of the exponent from 1", otherwise="none"

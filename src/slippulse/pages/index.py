@@ -22,6 +22,7 @@ FILES = {
     "manuscript/replication.pdf": "Replication report (PDF)",
     "claims.html": "Ledger of claims (a table)",
     "claims.json": "Ledger of claims (JSON)",
+    "findings.json": "Findings beside them (JSON)",
     "provenance.json": "Provenance (JSON)",
     "codecheck.yml": "Manifest of every output (CODECHECK)",
     "checksums.txt": "Checksums (make verify)",
@@ -62,15 +63,21 @@ def index_page(
 
     Parameters
     ----------
-    results : folder that the page stands in, with claims.json and provenance.json; files that are not there get no link
+    results : folder that the page stands in, with claims.json, findings.json and provenance.json; files that are not
+        there get no link
     texts : files of the `captions` and of the `summary`
     galleries : names of figures by the heading that they stand under
     scenes : titles by name
     """
     results = Path(results)
-    ledger = Ledger(json.loads((results / "claims.json").read_text(encoding="utf-8")))
+    ledger = Ledger(
+        *(
+            json.loads((results / name).read_text(encoding="utf-8"))
+            for name in ("claims.json", "findings.json")
+        )
+    )
     facts = json.loads((results / "provenance.json").read_text(encoding="utf-8"))
-    names = {"claim": ledger, "config": facts["config"], "facts": facts}
+    names = {"claim": ledger, "found": ledger.found, "config": facts["config"], "facts": facts}
     captions = read_captions(texts["captions"], lambda text: fill(text, names))
     summary = yaml.safe_load(Path(texts["summary"]).read_text(encoding="utf-8"))
     accuracy = fill(summary["accuracy"], names)
@@ -107,6 +114,8 @@ def index_page(
         picture=figures.get(summary["picture"]),
         files={path: title for path, title in FILES.items() if (results / path).exists()},
         summary=ledger.summary(),
+        kinds=ledger.by_kind(),
+        verdicts=FAILURES_FIRST,
         groups=claim_groups(ledger),
         galleries={title: [figures[name] for name in listed] for title, listed in galleries.items()},
         scenes={name: (title, (results / f"scenes/{name}.html").exists()) for name, title in scenes.items()},

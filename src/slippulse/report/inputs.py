@@ -22,6 +22,7 @@ class Inputs:
     ----------
     config : the configuration of the run, builtins
     claims_file : the ledger, JSON
+    findings_file : what was found beside, JSON
     measured, uncertainties : per simulation, a CSV table; among the measured the study of the edges, extremes
     figures : names of the figures to include, in any order
     figures_folder : where their files are
@@ -31,6 +32,7 @@ class Inputs:
 
     config: Mapping
     claims_file: str
+    findings_file: str
     measured: Mapping[str, str]
     uncertainties: Mapping[str, str]
     figures: list[str]
@@ -47,6 +49,7 @@ class Inputs:
         return cls(
             config=yaml.safe_load(settings.read_text(encoding="utf-8")),
             claims_file=str(results / "claims.json"),
+            findings_file=str(results / "findings.json"),
             measured={
                 p.stem: str(p)
                 for name in ("measurements", "studies")
@@ -63,6 +66,16 @@ class Inputs:
     def claims(self) -> list[dict]:
         """The ledger, in its own order."""
         return json.loads(Path(self.claims_file).read_text(encoding="utf-8"))
+
+    @cached_property
+    def findings(self) -> list[dict]:
+        """What was found beside: numbers of ours, by finding."""
+        return json.loads(Path(self.findings_file).read_text(encoding="utf-8"))
+
+    @cached_property
+    def statements(self) -> list[dict]:
+        """The sentences of the paper that assert something, in their order."""
+        return yaml.safe_load(self.text("statements.yaml"))["statements"]
 
     @cached_property
     def shipped(self) -> dict:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 
-from ..claims.ledger import VERDICTS
-from ..claims.reading import Ledger, evidence_text, measured_text
-from ..texts.numerals import number, setting, with_uncertainty
+from ..claims.reading import (
+    FAILURES_FIRST,
+    Ledger,
+    compared_text,
+    evidence_text,
+    measured_text,
+    predicted_text,
+)
+from ..texts.numerals import setting, with_uncertainty
 from .markdown import plain, table
 
 
@@ -17,70 +22,91 @@ class LedgerTables(Ledger):
     Parameters
     ----------
     claims : the ledger, as in claims.json
-    reasons : per claim, tolerance and the reason for it
+    reasons : per claim, kind, tolerance and the reason for it
+    findings : as in findings.json
     """
 
-    def __init__(self, claims: list[dict], reasons: Mapping[str, Mapping]) -> None:
-        super().__init__(claims)
+    def __init__(self, claims: list[dict], reasons: Mapping[str, Mapping], findings: list[dict]) -> None:
+        super().__init__(claims, findings)
         self.reasons = reasons
 
     def counts(self) -> str:
-        """How many claims have each verdict, from the paper's text and from its published figure."""
-        kinds = {
-            "what the text and figures say": [claim for claim in self if not _published(claim)],
-            "numbers read off the published figure": [claim for claim in self if _published(claim)],
-        }
-        rows = []
-        for name, claims in kinds.items():
-            found = Counter(claim.verdict for claim in claims)
-            rows.append([name, *(str(found[verdict]) for verdict in VERDICTS), str(len(claims))])
-        return table(["", *VERDICTS, "all"], rows, [24, 11, 14, 11, 10, 6], "lrrrrr")
+        """How many claims of each kind have each verdict; behind a plus those that follow from others."""
+        rows = [[kind, *counts] for kind, counts in self.by_kind()]
+        rows.append(["counted", *(str(self.count(verdict)) for verdict in FAILURES_FIRST)])
+        return table(["kind", *FAILURES_FIRST], rows, [14, 14, 13, 11, 14, 12], "lrrrrr")
+
+    def failures(self) -> str:
+        """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
+        rows = [
+            [f"{claim.statement} `{claim.id}`", claim.verdict, claim.why]
+            for verdict in FAILURES_FIRST[:-1]
+            for claim in self
+            if claim.verdict == verdict
+        ]
+        return table(["claim", "verdict", "why"], rows, [46, 14, 40], "lll")
 
     def rows(self, ids: list[str]) -> str:
         """A short table of some claims."""
         rows = [
-            [claim.statement, number(claim.predicted, 4), measured_text(claim), claim.verdict]
+            [claim.statement, measured_text(claim), compared_text(claim), claim.verdict]
             for claim in map(self, ids)
         ]
-        return table(["claim", "predicted", "measured", "verdict"], rows, [50, 12, 21, 17], "lrrl")
+        return table(["claim", "measured", "deviation, tolerance", "verdict"], rows, [44, 17, 24, 15], "lrll")
 
     def whole(self) -> str:
         """Every claim with its place, numbers, tolerance, verdict and note."""
         rows = [
             [
                 f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`",
-                number(claim.predicted, 4),
+                predicted_text(claim),
                 measured_text(claim),
-                setting(claim.tolerance),
+                compared_text(claim),
                 claim.verdict,
                 evidence_text(claim),
             ]
             for claim in self
         ]
-        head = ["claim (place) `id`", "predicted", "measured", "tolerance", "verdict", "note"]
-        return table(head, rows, [33, 9, 14, 8, 10, 30], "lrrrll")
+        head = ["claim (place) `id`", "predicted", "measured", "deviation, tolerance", "verdict", "rests on"]
+        return table(head, rows, [32, 8, 12, 14, 9, 29], "lrrlll")
 
     def tolerances(self) -> str:
-        """Why each tolerance is what it is: the claims that share a tolerance and a reason together."""
+        """Why each tolerance is what it is: the claims that share kind, tolerance and reason together."""
         groups: dict[tuple, list[str]] = {}
         for claim in self:
             entry = self.reasons.get(claim.id)
             if entry is not None:
-                groups.setdefault((float(entry["tolerance"]), entry["reason"]), []).append(f"`{claim.id}`")
+                key = (
+                    entry["kind"],
+                    float(entry["tolerance"]),
+                    entry.get("tolerance_exponent"),
+                    entry["reason"],
+                )
+                groups.setdefault(key, []).append(f"`{claim.id}`")
         rows = [
-            [setting(tolerance), plain(reason), ", ".join(ids)] for (tolerance, reason), ids in groups.items()
+            [
+                kind,
+                setting(tolerance) + (f"; exponent {setting(exponent)}" if exponent else ""),
+                plain(reason),
+                ", ".join(ids),
+            ]
+            for (kind, tolerance, exponent, reason), ids in groups.items()
         ]
-        return table(["tolerance", "reason", "claims"], rows, [10, 32, 58], "rll")
+        return table(["kind", "tolerance", "reason", "claims"], rows, [11, 11, 42, 36], "lrll")
 
     def published(self, readings: Mapping[str, Mapping]) -> str:
         """Numbers read off the published figure beside ours, with the reading error."""
-        rows = []
-        for name, reading in readings.items():
-            claim = self(f"published_{name}")
-            published = with_uncertainty(reading["value"], reading["reading_error"])
-            rows.append([claim.statement, published, measured_text(claim), claim.verdict])
-        return table(["quantity", "published", "this run", "verdict"], rows, [40, 18, 22, 20], "lrrl")
+        ours = self("published_space_time_figure").further
+        rows = [
+            [
+                reading["statement"],
+                with_uncertainty(reading["value"], reading["reading_error"]),
+                with_uncertainty(ours.get(reading["statement"]), None),
+            ]
+            for reading in readings.values()
+        ]
+        return table(["quantity", "published", "this run"], rows, [50, 20, 20], "lrr")
 
-
-def _published(claim) -> bool:
-    return claim.id.startswith("published_")
+    def found_beside(self) -> str:
+        """Every finding, as a list."""
+        return "\n".join(f"- {' '.join(finding['text'].split())}" for finding in self.findings.values())

@@ -19,6 +19,7 @@ from .figures import Gallery, placed_figures
 from .inputs import Inputs
 from .ledger import LedgerTables
 from .markdown import CLOSE, SMALL, WIDE
+from .statements import Statements
 
 SOURCE = "replication.md"
 
@@ -32,8 +33,9 @@ def define(names: dict[str, object], inputs: Inputs, show: Callable[[str], None]
     inputs : what the report is written from
     show : puts Markdown into the report
     """
-    claim = LedgerTables(inputs.claims, inputs.config["claims"])
-    names |= FILTERS | {"claim": claim, "config": inputs.config, "inputs": inputs, "show": show}
+    claim = LedgerTables(inputs.claims, inputs.config["claims"], inputs.findings)
+    names |= FILTERS | {"claim": claim, "found": claim.found, "statements": Statements(inputs.statements)}
+    names |= {"config": inputs.config, "inputs": inputs, "show": show}
     names |= {"CLOSE": CLOSE, "SMALL": SMALL, "WIDE": WIDE, "np": np, "theory": theory}
     altered = changes(inputs.shipped, inputs.config)
     names["tolerances_altered"] = any(change["key"].startswith("claims.") for change in altered)

@@ -13,7 +13,7 @@ SIMULATIONS = ["scaling_displacement", "scaling_stress", "steady_displacement"]
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: source, claims, shipped, measured, uncertainties, figures. Outputs: html, pdf, verdicts."""
+    """Files: source, claims, findings, shipped, measured, uncertainties, figures. Outputs: html, pdf, verdicts."""
 
     def absolute(path: str | Path) -> str:
         return str(Path(path).resolve())
@@ -21,6 +21,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     inputs = Inputs(
         config=settings["config"],
         claims_file=absolute(files["claims"]),
+        findings_file=absolute(files["findings"]),
         measured={Path(path).stem: absolute(path) for path in files["measured"]},
         uncertainties={Path(path).stem: absolute(path) for path in files["uncertainties"]},
         figures=list(settings["figures"]),
