@@ -111,7 +111,7 @@ test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
 
 test-pages: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest tests/browser/test_pages.py
+	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser
 
 test-slow: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow

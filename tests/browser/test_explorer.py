@@ -120,6 +120,7 @@ def test_beta_over_dx_alone_sets_the_speed(file, opened):
         assert page.locator("#ratio").text_content() == "0.1"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SLIDERS)
 def test_a_slider_works_by_keyboard(name, file, opened):
     with opened(file) as page:
@@ -148,6 +149,7 @@ def test_each_control_is_reached_by_the_keyboard_and_named(file, opened):
             assert page.locator(f"label[for={name}]").text_content()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [390, 1280])
 def test_everybody_can_use_it(width, scheme, file, opened, violations):

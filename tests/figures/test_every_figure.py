@@ -45,7 +45,9 @@ def test_axes_with_data_are_labelled(draw, name):
             assert len(line.get_xdata()) == len(line.get_ydata())
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES]
+)
 def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     drawn = draw(name)
     assert len(drawn.table) > 0

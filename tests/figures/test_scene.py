@@ -136,6 +136,7 @@ def test_the_page_stands_alone_and_escapes_what_it_shows(drawn, name, tmp_path):
         assert label in text
 
 
+@pytest.mark.slow
 def test_the_animation_runs_from_rest_to_the_end(drawn, tmp_path):
     run = drawn["displacement"].run
     save_animation(animate(run, TITLE), tmp_path / "scene.gif")

@@ -103,7 +103,12 @@ def made(project, tmp_path_factory):
 
 @pytest.mark.parametrize(
     ("name", "chunks"),
-    [("displacement", 2), ("displacement", 5), ("stress", 5), ("profiles", 2)],
+    [
+        ("displacement", 2),
+        ("stress", 5),
+        pytest.param("displacement", 5, marks=pytest.mark.slow),
+        pytest.param("profiles", 2, marks=pytest.mark.slow),
+    ],
 )
 def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks):
     whole = made(name)

@@ -116,6 +116,7 @@ def test_the_elastic_rule_is_slower(run):
     assert table["front_speed_right"][0] < 0.5 * (elastic + total)
 
 
+@pytest.mark.slow
 def test_null_removes_a_key_and_beta_stays(run):
     table, _ = run("fixed_beta")
     assert set(table["beta"]) == {0.01} and table["damping_ratio"].nunique() == len(table) > 1

@@ -54,6 +54,7 @@ def test_surroundings_do_not_change_a_byte(finished, tmp_path):
     assert digests(elsewhere) == digests(finished)
 
 
+@pytest.mark.slow
 def test_it_can_be_started_from_anywhere(finished, tmp_path):
     command = [sys.executable, "-m", "snakemake", "--cores", "1", "--dry-run", "--directory", str(finished)]
     command += ["--snakefile", str(finished / "Snakefile"), "--configfile", str(finished / "overlay.yaml")]
@@ -71,9 +72,8 @@ HARM = {
 }
 
 
-@pytest.mark.parametrize(
-    "harm", [pytest.param(harm, marks=() if harm == "truncated" else pytest.mark.slow) for harm in HARM]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("harm", HARM)
 def test_a_harmed_data_file_is_made_anew_to_the_same_bytes(finished, harm):
     data, table = finished / DATA, finished / SCENE
     whole, before = data.read_bytes(), table.read_bytes()
@@ -86,6 +86,7 @@ def test_a_harmed_data_file_is_made_anew_to_the_same_bytes(finished, harm):
     assert data.read_bytes() == whole and table.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_harmed_data_file_without_a_record_is_named_with_the_remedy(finished, tmp_path):
     """As of a job of another program, or of a folder that was put together by hand."""
     folder = tmp_path / "copy"

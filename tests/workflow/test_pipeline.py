@@ -11,6 +11,8 @@ import pytest
 import yaml
 from pipeline_copy import copy_project, edges, planned, snakemake
 
+from slippulse.steps.reach import declared
+
 pytestmark = pytest.mark.workflow
 
 OWN = {
@@ -52,7 +54,8 @@ def test_the_default_is_the_whole_paper(folder):
 def test_a_draft_is_the_figures_and_what_is_ones_own(folder):
     """Studies, the shipped scenes, the ledger and the report are made where everything is asked for."""
     jobs = planned(snakemake(folder, "--dry-run", overlay="own.yaml"))
-    assert figures(jobs) == 11 and jobs["draw_scene"] == jobs["study_grid"] == 1
+    rings = declared("figures.fig02_phase_diagram", "NEEDS")["coarser"]
+    assert figures(jobs) == 11 and jobs["draw_scene"] == 1 and jobs["study_grid"] == 1 + len(rings)
     assert not any(name.startswith(("study_of", "write_")) for name in jobs)
     making = snakemake(folder, "--dry-run", overlay="own.yaml").stdout
     assert "Measuring mine" in making and "Drawing scene one" in making

@@ -32,8 +32,14 @@ COMMANDS = {
 }  # fmt: skip
 
 
+# The others go the same way, and the text of each refusal is tested without the command.
+QUICK = ("misspelt key", "cost", "unknown figure")
+
+
 @pytest.mark.workflow
-@pytest.mark.parametrize("case", COMMANDS)
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=() if case in QUICK else pytest.mark.slow) for case in COMMANDS]
+)
 def test_the_command_refuses_before_any_job(project, tmp_path, case):
     overlay, arguments, named = COMMANDS[case]
     for part in ("Snakefile", "workflow", "config", "src", "requirements.lock"):
@@ -53,6 +59,7 @@ def test_the_command_refuses_before_any_job(project, tmp_path, case):
     assert not (tmp_path / "results").exists() and not (tmp_path / "written").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.workflow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(project, tmp_path):
     """As the refusal says it."""

@@ -62,22 +62,8 @@ def jobs_after(folder: Path, overlay: str = "overlay.yaml") -> dict[str, int]:
     return {rule: count for rule, count in jobs.items() if rule not in NAMES}
 
 
-# One of each kind; the others are slow only because there are so many.
-QUICK = {
-    "manuscript/captions.yaml",
-    "src/slippulse/configuration/expand.py",
-    "src/slippulse/data/store.py",
-    "src/slippulse/figures/fig05_scaling.py",
-    "src/slippulse/measure/fronts.py",
-    "src/slippulse/pages/templates/index.html",
-    "src/slippulse/solver/stencils.py",
-    LOCK,
-}
-
-
-@pytest.mark.parametrize(
-    "file", [pytest.param(file, marks=() if file in QUICK else pytest.mark.slow) for file in (*FILES, LOCK)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("file", (*FILES, LOCK))
 def test_an_edit_runs_what_depends_on_the_file(finished, fed_by, file):
     computing = {"compile_kernels", "simulate", "study_grid", "write_report", "write_provenance", *STUDIED}
     path = finished / file
@@ -103,6 +89,7 @@ REMOVED = {
 }
 
 
+@pytest.mark.slow
 def test_what_is_removed_is_made_by_the_default_target(finished):
     stats = {name: (finished / name).stat() for name in REMOVED}
     try:
@@ -124,10 +111,6 @@ def test_an_edited_figure_redraws_that_figure_alone():
         assert rules_of(f"src/slippulse/figures/{name}.py") - {"write_provenance"} == {name}
 
 
-def test_no_quick_edit_is_of_a_file_that_is_gone():
-    assert {*FILES, LOCK} >= QUICK
-
-
 # The whole configuration stands in the report and in the provenance, what differs from the shipped one on the index.
 ALWAYS = {"write_report": 1, "write_provenance": 1, "write_index": 1}
 CHAIN = {"simulate": 1, "measure": 1, "study_grid": 1}
@@ -135,7 +118,7 @@ JOINED = {"join_data": 1, "join_measurements": 1, "join_uncertainties": 1}
 CONFIGURATIONS = {
     "another level": (
         {"simulations": {"space_time_displacement": {"left": [0.3]}}},
-        CHAIN | {"fig04_space_time": 1, "write_claims": 1},
+        CHAIN | {"fig04_space_time": 1, "study_published_figure": 1, "write_claims": 1},
     ),
     "swapped values": ({"simulations": {"own": {"left": [0.5, 0.3]}}}, dict.fromkeys(CHAIN, 2) | JOINED),
     "without chunks": ({"simulations": {"own": {"chunks": 1}}}, CHAIN),
@@ -161,13 +144,8 @@ def jobs_with(finished):
     return jobs
 
 
-@pytest.mark.parametrize(
-    "case",
-    [
-        pytest.param(case, marks=() if case == "another level" else pytest.mark.slow)
-        for case in CONFIGURATIONS
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CONFIGURATIONS)
 def test_another_configuration_runs_only_its_chain(jobs_with, case):
     change, expected = CONFIGURATIONS[case]
     assert jobs_with(change) == expected | ALWAYS
@@ -194,10 +172,8 @@ SHARED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "case",
-    [pytest.param(case, marks=() if case in ("share", "damping") else pytest.mark.slow) for case in SHARED],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("case", SHARED)
 def test_a_shared_value_runs_what_reads_it_and_no_more(jobs_with, case):
     change, read_by, untouched = SHARED[case]
     jobs = jobs_with(change)

@@ -129,6 +129,7 @@ def test_an_edited_measurement_is_made_anew_with_a_word_before_anything_is_built
     assert study.inputs["measurements/mine.csv"] == hashlib.sha256(before).hexdigest()
 
 
+@pytest.mark.slow
 def test_another_configuration_of_one_target_marks_the_page_it_leaves_behind(folder):
     """A page that was written from other data is marked; the run says so, and verify names it."""
     before = (folder / PAGE).read_text(encoding="utf-8")
