@@ -6,10 +6,15 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from PIL import Image
+
 from ..texts.captions import Caption
 
 # How the text places a figure.
 PLACED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
+
+# Inches across the pages of the journal, and of the report.
+PAGE = 7.0
 
 
 def placed_figures(source: str) -> list[str]:
@@ -49,7 +54,15 @@ class Gallery:
         text = f"**Figure {number}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alternative = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         # No extension: the vector file for print, the picture for the browser.
-        return f"![{text}]({self.folder / name}){{#{name} width=100% alt='{alternative}'}}"
+        return (
+            f"![{text}]({self.folder / name}){{#{name} width={self._share(name):.0f}% alt='{alternative}'}}"
+        )
+
+    def _share(self, name: str) -> float:
+        """Width of a figure in per cent of the page: a column of the journal stays one."""
+        with Image.open(self.folder / f"{name}.png") as picture:
+            inches = picture.width / picture.info["dpi"][0]
+        return min(100.0, 100.0 * inches / PAGE)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
         """A reference to a figure between two texts; nothing at all if it is not included."""
