@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import pandas as pd
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def read_job_records(folder: str | Path) -> pd.DataFrame:
@@ -14,6 +16,9 @@ def read_job_records(folder: str | Path) -> pd.DataFrame:
     ----------
     folder : where the pipeline's benchmark files are
     """
+    # Slow to load, and every start of the workflow loads this module.
+    import pandas as pd
+
     folder = Path(folder)
     rows = []
     for path in sorted(folder.rglob("*.tsv")):
