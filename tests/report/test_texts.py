@@ -6,6 +6,7 @@ import re
 
 import pytest
 import yaml
+from PIL import Image
 
 from slippulse import Prestress
 from slippulse.claims.coverage import coverage, problems
@@ -141,8 +142,20 @@ def test_every_citation_is_in_the_bibliography_and_every_entry_is_cited(source, 
     assert set(re.findall(r"@([A-Z]\w+)", source)) == entries
 
 
-def test_a_figure_that_the_text_does_not_place_comes_last():
-    gallery = Gallery(["new_one", "a"], ["a"], {"a": caption("text")}, "folder")
+def drawn(folder, **inches: float) -> str:
+    """A folder with pictures so many inches wide."""
+    for name, width in inches.items():
+        Image.new("1", (round(100 * width), 10)).save(folder / f"{name}.png", dpi=(100, 100))
+    return str(folder)
+
+
+def test_a_figure_of_one_column_is_one_in_the_report(tmp_path):
+    gallery = Gallery(["column", "page"], [], {}, drawn(tmp_path, column=3.4, page=7.05))
+    assert "width=49%" in gallery.figure("column") and "width=100%" in gallery.figure("page")
+
+
+def test_a_figure_that_the_text_does_not_place_comes_last(tmp_path):
+    gallery = Gallery(["new_one", "a"], ["a"], {"a": caption("text")}, drawn(tmp_path, new_one=7.0))
     assert gallery.unplaced == ["new_one"]
     assert "**Figure 2. new one.**" in gallery.figure("new_one")
 
@@ -154,10 +167,10 @@ def test_every_figure_of_the_package_has_a_place(project, source):
     assert figures <= set(placed_figures(source))
 
 
-def test_figures_are_numbered_in_the_order_of_the_text():
+def test_figures_are_numbered_in_the_order_of_the_text(tmp_path):
     captions = {name: caption(name.upper()) for name in "abc"}
-    gallery = Gallery(["c", "a"], ["a", "b", "c"], captions, "folder")
-    assert gallery.figure("c").startswith("![**Figure 2. C.** finding what](folder/c){")
+    gallery = Gallery(["c", "a"], ["a", "b", "c"], captions, drawn(tmp_path, a=7.0, c=7.0))
+    assert gallery.figure("c").startswith(f"![**Figure 2. C.** finding what]({tmp_path}/c){{")
     assert gallery.see("c", " (figure ", ")") == " (figure 2)"
     assert gallery.figure("b") == gallery.see("b") == ""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -19,6 +20,13 @@ LONGEST = 2.0
 LONGEST_AT_REST = 4.0
 LONGEST_WITHOUT_SPRINGS = 8.0
 MOST_PANELS = 20_000
+
+
+@lru_cache(maxsize=256)
+def _slowness(tau: bytes, shape: tuple[int, ...], damping_ratio: float, release: str) -> np.ndarray:
+    found = np.array(slowness(np.frombuffer(tau).reshape(shape), damping_ratio, release))
+    found.flags.writeable = False
+    return found
 
 
 class FrontLaw:
@@ -39,7 +47,8 @@ class FrontLaw:
         )
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
-        return slowness(tau, self.damping_ratio, self.release)
+        """1/v of each pre-stress; scenes that differ in gamma alone share most of their panels."""
+        return _slowness(tau.tobytes(), tau.shape, self.damping_ratio, self.release)
 
     def piece_right_of(self, x: float) -> Piece:
         return next(piece for piece in self.pieces if piece.right > x)
