@@ -16,7 +16,8 @@ from slippulse.measure.fronts import front_speed
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
-from slippulse.solver.lattice import Lattice, run_scene
+from slippulse.solver.lattice import Lattice
+from slippulse.solver.run import run_scene
 from slippulse.theory.front_law import front_speed as exact_speed
 from slippulse.theory.pulse import steady_pulse
 

@@ -13,7 +13,8 @@ from slippulse.configuration.expand import expand, resolve
 from slippulse.model.scene import LATTICE_SCHEMES, ORDERS
 from slippulse.model.stability import largest_step
 from slippulse.simulation.simulate import judge
-from slippulse.solver.lattice import UnstableRun, run_scene
+from slippulse.solver.lattice import UnstableRun
+from slippulse.solver.run import run_scene
 
 # Wave numbers of the lattice, as 4 sin^2(k/2).
 MODES = np.linspace(0.0, 4.0, 401)

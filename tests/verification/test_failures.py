@@ -9,7 +9,8 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.model.scene import LATTICE_SCHEMES
 from slippulse.model.stability import largest_step
-from slippulse.solver.lattice import Lattice, run_scene
+from slippulse.solver.lattice import Lattice
+from slippulse.solver.run import run_scene
 
 PUBLISHED = {
     "boundary": "displacement",

@@ -13,8 +13,8 @@ from ..data.versions import versions
 from ..model.checks import short_repr
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..solver.lattice import UnstableRun, run_scene
-from ..solver.result import LatticeRun
+from ..solver.lattice import UnstableRun
+from ..solver.run import LatticeRun, run_scene
 from .continuum import ContinuumRun, solve_scene
 from .progress import bar
 

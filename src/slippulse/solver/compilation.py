@@ -6,7 +6,7 @@ import numba
 
 from ..model.prestress import Prestress
 from ..model.scene import SCHEMES, Scene
-from .lattice import run_scene
+from .run import run_scene
 
 
 def compile_all() -> None:

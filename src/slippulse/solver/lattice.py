@@ -9,7 +9,6 @@ import numpy as np
 from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, fixed_step, taylor
-from .result import LatticeRun, assemble
 
 # Steps between two returns to Python, for progress and interruption, at most; and steps times the blocks that they
 # update, about a tenth of a second.
@@ -206,23 +205,3 @@ class Lattice:
                 )
             if progress is not None:
                 progress(float(min(1.0, self.tally.time / self.scene.duration)))
-
-    def result(self, status: int) -> LatticeRun:
-        """The finished run: the whole lattice, trimmed; samples, energies and counters."""
-        if self.localised:
-            self.sliding[:] = False
-            n = self.segments.count.n
-            for a, b in zip(self.segments.starts[:n], self.segments.ends[:n], strict=True):
-                self.sliding[a:b] = True
-        return assemble(self, status)
-
-
-def run_scene(
-    scene: Scene,
-    samples: Samples | None = None,
-    progress: Callable[[float], None] | None = None,
-    damping_sign: int = 1,
-) -> LatticeRun:
-    """Run a scene; ``damping_sign = -1`` is the sign as printed in the paper, which blows up."""
-    lattice = Lattice(scene, samples, damping_sign * scene.beta)
-    return lattice.result(lattice.run(progress))

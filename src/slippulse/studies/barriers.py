@@ -12,7 +12,7 @@ import pandas as pd
 
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..solver.lattice import run_scene
+from ..solver.run import run_scene
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse

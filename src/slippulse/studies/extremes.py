@@ -14,7 +14,7 @@ from ..measure.pulses import leading_pulse
 from ..measure.transition import STALL, transition_stress
 from ..model.prestress import Prestress
 from ..simulation.simulate import simulate
-from ..solver.lattice import run_scene
+from ..solver.run import run_scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, exact_transition_displacement
 from ..theory.front_law import front_speed as exact_speed

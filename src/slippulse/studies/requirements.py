@@ -9,7 +9,8 @@ import pandas as pd
 
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..solver.lattice import Lattice, run_scene
+from ..solver.lattice import Lattice
+from ..solver.run import run_scene
 
 # Keys of the configuration that it reads besides studies.requirements.
 SETTINGS = ()

@@ -1,17 +1,17 @@
-"""What a run leaves behind: energies, counters, and the lattice unfolded and trimmed."""
+"""A run, and what it leaves behind: energies, counters, and the lattice unfolded and trimmed."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..model.samples import Samples
+from ..model.scene import Scene
 from .arrays import ALL_STUCK, TALLY
-
-if TYPE_CHECKING:
-    from .lattice import Lattice
+from .lattice import Lattice
 
 # Blocks at rest that are kept beyond the outermost released one.
 MARGIN = 16
@@ -122,6 +122,11 @@ def kept_blocks(lattice: Lattice) -> np.ndarray:
 
 def assemble(lattice: Lattice, status: int) -> LatticeRun:
     """The result of a run whose kernel has stopped for the reason ``status``."""
+    if lattice.localised:
+        lattice.sliding[:] = False
+        n = lattice.segments.count.n
+        for a, b in zip(lattice.segments.starts[:n], lattice.segments.ends[:n], strict=True):
+            lattice.sliding[a:b] = True
     take_last_samples(lattice)
     motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
     keep = kept_blocks(lattice)
@@ -142,3 +147,14 @@ def assemble(lattice: Lattice, status: int) -> LatticeRun:
         sample_velocity=recorder.velocity if lattice.samples else None,
         numbers=numbers_of(lattice, status),
     )
+
+
+def run_scene(
+    scene: Scene,
+    samples: Samples | None = None,
+    progress: Callable[[float], None] | None = None,
+    damping_sign: int = 1,
+) -> LatticeRun:
+    """Run a scene; ``damping_sign = -1`` is the sign as printed in the paper, which blows up."""
+    lattice = Lattice(scene, samples, damping_sign * scene.beta)
+    return assemble(lattice, lattice.run(progress))
