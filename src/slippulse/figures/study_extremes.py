@@ -63,6 +63,6 @@ def plot(table: pd.DataFrame) -> Figure:
     axes.set_xscale("log")
     axes.set_xlim(LEAST, 3.0)
     axes.set_ylim(len(table) - 0.4, -0.6)
-    axes.set_xlabel("relative error\n(absolute where 0 is expected)")
+    axes.set_xlabel("relative error\n(absolute for 0)")
     figure.legend(loc="outside lower center", ncols=3, handletextpad=0.2, columnspacing=0.8)
     return figure
