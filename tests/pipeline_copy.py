@@ -24,7 +24,8 @@ def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
         if link and source.exists():
             (folder / part).symlink_to(source)
         elif source.is_dir():
-            shutil.copytree(source, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+            # Compiled modules too, which stay valid as the times are kept.
+            shutil.copytree(source, folder / part)
         elif source.exists():
             shutil.copy2(source, folder / part)
     if not link:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
+# Import statements as ruff formats them. To parse every module would take a second of each start of Snakemake.
+IMPORT = re.compile(r"^ *from (\.+)([\w.]*) import (?:\(([^)]*)\)|(.*))", re.M)
 
 
 def declared(module: str, name: str, default=None):
@@ -18,7 +21,10 @@ def declared(module: str, name: str, default=None):
     name : of the constant
     default : where the module has none
     """
-    for node in _tree(_file(module)).body:
+    text = _text(_file(module))
+    if f"\n{name} = " not in text:
+        return default
+    for node in ast.parse(text).body:
         if isinstance(node, ast.Assign) and any(getattr(target, "id", "") == name for target in node.targets):
             return ast.literal_eval(node.value)
     return default
@@ -57,8 +63,8 @@ def _file(module: str) -> Path:
 
 
 @cache
-def _tree(path: Path) -> ast.Module:
-    return ast.parse(path.read_bytes())
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
 
 
 @cache
@@ -66,10 +72,10 @@ def _imported(path: Path) -> tuple[Path, ...]:
     """Files of the package that a file imports, with the packages that they are in."""
     inside = path.relative_to(PACKAGE).parent.parts
     found = []
-    for node in ast.walk(_tree(path)):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            base = [*inside[: len(inside) - node.level + 1], *(node.module.split(".") if node.module else [])]
-            found += _targets(base, [alias.name for alias in node.names])
+    for dots, module, several, one in IMPORT.findall(_text(path)):
+        base = [*inside[: len(inside) - len(dots) + 1], *(module.split(".") if module else [])]
+        names = re.sub(r"#.*| as \w+", "", several or one)
+        found += _targets(base, re.findall(r"\w+", names))
     packages = [_file(".".join(inside[:depth])) for depth in range(len(inside) + 1)]
     return (*packages, *found)
 
