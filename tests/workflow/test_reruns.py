@@ -62,7 +62,7 @@ def jobs_after(folder: Path, overlay: str = "overlay.yaml") -> dict[str, int]:
     return {rule: count for rule, count in jobs.items() if rule not in NAMES}
 
 
-# That every file is an input of the rules that reach it is seen in `test_dependencies`: here one of each folder is edited.
+# One of each folder: that every file is an input of the rules that reach it is seen in `test_dependencies`.
 EDITED = {Path(file).parent: file for file in FILES}.values()
 
 
