@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import pandas as pd
-from scipy.special import gammaincc
+from scipy.special import chdtrc
 
 from ..comparison.published_figure import inference, right_panel
 from ..texts.numerals import rounded
@@ -28,7 +28,7 @@ def published_claims(evidence: Evidence, readings: Mapping, study: pd.DataFrame)
     """
     left, right = inference(study)["best"], right_panel(study)
     chi_square, degrees = left["chi2"] + right["chi2"], left["dof"] + right["dof"]
-    p = float(gammaincc(0.5 * degrees, 0.5 * chi_square)) if degrees > 0 else float("nan")
+    p = float(chdtrc(degrees, chi_square)) if degrees > 0 else float("nan")
     fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
     return [
         evidence.claim(

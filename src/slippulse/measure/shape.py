@@ -52,10 +52,10 @@ def sliding_at_once(run: xr.Dataset, side: str = "right") -> float:
     sign = 1.0 if side == "right" else -1.0
     chosen = (sign * run["x"].values > 0.0) & np.isfinite(run["release_time"].values)
     release, stick = run["release_time"].values[chosen], run["stick_time"].values[chosen]
-    stick = np.where(np.isfinite(stick), stick, np.inf)
-    # The number rises at a release only, so that it is largest right after one, or at the start.
-    times = [start, *release[release > start]]
-    return float(max(np.sum((release <= time) & (stick > time)) for time in times))
+    # The number rises at a release only, so that it is largest right after one, or at the start. NaN is sorted last.
+    times = np.append(start, release[release > start])
+    released, stuck = (np.searchsorted(np.sort(when), times, side="right") for when in (release, stick))
+    return float(np.max(released - stuck))
 
 
 def far_field(run: xr.Dataset) -> dict[str, float]:
