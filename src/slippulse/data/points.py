@@ -28,29 +28,28 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     sweep : data of a sweep, such as ``xarray.open_dataset("results/data/arrest.nc")``
     index : number of the run, from 0
     """
-    out = xr.Dataset()
+    values = {name: variable.values for name, variable in sweep.variables.items()}
     scalars = [
         name
         for name, variable in sweep.variables.items()
         if variable.dims == ("point",) and name != "row_size"
     ]
-    if "row_size" in sweep:
-        ends = np.cumsum(sweep.variables["row_size"].values)
-        rows = slice(int(ends[index] - sweep.variables["row_size"].values[index]), int(ends[index]))
-        for name in ("x", "prestress", *FRONTS, *FIELDS):
-            if name in sweep:
-                out[name] = ("x", sweep.variables[name].values[rows])
-        out = out.set_coords("x")
-    if "sample_time" in sweep:
-        out = out.assign_coords(
-            sample_time=("sample_time", sweep.variables["sample_time"].values[index]),
-            sample_position=("sample_position", sweep.variables["sample_position"].values[index]),
-        )
-        for name in ("sample_slip", "sample_velocity"):
-            out[name] = (("sample_time", "sample_position"), sweep.variables[name].values[index])
+    fields, coordinates = {}, {}
+    if "row_size" in values:
+        end = int(np.sum(values["row_size"][: index + 1]))
+        rows = slice(end - int(values["row_size"][index]), end)
+        names = [name for name in ("x", "prestress", *FRONTS, *FIELDS) if name in values]
+        fields = {name: ("x", values[name][rows]) for name in names}
+        coordinates["x"] = fields.pop("x")
+    if "sample_time" in values:
+        axes = ("sample_time", "sample_position")
+        coordinates |= {name: (name, values[name][index]) for name in axes}
+        fields |= {name: (axes, values[name][index]) for name in ("sample_slip", "sample_velocity")}
+    # All at once: each variable that is added to a Dataset is aligned with those that are there.
+    out = xr.Dataset(fields, coordinates)
     of_the_file = (*FILE, "featureType", "configuration")
     of_the_run = {name: value for name, value in sweep.attrs.items() if name not in of_the_file}
-    out.attrs = {name: sweep.variables[name].values[index].item() for name in scalars} | of_the_run
+    out.attrs = {name: values[name][index].item() for name in scalars} | of_the_run
     return out
 
 

@@ -96,13 +96,13 @@ def grid_tables(
     """
     finest = tables[0]
     rows = []
-    studied = quantities(finest, keys)
-    for index in range(len(finest)):
-        point = {"point": index} | {key: finest[key].iloc[index] for key in keys}
-        for name in studied:
-            study = grid_study(tuple(table[name].iloc[index] for table in tables), factors)
+    studied = {name: np.column_stack([table[name] for table in tables]) for name in quantities(finest, keys)}
+    for index, point in enumerate(finest[list(keys)].to_dict("records")):
+        for name, values in studied.items():
+            study = grid_study(tuple(values[index].tolist()), factors)
             rows.append(
-                point
+                {"point": index}
+                | point
                 | {
                     "quantity": name,
                     "value": study.value,
