@@ -260,7 +260,7 @@ def test_examples_are_drawn_and_lettered_in_the_diagrams(drawn, table):
         if len(text.get_text()) == 1
     }
     assert letters == {name: f"({panel})" for name, panel in examples["panel"].items()}
-    strips = [axes for axes in drawn.axes if axes.get_xlabel() == r"$\bar x$"]
+    strips = [axes for axes in drawn.axes if axes.get_xlabel() == r"$x$"]
     assert len(strips) == len(examples)
     for axes, (name, example) in zip(strips, examples.iterrows(), strict=True):
         earlier, end = axes.lines

@@ -25,7 +25,7 @@ def folder(tmp_path_factory) -> Path:
     figure = new_figure(COLUMN, 2.0)
     axes = figure.subplots()
     axes.set_xlabel("pre-stress AVATAR")
-    axes.set_ylabel(r"$\bar\tau_0$")
+    axes.set_ylabel(r"$\tau_0$")
     with configured_by(CONFIGURATION):
         save_figure(figure, folder / "figure.png", folder / "figure.pdf")
     return folder

@@ -276,11 +276,11 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
         "b": r"$\Gamma = 1$, asymmetric",
         "c": r"$\Gamma = 0$, symmetric",
     }
-    both, left, right = r"$\bar\tau_0$ (both sides)", r"$\bar\tau_{0,l}$ (left)", r"$\bar\tau_{0,r}$ (right)"
+    both, left, right = r"$\tau_0$ (both sides)", r"$\tau_{0,l}$ (left)", r"$\tau_{0,r}$ (right)"
     axes.set_title(title.get(letter, r"$\Gamma = 0$, asymmetric"), pad=16.0 if letter == "b" else None)
     axes.set_xlabel(both if letter in "ac" else right)
     if letter in "ab":
-        axes.set_ylabel(r"$\bar\gamma$", labelpad=1.0)
+        axes.set_ylabel(r"$\gamma$", labelpad=1.0)
     elif letter in "de":
         axes.set_ylabel(left)
     if letter == "b":
@@ -289,8 +289,8 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
     if len(step):
         inner = rows.loc[rows["role"] == "marker", "right"].iloc[0]
         axes.set(
-            title=rf"$\Gamma = 0,\ \bar\tau_{{0,r}} = {inner:g}$",
-            xlabel=rf"$\bar\tau$ beyond $\bar x = {step.iloc[0]:g}$",
+            title=rf"$\Gamma = 0,\ \tau_{{0,r}} = {inner:g}$",
+            xlabel=rf"$\tau$ beyond $x = {step.iloc[0]:g}$",
         )
 
 
@@ -301,7 +301,7 @@ def _write_groups(axes, runs: pd.DataFrame) -> None:
         axes.axvline(0.5 * (low["max"] + high["min"]), color=BLACK, linewidth=0.8)
     for level, ends in groups.iterrows():
         axes.text(
-            ends.mean(), 1.03, rf"$\bar\tau_{{0,l}}$ = {setting(level)}", fontsize=7.0, ha="center",
+            ends.mean(), 1.03, rf"$\tau_{{0,l}}$ = {setting(level)}", fontsize=7.0, ha="center",
             transform=axes.get_xaxis_transform(),
         )  # fmt: skip
 

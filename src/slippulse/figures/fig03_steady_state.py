@@ -68,8 +68,8 @@ def plot(table: pd.DataFrame) -> Figure:
     gamma = table["gamma"].dropna().iloc[0]
     grid[0, 0].set_ylabel(r"slip velocity / largest")
     grid[1, 0].set_ylabel("simulation\n$-$ exact")
-    grid[1, 0].set_xlabel(rf"$\bar\chi$ / paper's width ($\bar\gamma = {gamma:g}$)", fontsize=7)
-    grid[1, 1].set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
+    grid[1, 0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {gamma:g}$)", fontsize=7)
+    grid[1, 1].set_xlabel(r"$\chi/W$")
     handles = displacement_handles(pulses[pulses["panel"] == "displacement"])
     grid[0, 0].legend(
         handles=handles[:4], loc="upper left", handlelength=0.8, labelspacing=0.2, borderaxespad=0.2

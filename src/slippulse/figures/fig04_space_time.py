@@ -130,8 +130,8 @@ def plot(table: pd.DataFrame) -> Figure:
         _draw_transition(space_time, roles)
         largest = roles["largest"]["value"].iloc[0]
         bar = side.colorbar(image, ax=space_time, pad=0.02, aspect=22)
-        bar.set_label(rf"slip velocity $\dot{{\bar u}}$ (largest {largest:#.3g})")
-        profile.set_ylabel(r"position $\bar x$")
+        bar.set_label(rf"slip velocity $\dot u$ (largest {largest:#.3g})")
+        profile.set_ylabel(r"position $x$")
         panel_letter(profile, letter)
         side.suptitle(_title(roles, boundary), fontsize=8.0)
         maps.append(space_time)
@@ -145,12 +145,12 @@ def _title(roles: Mapping[str, pd.DataFrame], boundary: int) -> str:
     value = roles["parameter"].set_index("series")["value"]
     parts = [rf"$\Gamma = {boundary}$"]
     if boundary:
-        parts.append(rf"$\bar\gamma = {value['gamma']:g}$")
+        parts.append(rf"$\gamma = {value['gamma']:g}$")
     if value["left"] == value["right"]:
-        parts.append(rf"$\bar\tau_0 = {value['left']:g}$")
+        parts.append(rf"$\tau_0 = {value['left']:g}$")
     else:
-        parts += [rf"$\bar\tau_{{0,l}} = {value['left']:g}$", rf"$\bar\tau_{{0,r}} = {value['right']:g}$"]
-    parts.append(rf"$\bar W_{{\bar\tau}} = {value['width']:g}$")
+        parts += [rf"$\tau_{{0,l}} = {value['left']:g}$", rf"$\tau_{{0,r}} = {value['right']:g}$"]
+    parts.append(rf"$W = {value['width']:g}$")
     if "flag" in roles:
         parts.append(f"flagged: {roles['flag']['series'].iloc[0]}")
     return ", ".join(parts)
@@ -220,5 +220,5 @@ def _draw_arrows(axes, ends: pd.DataFrame, level: float) -> None:
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
-        label = rf"$\bar {name}_\mathrm{{trans}} = {value:#.3g}$"
+        label = rf"${name}_\mathrm{{trans}} = {value:#.3g}$"
         axes.text(beside, height, label, va="center", fontsize=7.5, path_effects=HALO, zorder=4.0)

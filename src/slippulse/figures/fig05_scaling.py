@@ -68,7 +68,7 @@ def plot(table: pd.DataFrame) -> Figure:
         above, below = grid[0, column], grid[1:, column]
         draw_collapse(above, markers[markers["panel"].str.startswith(boundary)], boundary)
         above.set_title(title, fontsize=8)
-        above.set_xlabel(r"predicted $\bar L$, $\bar T$")
+        above.set_xlabel(r"predicted $L$, $T$")
         draw_inset(above, table[table["panel"] == f"{boundary}_inset"], boundary)
         across, label = OTHERS[boundary]
         for axes, quantity in zip(below, SYMBOLS, strict=True):
@@ -77,7 +77,7 @@ def plot(table: pd.DataFrame) -> Figure:
         level_bar(figure, list(grid[:, column]), boundary, location="bottom", aspect=25, pad=0.01)
         for row in range(3):
             panel_letter(grid[row, column], "abcdef"[2 * row + column])
-    grid[0, 0].set_ylabel(r"measured $\bar L$, $\bar T$")
+    grid[0, 0].set_ylabel(r"measured $L$, $T$")
     for axes, symbol in zip(grid[1:, 0], SYMBOLS.values(), strict=True):
         axes.set_ylabel(f"${symbol}$, measured\nover predicted")
     figure.legend(
@@ -108,5 +108,5 @@ def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
     inset = axes.inset_axes([0.62, 0.16, 0.36, 0.3])
     for level, group in rows.groupby("left"):
         inset.plot(group["x"], group["y"], color=scale.to_rgba(level), linewidth=0.8)
-    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=6.0, pad=1.0)
+    inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
     inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)

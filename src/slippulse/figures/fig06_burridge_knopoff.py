@@ -33,9 +33,9 @@ UNIT, STRIP = 0.36, 0.42
 # Light, middle and dark, so that grey tells them apart too.
 COLOURS = {"at rest": "#e2e8ee", "sliding": ORANGE, "stuck after sliding": "#00402f"}
 TITLES = {
-    "displacement": r"$\Gamma = 1$: leaf springs to a held plate, $\bar\gamma = {gamma:g}$, $\bar\tau_0 = {left:g}$",
+    "displacement": r"$\Gamma = 1$: leaf springs to a held plate, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$",
     "stress": r"$\Gamma = 0$: a constant stress on each block, "
-    r"$\bar\tau_{{0,l}} = {left:g}$, $\bar\tau_{{0,r}} = {right:g}$",
+    r"$\tau_{{0,l}} = {left:g}$, $\tau_{{0,r}} = {right:g}$",
 }
 
 
@@ -173,7 +173,7 @@ def draw_prestress(axes, rows: pd.DataFrame) -> None:
     x, level = rows["x"].to_numpy(), rows["prestress"].to_numpy()
     axes.axhline(0.0, color="black", linewidth=0.6)
     axes.bar(x, level, width=BLOCK, color=GREY, edgecolor="none")
-    axes.set_ylabel(r"$\bar\tau$", rotation=0, ha="right", va="center")
+    axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
     axes.set_ylim(min(0.0, float(level.min())) - 0.15, 1.12)
     axes.set_yticks(sorted({0.0, 1.0, float(rows["left"].iloc[0])}))
     axes.tick_params(axis="x", length=0, labelbottom=False)
@@ -215,7 +215,7 @@ def draw_rows(axes, rows: pd.DataFrame, pitch: float, leaf: bool) -> None:
         axes.text(
             low - 0.2,
             base + 0.5 * HEIGHT,
-            rf"$\bar t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0],
+            rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0],
             ha="right",
             va="center",
             fontsize=7,
@@ -224,7 +224,7 @@ def draw_rows(axes, rows: pd.DataFrame, pitch: float, leaf: bool) -> None:
     axes.set_ylim(-pitch * rows["row"].max() - 0.2, (PLATE if leaf else HEIGHT) + 0.08)
     axes.set_yticks([])
     axes.set_xlabel(
-        rf"position $\bar x$ at rest; displacement drawn: {rows['scale'].iloc[0]:.2g} $\times$ slip $\bar u$"
+        rf"position $x$ at rest; displacement drawn: {rows['scale'].iloc[0]:.2g} $\times$ slip $u$"
     )
     axes.xaxis.set_major_locator(MultipleLocator(2))
     for side in ("left", "right", "top"):

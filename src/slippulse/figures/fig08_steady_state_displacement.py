@@ -34,7 +34,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for (above, strip), (field, label), letter in zip(grid.T, FIELDS.items(), "abc", strict=True):
         draw_displacement(above, strip, table, field)
         above.set_ylabel(f"{label} / paper's largest")
-        strip.set_xlabel(r"$\bar\chi$ / paper's width")
+        strip.set_xlabel(r"$\chi$ / paper's width")
         panel_letter(above, letter)
     grid[1, 0].set_ylabel("simulation\n$-$ exact")
     theory = table[(table["role"] == "theory") & (table["field"] == "slip_acceleration")]
@@ -42,6 +42,6 @@ def plot(table: pd.DataFrame) -> Figure:
     # The undamped lattice rings beyond the theory at the front; the axes leave room for some of it.
     grid[0, 2].set_ylim(1.5 * float(scaled.min()), 1.5 * float(scaled.max()))
     grid[1, 2].set_ylim(-0.5, 0.5)
-    grid[0, 1].set_title(rf"$\Gamma = 1$, $\bar\gamma = {gamma:g}$", fontsize=8)
+    grid[0, 1].set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", fontsize=8)
     figure.legend(handles=displacement_handles(table), loc="outside lower center", ncols=4)
     return figure

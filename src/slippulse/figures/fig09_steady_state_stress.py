@@ -43,7 +43,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for (above, strip), (field, label), letter in zip(grid.T, FIELDS.items(), "abc", strict=True):
         draw_stress(above, strip, pulses, field)
         above.set_ylabel(f"{label} / scale")
-        strip.set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
+        strip.set_xlabel(r"$\chi/W$")
         panel_letter(above, letter)
     grid[1, 0].set_ylabel("simulation\n$-$ exact")
     grid[0, 0].set_ylim(-0.04, 1.5)

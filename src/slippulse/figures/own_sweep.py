@@ -11,14 +11,14 @@ from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
 
 # What may vary in a sweep, with its symbol.
 AXES = {
-    "left": r"$\bar\tau_{0,l}$",
-    "right": r"$\bar\tau_{0,r}$",
-    "gamma": r"$\bar\gamma$",
-    "damping_ratio": r"$\bar\beta/\mathrm{d}\bar x$",
-    "width": r"$\bar W_{\bar\tau}$",
+    "left": r"$\tau_{0,l}$",
+    "right": r"$\tau_{0,r}$",
+    "gamma": r"$\gamma$",
+    "damping_ratio": r"$\beta/\Delta x$",
+    "width": r"$W$",
     "beyond": r"level beyond the step",
     "release": "release rule",
-    "dx": r"$\mathrm{d}\bar x$",
+    "dx": r"$\Delta x$",
 }
 PANELS, ROWS = 6, 2
 COLOURS = len(CYCLE)

@@ -56,11 +56,11 @@ def plot(run: xr.Dataset) -> Picture:
             sampled = parts.velocity_map(run)
             roles |= {role: rows for role, rows in sampled.groupby("role")}
             image = parts.draw_map(times, roles)
-            figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot{\bar u}$")
+            figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
         else:
             parts.draw_edges(times, roles, run.attrs["end_time"])
         times.legend(loc="upper left")
         slip.plot(run["slip"], run["x"], color=BLUE)
-        slip.set_xlabel(r"slip $\bar u$")
-        profile.set_ylabel(r"position $\bar x$")
+        slip.set_xlabel(r"slip $u$")
+        profile.set_ylabel(r"position $x$")
     return figure

@@ -106,8 +106,8 @@ def plot(table: pd.DataFrame) -> Figure:
         f"{row.series}: {number_text(row.value, row.uncertainty, row.theory)}".replace(
             "|x_minus|", r"$|x_-|$"
         )
-        .replace("T_trans", r"$\bar T_\mathrm{trans}$")
-        .replace("L_trans", r"$\bar L_\mathrm{trans}$")
+        .replace("T_trans", r"$T_\mathrm{trans}$")
+        .replace("L_trans", r"$L_\mathrm{trans}$")
         for row in numbers
     ]
     rows = math.ceil(len(lines) / 2)
@@ -132,8 +132,8 @@ def _draw_space_time(figure, roles: Mapping[str, pd.DataFrame]) -> None:
     image = draw_map(space_time, roles)
     handles = [line for line in space_time.lines if not line.get_label().startswith("_")]
     space_time.legend(handles=handles, loc="upper left")
-    figure.colorbar(image, ax=space_time, pad=0.015, aspect=25).set_label(r"slip velocity $\dot{\bar u}$")
-    profile.set_ylabel(r"position $\bar x$")
+    figure.colorbar(image, ax=space_time, pad=0.015, aspect=25).set_label(r"slip velocity $\dot u$")
+    profile.set_ylabel(r"position $x$")
     panel_letter(profile, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
     figure.suptitle(f"{title}\n{_parameters(roles)}", fontsize=8.0)
@@ -143,15 +143,15 @@ def _parameters(roles: Mapping[str, pd.DataFrame]) -> str:
     value = roles["parameter"].set_index("series")["value"]
     parts = [rf"$\Gamma = {int(value['leaf springs'])}$"]
     if value["leaf springs"]:
-        parts.append(rf"$\bar\gamma = {value['gamma']:g}$")
+        parts.append(rf"$\gamma = {value['gamma']:g}$")
     if value["left"] == value["right"]:
-        parts.append(rf"$\bar\tau_0 = {value['left']:g}$")
+        parts.append(rf"$\tau_0 = {value['left']:g}$")
     else:
-        parts += [rf"$\bar\tau_{{0,l}} = {value['left']:g}$", rf"$\bar\tau_{{0,r}} = {value['right']:g}$"]
+        parts += [rf"$\tau_{{0,l}} = {value['left']:g}$", rf"$\tau_{{0,r}} = {value['right']:g}$"]
     parts += [
-        rf"$\bar W_{{\bar\tau}} = {value['width']:g}$",
-        rf"$\bar\beta/\Delta\bar x = {value['damping_ratio']:g}$",
-        rf"$\Delta\bar x = {value['dx']:g}$",
+        rf"$W = {value['width']:g}$",
+        rf"$\beta/\Delta x = {value['damping_ratio']:g}$",
+        rf"$\Delta x = {value['dx']:g}$",
     ]
     if "flag" in roles:
         parts.append(f"flagged: {roles['flag']['series'].iloc[0]}".replace("_", " "))
@@ -164,7 +164,7 @@ def _draw_end(figure, roles: Mapping[str, pd.DataFrame]) -> None:
         panels,
         "bc",
         ("slip_velocity", "slip"),
-        (r"slip velocity $\dot{\bar u}$ at the end", r"slip $\bar u$ at the end"),
+        (r"slip velocity $\dot u$ at the end", r"slip $u$ at the end"),
         strict=True,
     ):
         rows = roles["profile"][roles["profile"]["series"] == series]
@@ -181,7 +181,7 @@ def _draw_end(figure, roles: Mapping[str, pd.DataFrame]) -> None:
             )
             if letter == "b":
                 axes.legend(loc="upper center")
-        axes.set_xlabel(r"position $\bar x$")
+        axes.set_xlabel(r"position $x$")
         axes.set_ylabel(label)
         axes.set_xlim(rows["position"].min(), rows["position"].max())
         panel_letter(axes, letter)

@@ -33,7 +33,7 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
     for axes, name, label, colour in zip(
         panels,
         ("sample_velocity", "sample_slip"),
-        (r"slip velocity $\dot{\bar u}$", r"slip $\bar u$"),
+        (r"slip velocity $\dot u$", r"slip $u$"),
         (BLUE, ORANGE),
         strict=True,
     ):
@@ -44,14 +44,14 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
         axes.set_ylim(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values))
         lines.append((line, values))
     panels[0].set_xlim(lower, upper)
-    panels[1].set_xlabel(r"position $\bar x$")
+    panels[1].set_xlabel(r"position $x$")
     clock = figure.suptitle("", fontsize=8.0)
     plain = title.replace("$", r"\$")
 
     def draw(frame: int) -> list:
         for line, values in lines:
             line.set_ydata(values[frame])
-        clock.set_text(rf"{plain}: $\bar t = {times[frame]:.2f}$")
+        clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$")
         return [line for line, _ in lines]
 
     # Laid out once, with the longest title, and then left alone: the frames must not jump.

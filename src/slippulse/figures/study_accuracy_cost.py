@@ -20,7 +20,7 @@ PANELS = {
     "peak_velocity": "peak velocity",
     "width": "pulse width",
     "transition_time": r"$T_\mathrm{trans}$, $\Gamma = 1$",
-    "arrest_position": r"$\bar x_-$, $\Gamma = 0$",
+    "arrest_position": r"$x_-$, $\Gamma = 0$",
     "energy": "energy balance",
 }
 # Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
@@ -161,14 +161,12 @@ def draw_locking(axes, rows: pd.DataFrame) -> None:
         gid="localised",
     )
     axes.set_ylim(low, high)
-    axes.set_xlabel(r"time step $\Delta t\,/\,\mathrm{d}\bar x$")
+    axes.set_xlabel(r"time step $\Delta t\,/\,\Delta x$")
     axes.set_ylabel("front speed")
     marks = [
         Line2D([], [], color=BLACK, marker="x", linestyle="none", label="textbook scheme"),
         Line2D([], [], color=BLUE, marker="o", fillstyle="none", linestyle="none", label="localised scheme"),
         Line2D([], [], color=BLUE, linewidth=0.9, label="exact"),
-        Line2D(
-            [], [], color="0.75", linewidth=0.8, label=r"$\mathrm{d}\bar x/(n\,\Delta t)$, $n = 1, 2, \dots$"
-        ),
+        Line2D([], [], color="0.75", linewidth=0.8, label=r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$"),
     ]
     axes.legend(handles=marks, loc="upper left", ncols=2)

@@ -108,23 +108,19 @@ def plot(table: pd.DataFrame) -> Figure:
         )
         spacing_axes.plot([], [], marker=marker, color=colour, label=f"{ratio:g}")
     path_axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
-    path_axes.set(xlabel=r"time $\bar t\,/\,|\bar x_-|$", ylabel=r"left front $|\bar x|\,/\,|\bar x_-|$")
+    path_axes.set(xlabel=r"time $t\,/\,|x_-|$", ylabel=r"left front $|x|\,/\,|x_-|$")
     path_axes.plot([], [], color=GREY, linewidth=3.0, alpha=0.35, label="simulation")
     path_axes.plot([], [], color=GREY, linewidth=0.9, label="exact")
     path_axes.plot([], [], color=GREY, marker="o", linestyle="none", label="last release")
     path_axes.legend(loc="lower right")
-    rest_axes.set(
-        yscale="log", xlabel=r"time $\bar t\,/\,|\bar x_-|$", ylabel=r"still to go, $1-|\bar x|/|\bar x_-|$"
-    )
+    rest_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_-|$", ylabel=r"still to go, $1-|x|/|x_-|$")
     rest_axes.set_ylim(3e-4, 1.1)
-    spacing_axes.set(
-        xscale="log", xlabel=r"spacing $\mathrm{d}\bar x$", ylabel=r"time $\bar t\,/\,|\bar x_-|$"
-    )
+    spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_-|$")
     spacing_axes.plot([], [], marker="o", color=GREY, label="last release")
     label = f"{DRAWN_SHARE:.0%} of the path"
     spacing_axes.plot([], [], marker="o", color=GREY, linestyle="--", markerfacecolor="white", label=label)
     spacing_axes.plot([], [], marker="<", color=GREY, linestyle="none", label="the same, exact")
-    spacing_axes.legend(title=r"$\bar\beta/\mathrm{d}\bar x$", ncols=2, loc="upper right", columnspacing=0.8)
+    spacing_axes.legend(title=r"$\beta/\Delta x$", ncols=2, loc="upper right", columnspacing=0.8)
     spacing_axes.xaxis.set_minor_formatter(NullFormatter())
     spacing_axes.set_xticks(
         np.unique(table["dx"].dropna()), [f"{dx:g}" for dx in np.unique(table["dx"].dropna())]

@@ -90,7 +90,7 @@ def plot(table: pd.DataFrame) -> Figure:
         )
         axes[name].set_title(_ratio(ratio), loc="right")
     bar = figure.colorbar(image, ax=[axes["a"], axes["b"]], location="top", aspect=50, pad=0.02)
-    bar.set_label(r"exact depth $\times\ \bar\gamma^{1/2}$")
+    bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     bar.set_ticks([1, 2, 3, 5, 7, 10], labels=["1", "2", "3", "5", "7", "10"])
     bar.ax.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     _draw_curves(axes["c"], table, runs)
@@ -102,7 +102,7 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def _ratio(value: float) -> str:
-    return rf"$\bar\beta/\mathrm{{d}}\bar x = {value:g}$"
+    return rf"$\beta/\Delta x = {value:g}$"
 
 
 def _finest(runs: pd.DataFrame) -> pd.DataFrame:
@@ -119,9 +119,9 @@ def _draw_map(axes, smooth: pd.DataFrame, runs: pd.DataFrame, scale: LogNorm):
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
         axes.scatter(
             group["tau0"], -group["barrier"], c=group["measured"] * np.sqrt(gamma), norm=scale, cmap=MAP, marker=marker,
-            s=26.0, edgecolors="white", linewidths=0.9, label=rf"$\bar\gamma = {gamma:g}$", gid="lattice", zorder=3.0,
+            s=26.0, edgecolors="white", linewidths=0.9, label=rf"$\gamma = {gamma:g}$", gid="lattice", zorder=3.0,
         )  # fmt: skip
-    axes.set(yscale="log", xlabel=r"pre-stress before $\bar\tau_0$", ylabel=r"barrier $-\bar\tau_b$")
+    axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\mathrm{b}$")
     axes.set_yticks([0.1, 0.2, 0.5, 1.0], ["0.1", "0.2", "0.5", "1"])
     axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     return image
@@ -140,7 +140,7 @@ def _draw_curves(axes, table: pd.DataFrame, runs: pd.DataFrame) -> None:
             rows["exact"],
             color=colour,
             gid=f"exact {tau0:g}",
-            label=rf"$\bar\tau_0 = {tau0:g}$",
+            label=rf"$\tau_0 = {tau0:g}$",
         )
         axes.plot(
             -rows["barrier"], rows["paper"], color=colour, linestyle="--", linewidth=0.8, gid=f"estimate {tau0:g}"
@@ -153,10 +153,10 @@ def _draw_curves(axes, table: pd.DataFrame, runs: pd.DataFrame) -> None:
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="later estimate")
     for gamma, marker in markers.items():
         axes.plot(
-            [], [], marker, color="0.3", markersize=3.8, markerfacecolor="white", label=rf"$\bar\gamma = {gamma:g}$"
+            [], [], marker, color="0.3", markersize=3.8, markerfacecolor="white", label=rf"$\gamma = {gamma:g}$"
         )  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel=r"barrier $-\bar\tau_b$")
-    axes.set_ylabel(rf"depth at $\bar\gamma = {GAMMA:g}$")
+    axes.set(xscale="log", yscale="log", xlabel=r"barrier $-\tau_\mathrm{b}$")
+    axes.set_ylabel(rf"depth at $\gamma = {GAMMA:g}$")
     axes.set_title(_ratio(damped), loc="right")
     axes.set_xticks([0.1, 0.2, 0.5, 1.0], ["0.1", "0.2", "0.5", "1"])
     axes.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
@@ -179,7 +179,7 @@ def _draw_convergence(axes, runs: pd.DataFrame, ratios: np.ndarray) -> None:
             )  # fmt: skip
         axes.plot([], [], color=colour, marker="o", markersize=2.0, label=_ratio(ratio))
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
-    axes.set(xlabel=r"spacing $\mathrm{d}\bar x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
+    axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.35 * (high - low))
     axes.legend(loc="upper left")
@@ -206,7 +206,7 @@ def _draw_passing(axes, rows: pd.DataFrame, ratios: np.ndarray) -> None:
         axes.plot([], [], "s", color=colour, markersize=3.5, label=_ratio(ratio))
     lengths = np.sort(rows["length"].unique())
     axes.set(
-        xlabel="length of the barrier / exact depth", ylabel=r"$\bar\tau_0 \to \bar\tau_b$", xticks=lengths
+        xlabel="length of the barrier / exact depth", ylabel=r"$\tau_0 \to \tau_\mathrm{b}$", xticks=lengths
     )
     axes.set_xlim(lengths[0] - 0.1, lengths[-1] + 0.1)
     axes.set_ylim(-0.6, len(pairs) + 1.2)

@@ -19,9 +19,9 @@ from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_let
 NEEDS = {"measured": ["continuum_fixed_ratio", "continuum_fixed_beta"]}
 
 SERIES = {
-    "fixed ratio, total": (BLUE, "o", r"fixed $\bar\beta/\mathrm{d}\bar x = %g$, %s"),
-    "fixed beta, total": (ORANGE, "s", r"fixed $\bar\beta = %g$, %s"),
-    "fixed beta, elastic": (GREEN, "^", r"fixed $\bar\beta = %g$, %s"),
+    "fixed ratio, total": (BLUE, "o", r"fixed $\beta/\Delta x = %g$, %s"),
+    "fixed beta, total": (ORANGE, "s", r"fixed $\beta = %g$, %s"),
+    "fixed beta, elastic": (GREEN, "^", r"fixed $\beta = %g$, %s"),
 }
 # Columns of the measured table, as the error panel names them.
 ERRORS = {
@@ -29,8 +29,8 @@ ERRORS = {
     "pulse_peak_velocity": ("largest velocity", "s"),
     "pulse_slip": ("slip", "^"),
     "pulse_width": ("width", "D"),
-    "transition_time": (r"$\bar T_\mathrm{trans}$", "v"),
-    "transition_length": (r"$\bar L_\mathrm{trans}$", "P"),
+    "transition_time": (r"$T_\mathrm{trans}$", "v"),
+    "transition_length": (r"$L_\mathrm{trans}$", "P"),
 }
 
 
@@ -109,7 +109,7 @@ def plot(table: pd.DataFrame) -> Figure:
         )
     for (_, limit), style in zip(table[table["role"] == "limit"].iterrows(), ("--", ":"), strict=True):
         speed_axes.axhline(limit["value"], color=BLACK, linewidth=0.8, linestyle=style, label=limit["series"])
-    speed_axes.set(xscale="log", xlabel=r"spacing $\mathrm{d}\bar x$", ylabel=r"front speed $\bar v$")
+    speed_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"front speed $v$")
     speed_axes.legend(loc="upper right")
     panel_letter(speed_axes, "a")
     speed_axes.set_title("lines: exact theory")
@@ -125,9 +125,9 @@ def plot(table: pd.DataFrame) -> Figure:
     error_axes.set(
         xscale="log",
         yscale="log",
-        xlabel=r"spacing $\mathrm{d}\bar x$",
+        xlabel=r"spacing $\Delta x$",
         ylabel=r"|simulation/continuum $-$ 1|",
-        title=r"fixed $\bar\beta/\mathrm{d}\bar x$",
+        title=r"fixed $\beta/\Delta x$",
     )
     error_axes.set_ylim(1e-7, 0.1)
     error_axes.legend(loc="lower right")

@@ -152,8 +152,8 @@ def _draw_map(figure: Figure, axes, rows: pd.DataFrame) -> None:
             ha="left" if place < 0.5 else "right",
         )  # fmt: skip
     bar = figure.colorbar(image, ax=axes, location="top", aspect=25, pad=0.02)
-    bar.set_label(r"slip velocity $\dot{\bar u}$")
-    axes.set(xlabel=r"position $\bar x$", ylabel=r"time $\bar t$")
+    bar.set_label(r"slip velocity $\dot u$")
+    axes.set(xlabel=r"position $x$", ylabel=r"time $t$")
 
 
 def _edge(rows: pd.DataFrame, quantity: str, source: str) -> pd.DataFrame:
@@ -175,19 +175,19 @@ def _draw_edges(axes, table: pd.DataFrame, quantities: tuple[str, ...]) -> None:
                 lattice["position"], lattice["value"], marker, color=colour, markersize=2.2, markerfacecolor="white",
                 markeredgewidth=0.6, gid=f"lattice {quantity} {scene}",
             )  # fmt: skip
-    axes.set_xlabel(r"position $\bar x$")
+    axes.set_xlabel(r"position $x$")
     top = max(float(np.nanmax(line.get_ydata())) for line in axes.lines)
     if quantities == ("slip",):
-        axes.set(ylabel=r"slip $\bar u$", ylim=(0.0, 1.28 * top))
+        axes.set(ylabel=r"slip $u$", ylim=(0.0, 1.28 * top))
         for colour, scene in zip((BLUE, ORANGE), SCENES[:2], strict=True):
             axes.plot([], [], color=colour, label=_name(table[table["scene"] == scene]))
     else:
-        axes.set(ylabel=r"time $\bar t$", ylim=(0.0, 1.45 * top))
+        axes.set(ylabel=r"time $t$", ylim=(0.0, 1.45 * top))
         dx = table.loc[(table["role"] == "edge") & (table["source"] == "lattice"), "dx"].iloc[0]
         for look, label in (
             ({"linestyle": "-"}, "front, exact"),
             ({"linestyle": "--"}, "trailing edge, exact"),
-            ({"linestyle": "none", "marker": "o"}, rf"lattice, $\mathrm{{d}}\bar x = {dx:g}$"),
+            ({"linestyle": "none", "marker": "o"}, rf"lattice, $\Delta x = {dx:g}$"),
         ):
             axes.plot([], [], color="0.3", markersize=2.5, markerfacecolor="white", label=label, **look)
     axes.legend(loc="upper left", labelspacing=0.2)
@@ -200,9 +200,9 @@ def _draw_edges(axes, table: pd.DataFrame, quantities: tuple[str, ...]) -> None:
 
 def _name(rows: pd.DataFrame) -> str:
     first = rows.iloc[0]
-    springs = rf"$\Gamma = 1$, $\bar\gamma = {first['gamma']:g}$" if first["gamma"] > 0.0 else r"$\Gamma = 0$"
+    springs = rf"$\Gamma = 1$, $\gamma = {first['gamma']:g}$" if first["gamma"] > 0.0 else r"$\Gamma = 0$"
     levels = [setting(first["left"])] + ([setting(first["right"])] if first["right"] != first["left"] else [])
-    return rf"{springs}, $\bar\tau_0$ = {', '.join(levels)}"
+    return rf"{springs}, $\tau_0$ = {', '.join(levels)}"
 
 
 def _draw_differences(axes, rows: pd.DataFrame) -> None:
@@ -219,7 +219,7 @@ def _draw_differences(axes, rows: pd.DataFrame) -> None:
     ends = np.array([found["dx"].min(), found["dx"].max()])
     guide = 0.5 * found["value"].min() / ends[0]
     axes.plot(ends, guide * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\mathrm{d}\bar x$")
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
     axes.set_title(_name(rows), loc="right", fontsize=7.5)
     axes.legend(loc="upper left", labelspacing=0.25)
     axes.set_xticks([0.005, 0.01, 0.02, 0.04, 0.08], ["0.005", "0.01", "0.02", "0.04", "0.08"])

@@ -145,10 +145,8 @@ def _draw_refinement(axes, rows: pd.DataFrame, quantity: str) -> None:
     )  # fmt: skip
     ends = np.array([2e-3, 0.1])
     axes.plot(ends, 0.3 * ends, color=BLACK, linewidth=0.8, linestyle=":")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\mathrm{d}\bar x/\bar W_{\bar\tau}$")
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x/W$")
     axes.set_ylabel(f"|measured/exact $-$ 1|, ${SYMBOLS[quantity]}$")
     axes.set_ylim(1e-6, 0.3)
     if quantity == "time":
-        axes.legend(
-            title=r"$\Gamma = 1$: $\bar\tau_0,\ \bar\gamma$", fontsize=6.0, ncols=2, loc="lower right"
-        )
+        axes.legend(title=r"$\Gamma = 1$: $\tau_0,\ \gamma$", fontsize=6.0, ncols=2, loc="lower right")

@@ -106,7 +106,7 @@ def plot(table: pd.DataFrame) -> Figure:
             _points(axes, rest, runs, rule, "damping_ratio", ratio, "tau0", colour, marker, f"{ratio:g}")
         limit = table[(table["role"] == "limit") & (table["release"] == rule)]
         undamped = table[(table["role"] == "undamped") & (table["release"] == rule)]
-        label = r"$1/\sqrt{1-\bar\tau_0}$" if rule == "elastic" else r"$1/(1-\bar\tau_0)$"
+        label = r"$1/\sqrt{1-\tau_0}$" if rule == "elastic" else r"$1/(1-\tau_0)$"
         axes.plot(limit["tau0"], _over(limit, rule), color=BLACK, linestyle=":", linewidth=1.0, label=label)
         axes.plot(
             undamped["tau0"],
@@ -114,13 +114,13 @@ def plot(table: pd.DataFrame) -> Figure:
             color=BLACK,
             linestyle="--",
             linewidth=0.8,
-            label=r"paper: $1/\sqrt{1-\bar\tau_0^2}$",
+            label=r"paper: $1/\sqrt{1-\tau_0^2}$",
         )
         axes.set_title(f"release: {rule} stress")
         axes.set_xlim(0.0, 1.0)
-        rest.set_xlabel(r"pre-stress $\bar\tau_0$")
+        rest.set_xlabel(r"pre-stress $\tau_0$")
         axes.legend(
-            title=r"$\bar\beta/\mathrm{d}\bar x$",
+            title=r"$\beta/\Delta x$",
             ncols=2,
             loc="upper left",
             handlelength=1.2,
@@ -145,10 +145,10 @@ def plot(table: pd.DataFrame) -> Figure:
     axes.set_xscale("log")
     axes.set_title("against damping")
     axes.legend(
-        title=r"$\bar\tau_0$, release", loc="upper left", handlelength=1.2,
+        title=r"$\tau_0$, release", loc="upper left", handlelength=1.2,
         frameon=True, framealpha=1.0, edgecolor="none",
     )  # fmt: skip
-    rest.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
+    rest.set_xlabel(r"damping ratio $\beta/\Delta x$")
     for axes, letter in zip(grid[0], "abc", strict=True):
         panel_letter(axes, letter)
     for axes in grid[0, ::2]:
@@ -162,8 +162,8 @@ def plot(table: pd.DataFrame) -> Figure:
         rest.set_ylim(0.5 * CLOSEST, 1e-1)
     # Elastic speeds are close to one another: over the undamped speed they are not a bundle.
     grid[0, 1].set_ylim(0.97, 1.85)
-    grid[0, 0].set_ylabel(r"front speed $\bar v$")
-    grid[0, 1].set_ylabel(r"$\bar v\,\sqrt{1-\bar\tau_0^2}$")
+    grid[0, 0].set_ylabel(r"front speed $v$")
+    grid[0, 1].set_ylabel(r"$v\,\sqrt{1-\tau_0^2}$")
     grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$")
     return figure
 

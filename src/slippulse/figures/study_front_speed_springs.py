@@ -120,8 +120,8 @@ def plot(table: pd.DataFrame) -> Figure:
         _draw_springs(*grid[:, column], springs[springs["release"] == rule])
         grid[0, column].set_title(f"release: {rule} stress", loc="right")
     _draw_fixed_beta(*grid[:, 2], table[table["part"] == "fixed_beta"])
-    grid[0, 2].set_title(r"fixed $\bar\beta$, elastic", loc="right")
-    grid[0, 0].set_ylabel(r"front speed $\bar v$")
+    grid[0, 2].set_title(r"fixed $\beta$, elastic", loc="right")
+    grid[0, 0].set_ylabel(r"front speed $v$")
     grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$")
     for rest in grid[1]:
         rest.set(yscale="log", ylim=(0.5 * CLOSEST, 5e-2))
@@ -149,19 +149,17 @@ def _draw_springs(axes, rest, rows: pd.DataFrame) -> None:
         chosen = runs[(runs["damping_ratio"] == ratio) & (runs["tau0"] == tau0)]
         _points(axes, rest, chosen, "springs", colour, "o" if tau0 == rows["tau0"].max() else "s")
     for ratio in np.unique(runs["damping_ratio"]):
-        axes.plot(
-            [], [], color=COLOURS.get(ratio, BLACK), label=rf"$\bar\beta/\mathrm{{d}}\bar x = {ratio:g}$"
-        )
+        axes.plot([], [], color=COLOURS.get(ratio, BLACK), label=rf"$\beta/\Delta x = {ratio:g}$")
     for tau0 in np.unique(runs["tau0"])[::-1]:
         look = ("-", "o") if tau0 == rows["tau0"].max() else ("--", "s")
         axes.plot(
-            [], [], look[0], marker=look[1], markersize=3.0, color="0.3", label=rf"$\bar\tau_0 = {tau0:g}$"
+            [], [], look[0], marker=look[1], markersize=3.0, color="0.3", label=rf"$\tau_0 = {tau0:g}$"
         )  # fmt: skip
     axes.plot([], [], "x", color="0.3", markersize=4.0, label="line ends")
     axes.set(xscale="log", yscale="log")
     _speed_axis(axes, float(np.nanmax(rows["speed"])))
     axes.legend(loc="upper left", ncols=2, columnspacing=0.8, handlelength=1.8, labelspacing=0.2)
-    rest.set_xlabel(r"leaf springs $\bar\gamma\,\mathrm{d}\bar x^2$")
+    rest.set_xlabel(r"leaf springs $\gamma\,\Delta x^2$")
 
 
 def _draw_fixed_beta(axes, rest, rows: pd.DataFrame) -> None:
@@ -178,13 +176,13 @@ def _draw_fixed_beta(axes, rest, rows: pd.DataFrame) -> None:
     axes.set(xscale="log", yscale="log")
     _speed_axis(axes, float(np.nanmax(rows["speed"])))
     axes.legend(
-        title=r"$\bar\tau_0,\ \bar\beta$ ($\bar\gamma = 1$)", loc="upper right", ncols=2, columnspacing=0.8,
+        title=r"$\tau_0,\ \beta$ ($\gamma = 1$)", loc="upper right", ncols=2, columnspacing=0.8,
         labelspacing=0.2,
     )  # fmt: skip
     ticks = [0.01, 0.02, 0.05, 0.1]
     rest.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     rest.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
-    rest.set_xlabel(r"spacing $\mathrm{d}\bar x$")
+    rest.set_xlabel(r"spacing $\Delta x$")
 
 
 def _speed_axis(axes, top: float) -> None:

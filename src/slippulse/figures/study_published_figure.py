@@ -28,7 +28,7 @@ NAMES = {
     "front_speed": "front slope",
     "intercept": "intercept",
     "centre_stick": "centre stops",
-    "velocity_displacement": r"largest $\dot{\bar u}$",
+    "velocity_displacement": r"largest $\dot u$",
 }
 
 
@@ -78,8 +78,8 @@ def plot(table: pd.DataFrame) -> Figure:
     figure = new_figure(PAGE, 4.7)
     axes = figure.subplot_mosaic("abc;ddE", height_ratios=(1.0, 0.9))
     _draw_chi2(axes["a"], table)
-    _draw_region(axes["b"], table, "tau0", r"pre-stress $\bar\tau_0$")
-    _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\bar\gamma$")
+    _draw_region(axes["b"], table, "tau0", r"pre-stress $\tau_0$")
+    _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\gamma$")
     _draw_pulls(axes["d"], table)
     _draw_right_panel(axes["E"], table[table["part"] == "stress"])
     for name, letter in zip("abcdE", "abcde", strict=True):
@@ -93,7 +93,7 @@ def _curves(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
 
 
 def _ratio_axis(axes) -> None:
-    axes.set(xscale="log", xlabel=r"damping ratio $b = \bar\beta/\mathrm{d}\bar x$")
+    axes.set(xscale="log", xlabel=r"damping ratio $b = \beta/\Delta x$")
     axes.set_xticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
     axes.xaxis.set_minor_formatter(NullFormatter())
 
@@ -178,7 +178,7 @@ def _draw_pulls(axes, table: pd.DataFrame) -> None:
 
 
 def _edge(name: str) -> str:
-    return rf"edge, $\bar t = {name.rpartition('_')[2]}$"
+    return rf"edge, $t = {name.rpartition('_')[2]}$"
 
 
 def _draw_right_panel(axes, rows: pd.DataFrame) -> None:
@@ -197,7 +197,7 @@ def _draw_right_panel(axes, rows: pd.DataFrame) -> None:
             color=colour,
             label=f"lattice, {label}",
         )
-    axes.set(ylim=(first["drawn"] - 0.022, first["drawn"] + 0.012), ylabel=r"largest $\dot{\bar u}$")
+    axes.set(ylim=(first["drawn"] - 0.022, first["drawn"] + 0.012), ylabel=r"largest $\dot u$")
     axes.set_title(r"$\Gamma = 0$", loc="right")
     _ratio_axis(axes)
     axes.set_xlim(0.04, 0.25)

@@ -82,7 +82,7 @@ def plot(table: pd.DataFrame) -> Figure:
             theory, runs = rows[rows["role"] == "theory"], rows[rows["role"] == "simulation"]
             axes.plot(
                 theory["damping_ratio"], theory["y"] / theory["paper"], color=colour, gid=f"theory {tau0:g}",
-                label=rf"theory, $\bar\tau_0 = {tau0:g}$",
+                label=rf"theory, $\tau_0 = {tau0:g}$",
             )  # fmt: skip
             for flagged, group in runs.groupby(runs["run_flags"].notna()):
                 look = {"linestyle": "none", "marker": "o", "color": colour}
@@ -93,7 +93,7 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_ylabel(f"{label} / paper's formula")
         axes.set_xlim(-0.02, None)
         rest.set_yscale("log")
-        rest.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
+        rest.set_xlabel(r"damping ratio $\beta/\Delta x$")
         panel_letter(axes, "abc"[column])
     grid[0, 2].plot([], [], color=GREY, marker="o", linestyle="none", label="simulation")
     handles, labels = grid[0, 2].get_legend_handles_labels()

@@ -66,7 +66,7 @@ def plot(table: pd.DataFrame) -> Figure:
             label=f"preset {name}", gid="preset",
         )  # fmt: skip
     left.set_yscale("log")
-    left.set_ylabel(r"time step $\Delta t\,/\,\mathrm{d}\bar x$")
+    left.set_ylabel(r"time step $\Delta t\,/\,\Delta x$")
     left.legend(loc="lower left", labelspacing=0.2)
     right.axhline(1.0, color=BLACK, linewidth=0.7)
     right.axhline(MARGIN, color=GREY, linewidth=1.8, alpha=0.7)
@@ -85,7 +85,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for axes, letter in ((left, "a"), (right, "b")):
         axes.set_xscale("symlog", linthresh=LINEAR, linscale=0.4)
         axes.set_xlim(-0.004, None)
-        axes.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
+        axes.set_xlabel(r"damping ratio $\beta/\Delta x$")
         panel_letter(axes, letter)
     return figure
 

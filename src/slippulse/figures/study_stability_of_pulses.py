@@ -139,20 +139,20 @@ def plot(table: pd.DataFrame) -> Figure:
             )  # fmt: skip
     before = slip["before"].iloc[0]
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    slip_axes.set(xlabel=r"distance beyond the step $\bar x$", ylabel=r"slip left behind $\bar u$")
-    slip_axes.set_title(rf"$\Gamma = 1$, $\bar\tau_0 = {before:g}$ before")
+    slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
+    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {before:g}$ before")
     slip_axes.plot([], [], "|", color="0.3", markersize=7.0, label="finite memory")
     dx = slip["dx"].iloc[0]
-    slip_axes.plot([], [], "o", color="0.3", markersize=2.0, label=rf"lattice, $\mathrm{{d}}\bar x = {dx:g}$")
+    slip_axes.plot([], [], "o", color="0.3", markersize=2.0, label=rf"lattice, $\Delta x = {dx:g}$")
     top = float(exact["y"].max())
     slip_axes.set_ylim(None, 1.75 * top)
-    slip_axes.legend(title=r"exact, $\bar\tau_0$ beyond", loc="upper right", ncols=2, columnspacing=0.8)
+    slip_axes.legend(title=r"exact, $\tau_0$ beyond", loc="upper right", ncols=2, columnspacing=0.8)
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     for style, label in (("-", "exact"), (":", "lattice")):
         rest_axes.plot([], [], style, color="0.3", label=label)
     rest_axes.set(
         yscale="log",
-        xlabel=r"distance / $\bar W_p/(\bar v - 1)$",
+        xlabel=r"distance / $W_\mathrm{p}/(v - 1)$",
         ylabel="|slip / new steady slip $-$ 1|",
         title=r"$\Gamma = 1$, finite memory",
         xlim=(0.0, BEYOND),
@@ -177,15 +177,13 @@ def plot(table: pd.DataFrame) -> Figure:
     velocity_axes.text(place, 0.02, " step", transform=velocity_axes.get_xaxis_transform(), fontsize=6.0)
     velocity_axes.set(
         yscale="log",
-        xlabel=r"time $\bar t$",
-        ylabel=r"largest slip velocity, $\bar x > 0$",
-        title=rf"$\Gamma = 0$, $\bar\tau = {shown['before'].iloc[0]:g}$ before",
+        xlabel=r"time $t$",
+        ylabel=r"largest slip velocity, $x > 0$",
+        title=rf"$\Gamma = 0$, $\tau = {shown['before'].iloc[0]:g}$ before",
     )
     positive = shown.loc[shown["y"] > 0.0, "y"]
     velocity_axes.set_ylim(max(1e-2, positive.min()), 6.0 * positive.max())
-    velocity_axes.legend(
-        title=r"$\bar\tau$ beyond", ncols=3, fontsize=6.0, loc="upper left", columnspacing=0.6
-    )
+    velocity_axes.legend(title=r"$\tau$ beyond", ncols=3, fontsize=6.0, loc="upper left", columnspacing=0.6)
     for axes, letter in zip((slip_axes, rest_axes, velocity_axes), "abc", strict=True):
         panel_letter(axes, letter)
     return figure

@@ -60,10 +60,10 @@ def draw_peak(axes, table: pd.DataFrame) -> None:
     for gamma, rows in table[table["role"] == "peak"].groupby("gamma"):
         colour = colour_scale("gamma").to_rgba(gamma)
         axes.plot(
-            rows["left"], rows["exact"], color=colour, marker="o", markersize=2.0, label=rf"$\bar\gamma = {gamma:g}$",
+            rows["left"], rows["exact"], color=colour, marker="o", markersize=2.0, label=rf"$\gamma = {gamma:g}$",
             gid=f"peak {gamma:g}",
         )  # fmt: skip
-    axes.set(xlabel=r"pre-stress $\bar\tau_0$", ylabel=r"exact $\bar T_\mathrm{trans}\,\bar\gamma^{1/2}/\pi$")
+    axes.set(xlabel=r"pre-stress $\tau_0$", ylabel=r"exact $T_\mathrm{trans}\,\gamma^{1/2}/\pi$")
     axes.set_ylim(0.85, 1.52)
     axes.legend(
         loc="upper right", ncols=2, columnspacing=0.6, handlelength=1.2, handletextpad=0.4, fontsize=6.0
@@ -73,9 +73,9 @@ def draw_peak(axes, table: pd.DataFrame) -> None:
 def draw_one_way(panels, table: pd.DataFrame) -> None:
     """Three panels: where the left front stops, T_trans and L_trans, over the right level."""
     labels = {
-        "stop": r"left front stops, $-\bar x$",
-        "time": r"exact $\bar T_\mathrm{trans}$",
-        "length": r"exact $\bar L_\mathrm{trans}$",
+        "stop": r"left front stops, $-x$",
+        "time": r"exact $T_\mathrm{trans}$",
+        "length": r"exact $L_\mathrm{trans}$",
     }
     rows = table[table["role"] == "one_way"]
     for axes, (quantity, label) in zip(panels, labels.items(), strict=True):
@@ -86,11 +86,11 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
                 line["right"], line["exact"], color=colour, marker="o", markersize=2.0, label=setting(left),
                 gid=f"{quantity} {left:g}",
             )  # fmt: skip
-        axes.set(xlabel=r"$\bar\tau_{0,r}$", ylabel=label)
+        axes.set(xlabel=r"$\tau_{0,r}$", ylabel=label)
         low, high = axes.get_ylim()
         axes.set_ylim(max(0.0, low), high + 0.35 * (high - low) * (quantity == "stop"))
     panels[0].legend(
-        title=r"$\bar\tau_{0,l}$", loc="upper center", ncols=4, columnspacing=0.5, handlelength=0.7, handletextpad=0.3,
+        title=r"$\tau_{0,l}$", loc="upper center", ncols=4, columnspacing=0.5, handlelength=0.7, handletextpad=0.3,
         fontsize=6.0,
     )  # fmt: skip
     if (table["role"] == "limit").any():

@@ -18,9 +18,9 @@ from ...theory.pulse import paper_pulse, steady_pulse
 from ..style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, colour_scale
 
 FIELDS = {
-    "slip": r"slip $\bar u$",
-    "slip_velocity": r"slip velocity $\dot{\bar u}$",
-    "slip_acceleration": r"slip acceleration $\ddot{\bar u}$",
+    "slip": r"slip $u$",
+    "slip_velocity": r"slip velocity $\dot u$",
+    "slip_acceleration": r"slip acceleration $\ddot u$",
 }
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, SKY)
 STYLES = ("-", "--", ":", "-.")
@@ -216,7 +216,7 @@ def draw_prestress(inset, rows: pd.DataFrame, by: str, colours: Mapping) -> None
     """Pre-stress profiles in an inset, in the colours of the pulses."""
     for key, group in rows.groupby(by):
         inset.plot(group["x"], group["y"], color=colours[key], linewidth=0.8)
-    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=6.0, pad=1.0)
+    inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
     inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)
 
 
@@ -224,10 +224,10 @@ def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:
     """Legend: colours are tau_0, line styles the damping of the theory, pale lines the simulation."""
     ratios = np.sort(rows.loc[rows["role"] == "theory", "damping_ratio"].unique())
     handles = [
-        Line2D([], [], color=colour, label=rf"$\bar\tau_0 = {level:g}$")
+        Line2D([], [], color=colour, label=rf"$\tau_0 = {level:g}$")
         for level, colour in tau_colours(rows).items()
     ]
-    damping = r"exact, $\bar\beta/\mathrm{d}\bar x = "
+    damping = r"exact, $\beta/\Delta x = "
     handles += [
         Line2D([], [], color=BLACK, linewidth=0.8, linestyle=style, label=f"{damping}{ratio:g}$")
         for style, ratio in zip(STYLES, ratios, strict=False)
@@ -241,7 +241,7 @@ def stress_handles(rows: pd.DataFrame) -> list[Line2D]:
     handles = []
     for run, colour in profile_colours(rows).items():
         level, width = runs.loc[run, "left"], runs.loc[run, "width"]
-        label = rf"$\bar\tau_{{0,l}} = {level:g}$, $\bar W_{{\bar\tau}} = {width:g}$"
+        label = rf"$\tau_{{0,l}} = {level:g}$, $W = {width:g}$"
         handles.append(Line2D([], [], color=colour, label=label))
     return [
         *handles,

@@ -62,12 +62,12 @@ def draw_examples(figure, table: pd.DataFrame, colours: Mapping[str, str]) -> No
         velocity.set_xlim(curves["prestress"]["x"].min(), curves["prestress"]["x"].max())
         velocity.set_ylim(0.0, 1.15 * max(before["y"].max(), end["y"].max()))
         velocity.locator_params(nbins=3)
-        velocity.set_xlabel(r"$\bar x$")
+        velocity.set_xlabel(r"$x$")
         for axes in (stress, velocity):
             axes.tick_params(labelsize=6.0)
         stress.tick_params(bottom=False)
-    panels[0, 0].set_ylabel(r"$\bar\tau$")
-    panels[1, 0].set_ylabel(r"$\dot{\bar u}$")
+    panels[0, 0].set_ylabel(r"$\tau$")
+    panels[1, 0].set_ylabel(r"$\dot u$")
 
 
 def _write_levels(axes, example: pd.Series) -> None:

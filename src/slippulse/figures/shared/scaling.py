@@ -20,10 +20,10 @@ PAPER_DEFINITION = {
     ("stress", "length"): "last_release_length",
     ("stress", "time"): "last_release_time",
 }
-SYMBOLS = {"length": r"\bar L_\mathrm{trans}", "time": r"\bar T_\mathrm{trans}"}
+SYMBOLS = {"length": r"L_\mathrm{trans}", "time": r"T_\mathrm{trans}"}
 # What colours and markers tell: the level, and what else varies.
-LEVELS = {"displacement": ("tau_0", r"$\bar\tau_0$"), "stress": ("tau_l", r"$\bar\tau_{0,l}$")}
-OTHERS = {"displacement": ("gamma", r"$\bar\gamma$"), "stress": ("width", r"$\bar W_{\bar\tau}$")}
+LEVELS = {"displacement": ("tau_0", r"$\tau_0$"), "stress": ("tau_l", r"$\tau_{0,l}$")}
+OTHERS = {"displacement": ("gamma", r"$\gamma$"), "stress": ("width", r"$W$")}
 MARKERS = "os^Dv<>pP*hX"
 
 
@@ -173,7 +173,7 @@ def draw_damping(figure, table: pd.DataFrame, boundary: str) -> None:
     for axes, quantity, letter in zip(panels, QUANTITIES, "ab", strict=True):
         draw_ratio(axes, table, f"{boundary}_{quantity}", "damping_ratio", several)
         panel_letter(axes, letter)
-        axes.set_xlabel(r"damping ratio $\bar\beta/\mathrm{d}\bar x$")
+        axes.set_xlabel(r"damping ratio $\beta/\Delta x$")
         axes.set_ylabel(f"measured over predicted ${SYMBOLS[quantity]}$")
     level_bar(figure, list(panels), boundary, pad=0.01, aspect=30)
     values = np.sort(table.loc[table["role"] == "marker", several].unique())

@@ -91,7 +91,7 @@ def draw_profile(axes, rows: pd.DataFrame) -> None:
     """Pre-stress to the right, position upwards."""
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
-    axes.set_xlabel(r"$\bar\tau$")
+    axes.set_xlabel(r"$\tau$")
     lower, upper = rows["value"].min(), rows["value"].max()
     axes.set_xlim(min(0.0, lower) - 0.15, upper + 0.15)
     # The peak and the levels far away, the right one only where its label has room.
@@ -155,5 +155,5 @@ def draw_edges(axes, roles: Mapping[str, pd.DataFrame], end: float) -> None:
             label="trailing edge",
         )
     axes.set_xlim(0.0, end)
-    axes.set_xlabel(r"time $\bar t$")
+    axes.set_xlabel(r"time $t$")
     axes.tick_params(labelleft=False)
