@@ -72,14 +72,14 @@ def plot(table: pd.DataFrame) -> Figure:
     grid[1, 1].set_xlabel(r"$\chi/W$")
     handles = displacement_handles(pulses[pulses["panel"] == "displacement"])
     grid[0, 0].legend(
-        handles=handles[:4], loc="upper left", handlelength=0.8, labelspacing=0.2, borderaxespad=0.2
+        handles=handles[:4], loc="upper left", handlelength=0.7, labelspacing=0.2, borderaxespad=0.1
     )
     more = stress_handles(pulses[pulses["panel"] == "stress"])
     figure.legend(
         handles=[*handles[4:-1], *more],
         loc="outside lower center",
         ncols=3,
-        columnspacing=0.8,
-        handlelength=1.4,
+        columnspacing=0.7,
+        handlelength=1.2,
     )
     return figure

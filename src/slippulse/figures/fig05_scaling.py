@@ -9,6 +9,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from ..model.prestress import Prestress
 from .shared.scaling import (
@@ -108,5 +109,6 @@ def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
     inset = axes.inset_axes([0.62, 0.16, 0.36, 0.3])
     for level, group in rows.groupby("left"):
         inset.plot(group["x"], group["y"], color=scale.to_rgba(level), linewidth=0.8)
+    inset.xaxis.set_major_locator(MaxNLocator(2, integer=True))
     inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
     inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)

@@ -120,7 +120,7 @@ def plot(table: pd.DataFrame) -> Figure:
     label = f"{DRAWN_SHARE:.0%} of the path"
     spacing_axes.plot([], [], marker="o", color=GREY, linestyle="--", markerfacecolor="white", label=label)
     spacing_axes.plot([], [], marker="<", color=GREY, linestyle="none", label="the same, exact")
-    spacing_axes.legend(title=r"$\beta/\Delta x$", ncols=2, loc="upper right", columnspacing=0.8)
+    spacing_axes.legend(title=r"$b$", ncols=2, loc="upper right", columnspacing=0.8)
     spacing_axes.xaxis.set_minor_formatter(NullFormatter())
     spacing_axes.set_xticks(
         np.unique(table["dx"].dropna()), [f"{dx:g}" for dx in np.unique(table["dx"].dropna())]

@@ -102,7 +102,7 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def _ratio(value: float) -> str:
-    return rf"$\beta/\Delta x = {value:g}$"
+    return rf"$b = {value:g}$"
 
 
 def _finest(runs: pd.DataFrame) -> pd.DataFrame:

@@ -19,7 +19,7 @@ from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_let
 NEEDS = {"measured": ["continuum_fixed_ratio", "continuum_fixed_beta"]}
 
 SERIES = {
-    "fixed ratio, total": (BLUE, "o", r"fixed $\beta/\Delta x = %g$, %s"),
+    "fixed ratio, total": (BLUE, "o", r"fixed $b = %g$, %s"),
     "fixed beta, total": (ORANGE, "s", r"fixed $\beta = %g$, %s"),
     "fixed beta, elastic": (GREEN, "^", r"fixed $\beta = %g$, %s"),
 }
@@ -127,7 +127,7 @@ def plot(table: pd.DataFrame) -> Figure:
         yscale="log",
         xlabel=r"spacing $\Delta x$",
         ylabel=r"|simulation/continuum $-$ 1|",
-        title=r"fixed $\beta/\Delta x$",
+        title=r"fixed $b$",
     )
     error_axes.set_ylim(1e-7, 0.1)
     error_axes.legend(loc="lower right")

@@ -114,13 +114,13 @@ def plot(table: pd.DataFrame) -> Figure:
             color=BLACK,
             linestyle="--",
             linewidth=0.8,
-            label=r"paper: $1/\sqrt{1-\tau_0^2}$",
+            label="paper's formula",
         )
         axes.set_title(f"release: {rule} stress")
         axes.set_xlim(0.0, 1.0)
         rest.set_xlabel(r"pre-stress $\tau_0$")
         axes.legend(
-            title=r"$\beta/\Delta x$",
+            title=r"$b$",
             ncols=2,
             loc="upper left",
             handlelength=1.2,
@@ -148,7 +148,7 @@ def plot(table: pd.DataFrame) -> Figure:
         title=r"$\tau_0$, release", loc="upper left", handlelength=1.2,
         frameon=True, framealpha=1.0, edgecolor="none",
     )  # fmt: skip
-    rest.set_xlabel(r"damping ratio $\beta/\Delta x$")
+    rest.set_xlabel(r"damping ratio $b$")
     for axes, letter in zip(grid[0], "abc", strict=True):
         panel_letter(axes, letter)
     for axes in grid[0, ::2]:

@@ -149,7 +149,7 @@ def _draw_springs(axes, rest, rows: pd.DataFrame) -> None:
         chosen = runs[(runs["damping_ratio"] == ratio) & (runs["tau0"] == tau0)]
         _points(axes, rest, chosen, "springs", colour, "o" if tau0 == rows["tau0"].max() else "s")
     for ratio in np.unique(runs["damping_ratio"]):
-        axes.plot([], [], color=COLOURS.get(ratio, BLACK), label=rf"$\beta/\Delta x = {ratio:g}$")
+        axes.plot([], [], color=COLOURS.get(ratio, BLACK), label=rf"$b = {ratio:g}$")
     for tau0 in np.unique(runs["tau0"])[::-1]:
         look = ("-", "o") if tau0 == rows["tau0"].max() else ("--", "s")
         axes.plot(

@@ -41,7 +41,7 @@ def table(
     ----------
     data : not used
     measured : published_figure
-    settings : simulations (space_time_displacement) and model (damping_ratio): the scene of our figure 4
+    settings : simulations (space_time_displacement) and model (damping_ratio): the scene of our space-time figure
 
     Returns
     -------
@@ -93,7 +93,7 @@ def _curves(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
 
 
 def _ratio_axis(axes) -> None:
-    axes.set(xscale="log", xlabel=r"damping ratio $b = \beta/\Delta x$")
+    axes.set(xscale="log", xlabel=r"damping ratio $b$")
     axes.set_xticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
     axes.xaxis.set_minor_formatter(NullFormatter())
 
@@ -147,7 +147,7 @@ def _draw_region(axes, table: pd.DataFrame, name: str, label: str) -> None:
             best["damping_ratio"], best[name], marker, color=colour, markeredgecolor="white", markersize=4.5
         )
     ours = table[table["part"] == "ours"].iloc[0]
-    axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our figure 4")
+    axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     if name == "tau0":
         for level, alpha in zip(LEVELS, (0.6, 0.25), strict=True):
             axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")

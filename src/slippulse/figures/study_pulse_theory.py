@@ -93,7 +93,7 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_ylabel(f"{label} / paper's formula")
         axes.set_xlim(-0.02, None)
         rest.set_yscale("log")
-        rest.set_xlabel(r"damping ratio $\beta/\Delta x$")
+        rest.set_xlabel(r"damping ratio $b$")
         panel_letter(axes, "abc"[column])
     grid[0, 2].plot([], [], color=GREY, marker="o", linestyle="none", label="simulation")
     handles, labels = grid[0, 2].get_legend_handles_labels()

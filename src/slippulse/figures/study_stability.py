@@ -85,7 +85,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for axes, letter in ((left, "a"), (right, "b")):
         axes.set_xscale("symlog", linthresh=LINEAR, linscale=0.4)
         axes.set_xlim(-0.004, None)
-        axes.set_xlabel(r"damping ratio $\beta/\Delta x$")
+        axes.set_xlabel(r"damping ratio $b$")
         panel_letter(axes, letter)
     return figure
 

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
@@ -216,6 +217,8 @@ def draw_prestress(inset, rows: pd.DataFrame, by: str, colours: Mapping) -> None
     """Pre-stress profiles in an inset, in the colours of the pulses."""
     for key, group in rows.groupby(by):
         inset.plot(group["x"], group["y"], color=colours[key], linewidth=0.8)
+    inset.set_ylim(min(-0.1, 1.3 * float(rows["y"].min())), 1.1)
+    inset.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
     inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)
 
@@ -227,7 +230,7 @@ def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:
         Line2D([], [], color=colour, label=rf"$\tau_0 = {level:g}$")
         for level, colour in tau_colours(rows).items()
     ]
-    damping = r"exact, $\beta/\Delta x = "
+    damping = r"exact, $b = "
     handles += [
         Line2D([], [], color=BLACK, linewidth=0.8, linestyle=style, label=f"{damping}{ratio:g}$")
         for style, ratio in zip(STYLES, ratios, strict=False)

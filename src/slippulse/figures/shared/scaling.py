@@ -173,7 +173,7 @@ def draw_damping(figure, table: pd.DataFrame, boundary: str) -> None:
     for axes, quantity, letter in zip(panels, QUANTITIES, "ab", strict=True):
         draw_ratio(axes, table, f"{boundary}_{quantity}", "damping_ratio", several)
         panel_letter(axes, letter)
-        axes.set_xlabel(r"damping ratio $\beta/\Delta x$")
+        axes.set_xlabel(r"damping ratio $b$")
         axes.set_ylabel(f"measured over predicted ${SYMBOLS[quantity]}$")
     level_bar(figure, list(panels), boundary, pad=0.01, aspect=30)
     values = np.sort(table.loc[table["role"] == "marker", several].unique())
