@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 
 import pytest
 import yaml
@@ -10,6 +11,7 @@ from PIL import Image
 
 from slippulse import Prestress
 from slippulse.claims.coverage import coverage, problems
+from slippulse.configuration.parameters import parameters
 from slippulse.report.accuracy import sticking
 from slippulse.report.errata import KEYS, check_errata
 from slippulse.report.figures import Gallery, placed_figures
@@ -165,6 +167,70 @@ def test_every_figure_of_the_package_has_a_place(project, source):
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert len(figures) >= 17
     assert figures <= set(placed_figures(source))
+
+
+def test_a_figure_of_the_paper_says_which(tmp_path):
+    gallery = Gallery(
+        ["fig05_scaling"], [], {"fig05_scaling": caption("text")}, drawn(tmp_path, fig05_scaling=7.0)
+    )
+    assert gallery.figure("fig05_scaling").startswith("![**Figure 1 (paper, figure 5). text.**")
+
+
+def test_every_caption_names_boundary_and_parameters(manuscript):
+    captions = read_captions(manuscript / "captions.yaml")
+    del captions["own_sweep"]
+    for name, caption in captions.items():
+        text = caption.finding + caption.caption
+        assert "runs(" in text or r"\Gamma=" in text or "no run" in text, name
+
+
+def test_the_parameters_of_a_simulation_in_words(shipped):
+    config = {
+        "simulations": {
+            "one": {
+                "boundary": "displacement",
+                "left": [0.3],
+                "right": "same",
+                "gamma": [1e-3, 0.1, 0.2, 1.0],
+            },
+            "two": {
+                "boundary": "stress",
+                "profiles": [
+                    {"left": -1.0, "right": 0.0, "width": 1.0},
+                    {"left": -0.5, "right": 0.0, "width": 2.0},
+                ],
+                "beyond": {"position": 5.0, "levels": [0.1, 0.3]},
+                "damping_ratio": [0.0, 0.1, 0.3],
+            },
+        },
+        "model": {"damping_ratio": 0.1},
+    }
+    assert parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
+    assert parameters(config, "two") == (
+        r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
+        "$b$ = 0, 0.1 and 0.3"
+    )
+    with pytest.raises(ValueError, match="simulation: 'three'; allowed: one, two"):
+        parameters(config, "three")
+    assert all(
+        "$b$" in text or r"$\beta$" in text
+        for text in map(partial(parameters, shipped), shipped["simulations"])
+    )
+
+
+def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_checked(source, project):
+    appendix = source[source.index("# Appendix: derivations") : source.index("# Appendix: the solver")]
+    derivations = appendix.split("\n## ")[1:]
+    assert len(derivations) >= 10
+    for text in derivations:
+        first = text.split("\n\n")[1]
+        assert re.match(r"\*Starts from\*.*\*Gives\*.*\*Checked\*", first, re.S), text[:60]
+    for path in re.findall(r"`(tests/[\w/.]+)`", appendix):
+        assert (project / path).exists(), path
+    titles = [text.partition(" {")[0] for text in derivations]
+    referred = re.findall(r'derivations? "([^"]+)"', source)
+    assert len(referred) >= 4
+    assert all(any(title.startswith(name) for title in titles) for name in referred)
 
 
 def test_figures_are_numbered_in_the_order_of_the_text(tmp_path):

@@ -40,8 +40,15 @@ def test_without_one_there_are_at_most_five_digits():
     assert [percent(value) for value in (0.95, 0.0712, 1e-8, None)] == [
         "95 %",
         "7.1 %",
-        "10⁻⁶ %",
+        "10⁻⁸",
         "not measured",
+    ]
+    # Digits are counted in what is written: 0.9996 with three digits is 1.00.
+    assert [number(value, 3) for value in (0.9996, 0.9994, 9.996, 0.09996)] == [
+        "1.00",
+        "0.999",
+        "10.0",
+        "0.100",
     ]
     assert [setting(value) for value in (0.01, -0.3, 1e-9, 12)] == ["0.01", "−0.3", "10⁻⁹", "12"]
     assert [rounded(value) for value in (0.1, 1.23456, None)] == ["0.1", "1.235", "not measured"]

@@ -127,7 +127,7 @@ def _draw_chi2(axes, table: pd.DataFrame) -> None:
     )  # fmt: skip
     _ratio_axis(axes)
     axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
-    axes.legend(loc="upper left", handletextpad=0.4)
+    axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
 
 
 def _draw_region(axes, table: pd.DataFrame, name: str, label: str) -> None:

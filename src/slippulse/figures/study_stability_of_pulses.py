@@ -182,7 +182,7 @@ def plot(table: pd.DataFrame) -> Figure:
         title=rf"$\Gamma = 0$, $\tau = {shown['before'].iloc[0]:g}$ before",
     )
     positive = shown.loc[shown["y"] > 0.0, "y"]
-    velocity_axes.set_ylim(max(1e-2, positive.min()), 6.0 * positive.max())
+    velocity_axes.set_ylim(max(1e-2, positive.min()), 40.0 * positive.max())
     velocity_axes.legend(title=r"$\tau$ beyond", ncols=3, fontsize=6.0, loc="upper left", columnspacing=0.6)
     for axes, letter in zip((slip_axes, rest_axes, velocity_axes), "abc", strict=True):
         panel_letter(axes, letter)

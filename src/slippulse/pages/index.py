@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import yaml
 from markupsafe import Markup
 
 from ..claims.reading import FAILURES_FIRST, Ledger
+from ..configuration.parameters import parameters
 from ..texts.captions import read_captions
 from ..texts.prose import fill
 from .claims import SIGNS, claim_groups
@@ -78,6 +80,7 @@ def index_page(
     )
     facts = json.loads((results / "provenance.json").read_text(encoding="utf-8"))
     names = {"claim": ledger, "found": ledger.found, "config": facts["config"], "facts": facts}
+    names["runs"] = partial(parameters, facts["config"])
     captions = read_captions(texts["captions"], lambda text: fill(text, names))
     summary = yaml.safe_load(Path(texts["summary"]).read_text(encoding="utf-8"))
     accuracy = fill(summary["accuracy"], names)

@@ -131,15 +131,15 @@ def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
         )
     head = [
         r"$\tau_0$",
-        r"$\beta/\Delta x$",
-        "speed, simulated",
-        "exact",
+        "$b$",
+        "$v$, run",
+        "$v$, exact",
         r"$1/\sqrt{1-\tau_0^2}$",
-        "peak, simulated",
-        "exact",
+        "peak, run",
+        "peak, exact",
         r"$1/\sqrt{\gamma}$",
     ]
-    return table(head, rows, [9, 11, 14, 12, 15, 14, 12, 13], "rrrrrrrr")
+    return table(head, rows, [9, 9, 13, 13, 16, 13, 14, 13], "rrrrrrrr")
 
 
 def edges(study: pd.DataFrame) -> str:

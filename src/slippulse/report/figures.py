@@ -10,6 +10,8 @@ from PIL import Image
 
 from ..texts.captions import Caption
 
+# The number that a figure has in the paper, in its name.
+OF_PAPER = re.compile(r"fig(\d+)_")
 # How the text places a figure.
 PLACED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
 
@@ -51,7 +53,9 @@ class Gallery:
         number = self.order.index(name) + 1
         title = name.replace("_", " ")
         caption = self.captions.get(name, Caption(title, title, "", ""))
-        text = f"**Figure {number}. {caption.title}.** {caption.finding} {caption.caption}".strip()
+        paper = OF_PAPER.match(name)
+        head = f"Figure {number}" + (f" (paper, figure {int(paper[1])})" if paper else "")
+        text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alternative = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         # No extension: the vector file for print, the picture for the browser.
         return (

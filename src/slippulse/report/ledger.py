@@ -46,13 +46,9 @@ class LedgerTables(Ledger):
         ]
         return table(["claim", "verdict", "why"], rows, [46, 14, 40], "lll")
 
-    def rows(self, ids: list[str]) -> str:
-        """A short table of some claims."""
-        rows = [
-            [claim.statement, measured_text(claim), compared_text(claim), claim.verdict]
-            for claim in map(self, ids)
-        ]
-        return table(["claim", "measured", "deviation, tolerance", "verdict"], rows, [44, 17, 24, 15], "lrll")
+    def judged(self, id: str) -> str:
+        """In how many runs a qualitative claim holds, and its verdict, for a pair of brackets."""
+        return f"{self.measured(id)}, {self.verdict(id)}"
 
     def whole(self) -> str:
         """Every claim with its place, numbers, tolerance, verdict and note."""

@@ -15,6 +15,8 @@ def _between(typst: str) -> str:
 
 # A long table stands between WIDE or SMALL and CLOSE: on pages on their side, or in small type over several pages.
 WIDE, SMALL = _between("sideways"), _between("small")
+# All figures so far stand before what follows.
+FLUSH = "`````{=typst}\n#place.flush()\n`````"
 CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from .. import theory
+from ..configuration.parameters import parameters
 from ..data.alterations import changes
 from ..model.prestress import Prestress
 from ..texts.captions import read_captions
@@ -18,7 +20,7 @@ from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs
 from .ledger import LedgerTables
-from .markdown import CLOSE, SMALL, WIDE
+from .markdown import CLOSE, FLUSH, SMALL, WIDE
 from .statements import Statements
 
 SOURCE = "replication.md"
@@ -36,7 +38,8 @@ def define(names: dict[str, object], inputs: Inputs, show: Callable[[str], None]
     claim = LedgerTables(inputs.claims, inputs.config["claims"], inputs.findings)
     names |= FILTERS | {"claim": claim, "found": claim.found, "statements": Statements(inputs.statements)}
     names |= {"config": inputs.config, "inputs": inputs, "show": show}
-    names |= {"CLOSE": CLOSE, "SMALL": SMALL, "WIDE": WIDE, "np": np, "theory": theory}
+    names["runs"] = partial(parameters, inputs.config)
+    names |= {"CLOSE": CLOSE, "FLUSH": FLUSH, "SMALL": SMALL, "WIDE": WIDE, "np": np, "theory": theory}
     altered = changes(inputs.shipped, inputs.config)
     names["tolerances_altered"] = any(change["key"].startswith("claims.") for change in altered)
     for function in (Prestress, attempt, edges, grid_studies, presets, speeds, sticking):

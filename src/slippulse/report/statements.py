@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from ..claims.coverage import claims_of, coverage
@@ -38,8 +39,17 @@ class Statements:
     def whole(self) -> str:
         """Every sentence that is tested, with its place and its claims."""
         rows = [
-            [entry["place"], entry["paraphrase"], ", ".join(f"`{claim}`" for claim in claims_of(entry))]
+            [
+                _short(entry["place"]),
+                entry["paraphrase"],
+                ", ".join(f"`{claim}`" for claim in claims_of(entry)),
+            ]
             for entry in self.entries
             if claims_of(entry)
         ]
-        return table(["place", "what it says", "claims"], rows, [24, 44, 32], "lll")
+        return table(["place", "what it says", "claims"], rows, [22, 45, 33], "lll")
+
+
+def _short(place: str) -> str:
+    """A place that fits a narrow column: paragraph and sentence as numbers."""
+    return re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", place)

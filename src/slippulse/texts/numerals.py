@@ -31,8 +31,9 @@ def number(value: float | None, digits: int = 3) -> str:
         return _power_of_ten(f"{value:.{digits - 1}e}")
     if float(value).is_integer():
         return _minus(f"{value:.0f}")
-    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return _minus(f"{value:.{places}f}")
+    # Of the rounded value, so that 0.9996 with three digits is 1.00.
+    magnitude = int(f"{value:.{digits - 1}e}".partition("e")[2])
+    return _minus(f"{value:.{max(0, digits - 1 - magnitude)}f}")
 
 
 def setting(value: float) -> str:
@@ -46,9 +47,11 @@ def rounded(value: float | None, digits: int = 4) -> str:
 
 
 def percent(value: float | None, digits: int = 2) -> str:
-    """A share as a percentage."""
+    """A share as a percentage, or as it is where a percentage would need a power of ten."""
     if value is None or math.isnan(value):
         return MISSING
+    if 0.0 < 100.0 * abs(value) < SMALL:
+        return number(value, digits)
     return f"{number(100.0 * value, digits)} %"
 
 

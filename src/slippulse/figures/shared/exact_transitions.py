@@ -78,6 +78,8 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
         "length": r"exact $L_\mathrm{trans}$",
     }
     rows = table[table["role"] == "one_way"]
+    scene = rows.iloc[0]
+    panels[1].set_title(rf"$\gamma = {scene['gamma']:g},\ b = {scene['damping_ratio']:g}$", fontsize=7.0)
     for axes, (quantity, label) in zip(panels, labels.items(), strict=True):
         groups = rows[rows["quantity"] == quantity].groupby("left")
         for left, line in groups:
