@@ -72,7 +72,7 @@ class Ledger:
     def listed(self, id: str, words: str) -> str:
         """How many runs there are of each kind that the further numbers of a claim name behind some words."""
         found = {name: value for name, value in self(id).further.items() if words in name}
-        return ", ".join(f"{number(value)} {name.rpartition(': ')[2]}" for name, value in found.items())
+        return ", ".join(f"{name.rpartition(': ')[2]}: {number(value)}" for name, value in found.items())
 
     def count(self, *verdicts: str) -> int:
         """How many counted claims have one of these verdicts; all of them if none is named."""
@@ -122,7 +122,7 @@ def predicted_text(claim: SimpleNamespace) -> str:
         return f"all of {claim.predicted:.0f}"
     if claim.kind == "reading":
         return f"{claim.predicted:.0f} degrees of freedom"
-    return number(claim.predicted, 4)
+    return number(claim.predicted, 5)
 
 
 def measured_text(claim: SimpleNamespace) -> str:
@@ -233,7 +233,7 @@ def evidence_text(claim: SimpleNamespace) -> str:
             f"90 % of them within {percent(claim.ninety)}, the largest deviation {percent(claim.largest)}"
         )
     if claim.left_out:
-        parts.append(f"{claim.left_out} runs without numbers left out")
+        parts.append(f"left out, without numbers: {claim.left_out}")
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
     if claim.exact_largest is not None:
         parts.append(
