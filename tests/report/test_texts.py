@@ -237,7 +237,8 @@ def test_figures_are_numbered_in_the_order_of_the_text(tmp_path):
     captions = {name: caption(name.upper()) for name in "abc"}
     gallery = Gallery(["c", "a"], ["a", "b", "c"], captions, drawn(tmp_path, a=7.0, c=7.0))
     assert gallery.figure("c").startswith(f"![**Figure 2. C.** finding what]({tmp_path}/c){{")
-    assert gallery.see("c", " (figure ", ")") == " (figure 2)"
+    assert gallery.see("c", " (figure ", ")") == " ([figure 2](#c))"
+    assert gallery.see("c", " and ") == " and [2](#c)"
     assert gallery.figure("b") == gallery.see("b") == ""
 
 

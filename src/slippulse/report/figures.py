@@ -69,5 +69,8 @@ class Gallery:
         return min(100.0, 100.0 * inches / PAGE)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """A reference to a figure between two texts; nothing at all if it is not included."""
-        return f"{before}{self.order.index(name) + 1}{after}" if name in self.order else ""
+        """A link to a figure between two texts, with the word before its number; nothing if it is not included."""
+        if name not in self.order:
+            return ""
+        start, word = re.fullmatch(r"(.*?)((?:figures? )?)", before).groups()
+        return f"{start}[{word}{self.order.index(name) + 1}](#{name}){after}"
