@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import jupytext
@@ -48,4 +49,5 @@ def execute(source: str | Path, inputs: Inputs) -> str:
             raise ValueError(
                 f"{Path(source).name}: {type(error).__name__}: {reason} (cell {start!r})"
             ) from error
-    return "\n\n".join(shown) + "\n"
+    # No line ends between a number and its per cent sign.
+    return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(shown)) + "\n"
