@@ -89,7 +89,7 @@ def drawn(table):
 
 
 def diagrams(drawn):
-    """The axes of the three diagrams by letter."""
+    """The axes of the diagrams by letter."""
     return {
         axes.get_title("left").strip("()"): axes
         for axes in drawn.axes
@@ -113,7 +113,7 @@ def marked(axes) -> set:
 
 def legend(drawn) -> list[str]:
     """The texts of the legend."""
-    (found,) = [axes.get_legend() for axes in drawn.axes if axes.get_legend()]
+    (found,) = [found for part in drawn.subfigs for found in part.legends]
     return [text.get_text() for text in found.get_texts()]
 
 
@@ -127,15 +127,15 @@ def belongs(letter: str, runs: pd.DataFrame) -> pd.DataFrame:
 @pytest.mark.parametrize(("letter", "simulation", "x", "y"), figure.DIAGRAMS)
 def test_every_run_has_a_marker_at_its_levels(drawn, table, inputs, letter, simulation, x, y):
     measured = belongs(letter, inputs[1][simulation])
+    labels = list(np.unique(measured[x]))
+    across = [labels.index(value) for value in measured[x]]
     if letter == "b":
-        pairs = sorted(set(zip(measured["left"], measured["right"], strict=True)))
-        across = [pairs.index(pair) for pair in zip(measured["left"], measured["right"], strict=True)]
-        labels = [right for _, right in pairs]
+        pairs = sorted(set(zip(measured["left"], measured["gamma"], strict=True)))
+        up = [pairs.index(pair) for pair in zip(measured["left"], measured["gamma"], strict=True)]
+        lines = [gamma for _, gamma in pairs]
     else:
-        labels = list(np.unique(measured[x]))
-        across = [labels.index(value) for value in measured[x]]
-    lines = list(np.unique(measured[y])) if y else [0]
-    up = [lines.index(value) for value in measured[y]] if y else [0] * len(measured)
+        lines = list(np.unique(measured[y])) if y else [0]
+        up = [lines.index(value) for value in measured[y]] if y else [0] * len(measured)
     axes = diagrams(drawn)[letter]
     assert {(i, j) for i, j, _ in marked(axes)} == set(zip(across, up, strict=True))
     assert ticks(axes.get_xticklabels()) == labels
@@ -182,7 +182,11 @@ def test_markers_are_open_where_the_run_ends_too_early(drawn, table):
         "crack-like, two-way",
         "pulses, two-way",
     )
-    faces = {tuple(line.get_xydata()[0]): line.get_markerfacecolor() for line in shapes(diagrams(drawn)["a"])}
+    faces = {
+        tuple(place): line.get_markerfacecolor()
+        for line in shapes(diagrams(drawn)["a"])
+        for place in line.get_xydata()
+    }
     assert faces[1.0, 0.0] == "white" and faces[1.0, 2.0] == figure.LOOKS["pulses, two-way"][0]
 
 
@@ -200,7 +204,7 @@ def test_rings_are_where_a_coarser_lattice_ends_in_another_regime(inputs, tmp_pa
 
 
 def rung(axes) -> list:
-    return [tuple(line.get_xydata()[0]) for line in axes.lines if line.get_gid() == "ring"]
+    return [tuple(place) for line in axes.lines if line.get_gid() == "ring" for place in line.get_xydata()]
 
 
 def test_cells_that_the_exact_solution_does_not_cover_are_hatched(inputs, tmp_path):
@@ -212,7 +216,12 @@ def test_cells_that_the_exact_solution_does_not_cover_are_hatched(inputs, tmp_pa
     }
     drawn = figure.plot(through_csv(figure.table(data, changed, SETTINGS), tmp_path))
     hatched = {
-        letter: [patch.get_center()[0] for patch in axes.patches if patch.get_hatch()]
+        letter: [
+            path.vertices[:4, 0].mean()
+            for cells in axes.collections
+            if cells.get_hatch()
+            for path in cells.get_paths()
+        ]
         for letter, axes in diagrams(drawn).items()
     }
     assert hatched == {"a": [0.0, 0.0, 0.0], "b": [], "c": [], "d": [], "e": []}
@@ -260,7 +269,8 @@ def test_examples_are_drawn_and_lettered_in_the_diagrams(drawn, table):
         if len(text.get_text()) == 1
     }
     assert letters == {name: f"({panel})" for name, panel in examples["panel"].items()}
-    strips = [axes for axes in drawn.axes if axes.get_xlabel() == r"$x$"]
+    _, lower = drawn.subfigs
+    strips = [axes for axes in lower.axes if len(axes.lines) == 2 and not axes.get_title("left")]
     assert len(strips) == len(examples)
     for axes, (name, example) in zip(strips, examples.iterrows(), strict=True):
         earlier, end = axes.lines
@@ -304,7 +314,7 @@ def test_flagged_runs_are_open_counted_and_no_example(inputs):
     assert "pulse, one-way, growing" not in set(table.loc[table["role"] == "example", "regime"])
     drawn = figure.plot(table)
     lines = [line for line in shapes(diagrams(drawn)["e"]) if line.get_label().startswith("flagged")]
-    assert len(lines) == rows.sum()
+    assert sum(len(line.get_xydata()) for line in lines) == rows.sum()
     for line in lines:
         assert line.get_markerfacecolor() == "none" and line.get_markeredgecolor() == GREY
     assert any(f"({rows.sum()})" in text for text in legend(drawn) if "flagged" in text)

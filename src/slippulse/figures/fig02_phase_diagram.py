@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from itertools import pairwise
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -19,7 +19,7 @@ from ..data.points import point
 from ..measure.regime import REGIMES
 from ..texts.numerals import setting
 from .shared.regime_examples import EARLIER_DASHES, draw_examples, profiles
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
+from .style import BLACK, BLUE, COLUMN, GREEN, GREY, ORANGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 
 # What is drawn: data, measured numbers (on coarser lattices too) and studies by name, and keys of the configuration.
 NEEDS = {
@@ -39,11 +39,11 @@ NEEDS = {
     "settings": ["measure.still", "measure.steady_tolerance"],
 }
 
-# Panel letter, simulation, and the columns of its axes in the measured table; "pair" numbers the pairs of levels, and
-# "" is a single row.
+# Panel letter, simulation, and the columns of its axes in the measured table; "line" numbers the pairs of gamma and the
+# level on the left, and "" is a single row.
 DIAGRAMS = (
     ("a", "regimes_displacement", "left", "gamma"),
-    ("b", "regimes_displacement_asymmetric", "pair", "gamma"),
+    ("b", "regimes_displacement_asymmetric", "right", "line"),
     ("c", "regimes_stress", "left", ""),
     ("d", "regimes_stress", "right", "left"),
     ("e", "regimes_beyond", "beyond", "left"),
@@ -138,7 +138,7 @@ def _classified(letter: str, measured: pd.DataFrame, coarser: pd.DataFrame, meas
     if letter == "d":
         return table[table["left"] < 0.0]
     if letter == "b":
-        return table.assign(pair=table.groupby(["left", "right"]).ngroup())
+        return table.assign(line=table.groupby(["left", "gamma"]).ngroup())
     return table
 
 
@@ -204,16 +204,15 @@ def is_flagged(rows: pd.DataFrame) -> pd.Series:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Draw the figure from its table."""
-    figure = new_figure(PAGE, 6.2)
-    figure.get_layout_engine().set(w_pad=0.04, h_pad=0.03)
-    upper, lower = figure.subfigures(2, 1, height_ratios=(4.4, 1.8))
-    grid = upper.add_gridspec(3, 3, width_ratios=(11, 11, 9), height_ratios=(5.2, 6.0, 5.0))
-    places = {"a": grid[:2, 0], "b": grid[0, 1:], "c": grid[2, 0], "d": grid[2, 1], "e": grid[2, 2]}
+    figure = new_figure(COLUMN, 7.8)
+    figure.get_layout_engine().set(w_pad=0.02, h_pad=0.02, hspace=0.03)
+    upper, lower = figure.subfigures(2, 1, height_ratios=(5.1, 2.7))
+    # Rows by boundary, columns by symmetric and asymmetric pre-stress; all that is symmetric under stress is one line.
+    grid = upper.add_gridspec(4, 2, height_ratios=(11.0, 1.1, 2.4, 4.4))
+    places = {"a": grid[0, 0], "b": grid[0, 1], "c": grid[1, 0], "d": grid[1:3, 1], "e": grid[3, 1]}
     for letter, place in places.items():
         _draw_diagram(upper.add_subplot(place), table[table["panel"] == letter], letter)
-    legend = upper.add_subplot(grid[1, 1:])
-    legend.set_axis_off()
-    _draw_legend(legend, table)
+    _draw_legend(upper, table)
     if (table["role"] == "example").any():
         draw_examples(lower, table, {regime: look[0] for regime, look in LOOKS.items()})
     return figure
@@ -228,46 +227,52 @@ def place(values, levels: np.ndarray) -> np.ndarray:
 def _draw_diagram(axes, rows: pd.DataFrame, letter: str) -> None:
     runs = rows[rows["role"] == "marker"]
     levels = {name: np.unique(runs[name]) for name in ("x", "y")}
-    axes.set_aspect("equal", anchor="N")
-    x, y = place(runs["x"], levels["x"]), place(runs["y"], levels["y"])
-    flagged = is_flagged(runs).to_numpy()
-    for i, j, (_, run), unsound in zip(x, y, runs.iterrows(), flagged, strict=True):
-        colour, symbol = LOOKS[run["regime"]]
-        if not unsound:
-            undecided = {"hatch": HATCH} if run["final"] == UNDECIDED else {}
-            _cell(axes, i, j, facecolor=tint(colour), edgecolor="white", linewidth=0.4, **undecided)
-        if run["coarser"] > 0:
-            axes.plot(i, j, "o", **RING, gid="ring")
+    runs = runs.assign(
+        i=place(runs["x"], levels["x"]),
+        j=place(runs["y"], levels["y"]),
+        flagged=is_flagged(runs),
+        undecided=runs["final"] == UNDECIDED,
+        early=runs["run"] != runs["regime"],
+    )
+    for (regime, flagged, undecided), some in runs.groupby(["regime", "flagged", "undecided"]):
+        if not flagged:
+            look = {"edgecolor": GREY, "hatch": HATCH} if undecided else {"edgecolor": "white"}
+            cells = PolyCollection(_cells(some), facecolor=tint(LOOKS[regime][0]), linewidth=0.4, **look)
+            axes.add_collection(cells)
+    for (regime, flagged, early), some in runs.groupby(["regime", "flagged", "early"]):
+        colour, symbol = LOOKS[regime]
         look = _marker(symbol)
-        if unsound:
+        if flagged:
             look |= {"markerfacecolor": "none", "markeredgecolor": GREY}
-        elif run["run"] != run["regime"]:
+        elif early:
             look |= {"markerfacecolor": "white"}
-        label = f"flagged: {run['regime']}" if unsound else run["regime"]
-        axes.plot(i, j, symbol, color=colour, label=label, **look)
+        label = f"flagged: {regime}" if flagged else regime
+        axes.plot(some["i"], some["j"], symbol, color=colour, label=label, **look)
+    ringed = runs[runs["coarser"] > 0]
+    axes.plot(ringed["i"], ringed["j"], "o", **RING, gid="ring")
     for _, row in rows[rows["role"] == "example"].iterrows():
         i, j = place([row["x"]], levels["x"])[0], place([row["y"]], levels["y"])[0]
-        face = tint(LOOKS[row["regime"]][0])
-        _cell(axes, i, j, facecolor=face, edgecolor=BLACK, linewidth=0.8, zorder=3.0)
-        text = {"ha": "center", "va": "center_baseline", "fontsize": 6.5, "fontweight": "bold", "zorder": 4.0}
+        look = {"facecolor": tint(LOOKS[row["regime"]][0]), "edgecolor": BLACK, "linewidth": 0.7}
+        axes.add_patch(Rectangle((i - 0.5, j - 0.5), 1.0, 1.0, **look, zorder=3.0))
+        text = {"ha": "center", "va": "center_baseline", "fontsize": 6.0, "fontweight": "bold", "zorder": 4.0}
         axes.text(i, j, row["series"], **text)
-    # Of a pair, the level on the right.
-    columns = (
-        [runs.loc[runs["x"] == pair, "right"].iloc[0] for pair in levels["x"]]
-        if letter == "b"
-        else levels["x"]
+    axes.set_xticks(np.arange(levels["x"].size), [setting(value) for value in levels["x"]])
+    axes.tick_params("x", rotation=0 if letter == "b" else 90)
+    # Of a line of (b), its gamma.
+    lines = runs.groupby("y")["gamma"].first() if letter == "b" else levels["y"]
+    axes.set_yticks(
+        np.arange(levels["y"].size), [""] if letter == "c" else [setting(value) for value in lines]
     )
-    axes.set_xticks(np.arange(levels["x"].size), [setting(value) for value in columns], rotation=90)
-    lines = [""] if letter == "c" else [setting(value) for value in levels["y"]]
-    axes.set_yticks(np.arange(levels["y"].size), lines)
     axes.set(xlim=(-0.5, levels["x"].size - 0.5), ylim=(-0.5, levels["y"].size - 0.5))
-    axes.tick_params(length=0.0)
+    axes.tick_params(length=0.0, labelsize=6.0, pad=2.0)
     panel_letter(axes, letter)
     _label(axes, rows, letter)
 
 
-def _cell(axes, i: float, j: float, **look) -> None:
-    axes.add_patch(Rectangle((i - 0.5, j - 0.5), 1.0, 1.0, **look))
+def _cells(runs: pd.DataFrame) -> np.ndarray:
+    """Corners of the cell of each run."""
+    corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
+    return runs[["i", "j"]].to_numpy()[:, None, :] + corners
 
 
 def _label(axes, rows: pd.DataFrame, letter: str) -> None:
@@ -276,34 +281,33 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
         "b": r"$\Gamma = 1$, asymmetric",
         "c": r"$\Gamma = 0$, symmetric",
     }
-    both, left, right = r"$\tau_0$ (both sides)", r"$\tau_{0,l}$ (left)", r"$\tau_{0,r}$ (right)"
-    axes.set_title(title.get(letter, r"$\Gamma = 0$, asymmetric"), pad=16.0 if letter == "b" else None)
-    axes.set_xlabel(both if letter in "ac" else right)
+    text = {"fontsize": 7.0, "labelpad": 1.5}
+    both, left, right = r"$\bar\tau_0$ (both sides)", r"$\bar\tau_{0,l}$ (left)", r"$\bar\tau_{0,r}$ (right)"
+    axes.set_title(title.get(letter, r"$\Gamma = 0$, asymmetric"), loc="right", fontsize=7.0)
+    axes.set_xlabel(both if letter in "ac" else right, **text)
     if letter in "ab":
-        axes.set_ylabel(r"$\gamma$", labelpad=1.0)
+        axes.set_ylabel(r"$\bar\gamma$", **text)
     elif letter in "de":
-        axes.set_ylabel(left)
+        axes.set_ylabel(left, **text)
     if letter == "b":
         _write_groups(axes, rows[rows["role"] == "marker"])
     step = rows.loc[rows["role"] == "step", "x"]
     if len(step):
         inner = rows.loc[rows["role"] == "marker", "right"].iloc[0]
-        axes.set(
-            title=rf"$\Gamma = 0,\ \tau_{{0,r}} = {inner:g}$",
-            xlabel=rf"$\tau$ beyond $x = {step.iloc[0]:g}$",
-        )
+        axes.set_title(rf"$\Gamma = 0,\ \bar\tau_{{0,r}} = {inner:g}$", loc="right", fontsize=7.0)
+        axes.set_xlabel(rf"$\bar\tau$ beyond $\bar x = {step.iloc[0]:g}$", **text)
 
 
 def _write_groups(axes, runs: pd.DataFrame) -> None:
-    """The level on the left of each group of columns, above it."""
-    groups = runs.groupby("left")["x"].agg(["min", "max"]).sort_values("min")
-    for (_, low), (_, high) in pairwise(groups.iterrows()):
-        axes.axvline(0.5 * (low["max"] + high["min"]), color=BLACK, linewidth=0.8)
+    """The level on the left of each group of lines, beside it."""
+    lines = np.unique(runs["y"])
+    groups = runs.groupby("left")["y"].agg(["min", "max"]).sort_values("min")
+    for level in groups["max"].iloc[:-1]:
+        axes.axhline(place([level], lines)[0] + 0.5, color=BLACK, linewidth=0.8)
+    text = {"fontsize": 6.0, "rotation": 90, "va": "center", "transform": axes.get_yaxis_transform()}
     for level, ends in groups.iterrows():
-        axes.text(
-            ends.mean(), 1.03, rf"$\tau_{{0,l}}$ = {setting(level)}", fontsize=7.0, ha="center",
-            transform=axes.get_xaxis_transform(),
-        )  # fmt: skip
+        axes.text(1.02, place(ends, lines).mean(), setting(level), **text)
+    axes.text(1.11, place(lines, lines).mean(), r"$\bar\tau_{0,l}$ (left)", **text | {"fontsize": 7.0})
 
 
 def tint(colour: str) -> tuple[float, ...]:
@@ -312,16 +316,16 @@ def tint(colour: str) -> tuple[float, ...]:
 
 
 RING = {
-    "linestyle": "none", "markersize": 8.2, "markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 0.6,
+    "linestyle": "none", "markersize": 6.8, "markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 0.5,
 }  # fmt: skip
 
 
 def _marker(symbol: str) -> dict:
-    size = {"*": 6.0, "s": 4.0, "D": 3.6}.get(symbol, 4.6)
+    size = {"*": 4.6, "s": 3.2, "D": 2.9}.get(symbol, 3.7)
     return {"linestyle": "none", "markersize": size, "markeredgewidth": 0.6}
 
 
-def _draw_legend(axes, table: pd.DataFrame) -> None:
+def _draw_legend(figure, table: pd.DataFrame) -> None:
     runs = table[table["role"] == "marker"]
     flagged = is_flagged(runs)
     handles = []
@@ -331,12 +335,12 @@ def _draw_legend(axes, table: pd.DataFrame) -> None:
             handles.append(Line2D([], [], marker=symbol, color=colour, label=regime, **_marker(symbol)))
     open_look = _marker("o") | {"markerfacecolor": "white", "markeredgecolor": BLACK}
     if (~flagged & (runs["run"] != runs["regime"])).any():
-        handles.append(Line2D([], [], marker="o", label="open: not yet so when the run ends", **open_look))
+        handles.append(Line2D([], [], marker="o", label="open: not yet so\nwhen the run ends", **open_look))
     if (runs["coarser"] > 0).any():
-        handles.append(Line2D([], [], marker="o", label="ringed: other on a coarser lattice", **RING))
+        handles.append(Line2D([], [], marker="o", label="ringed: other on a\ncoarser lattice", **RING))
     if (~flagged & (runs["final"] == UNDECIDED)).any():
         handles.append(
-            Patch(facecolor="white", edgecolor=GREY, hatch=HATCH, label="hatched: run alone, undecided")
+            Patch(facecolor="white", edgecolor=GREY, hatch=HATCH, label="hatched: by the run alone")
         )
     if flagged.any():
         look = _marker("s") | {"markerfacecolor": "none"}
@@ -347,8 +351,15 @@ def _draw_legend(axes, table: pd.DataFrame) -> None:
         look = {"linestyle": "none", "markersize": 6.0, "markerfacecolor": "white", "markeredgewidth": 0.8}
         label = f"{examples[0]} to {examples[-1]}: run shown below"
         handles.append(Line2D([], [], marker="s", color=BLACK, label=label, **look))
-        label = "below: at two thirds of the time"
+        label = "dashed: at 2/3 of the time"
         handles.append(Line2D([], [], color=GREY, linewidth=0.8, linestyle=EARLIER_DASHES, label=label))
-    axes.legend(
-        handles=handles, loc="center", ncols=2, labelspacing=0.45, handlelength=1.8, columnspacing=1.6
+    legend = figure.legend(
+        handles=handles,
+        loc="lower left",
+        labelspacing=0.35,
+        handlelength=1.6,
+        fontsize=6.5,
+        borderaxespad=0.0,
     )
+    # Beneath (c), where there is room for it.
+    legend.set_in_layout(False)

@@ -13,6 +13,8 @@ from ..style import BLACK, GREY
 
 # Points kept of each profile.
 PROFILE_POINTS = 500
+# Examples beside each other.
+ACROSS = 3
 EARLIER_DASHES = (0, (3, 1.2))
 
 
@@ -43,9 +45,12 @@ def profiles(run: xr.Dataset) -> pd.DataFrame:
 def draw_examples(figure, table: pd.DataFrame, colours: Mapping[str, str]) -> None:
     """Pre-stress above slip velocity of each example, in the colour of its regime."""
     examples = table[table["role"] == "example"]
-    panels = figure.subplots(2, len(examples), sharex="col", height_ratios=(0.7, 1.0), squeeze=False)
+    bands = -(-len(examples) // ACROSS)
+    grid = figure.add_gridspec(2 * bands, ACROSS, height_ratios=(0.7, 1.0) * bands)
     for index, (_, example) in enumerate(examples.iterrows()):
-        stress, velocity = panels[:, index]
+        band, column = divmod(index, ACROSS)
+        stress = figure.add_subplot(grid[2 * band, column])
+        velocity = figure.add_subplot(grid[2 * band + 1, column], sharex=stress)
         rows = table[(table["role"] == "profile") & (table["panel"] == example["series"])]
         curves = {series: part for series, part in rows.groupby("series")}
         before, end = curves["velocity_before"], curves["velocity_end"]
@@ -55,19 +60,21 @@ def draw_examples(figure, table: pd.DataFrame, colours: Mapping[str, str]) -> No
         velocity.plot(before["x"], before["y"], color=GREY, linewidth=0.8, linestyle=EARLIER_DASHES)
         velocity.plot(end["x"], end["y"], color=colours[example["regime"]])
         kind, _, rest = example["regime"].rpartition(", ")
-        title = rf"$\bf{{{example['series']}}}$  {kind}," + f"\n     {rest}"
+        title = rf"$\bf{{{example['series']}}}$  {kind}," + f"\n    {rest}"
         stress.set_title(title, loc="left", fontsize=6.5, linespacing=1.1)
         stress.set_ylim(-1.2, 1.2)
-        stress.set_yticks([0.0, 1.0], ["0", "1"] if index == 0 else ["", ""])
+        stress.set_yticks([0.0, 1.0], ["0", "1"] if column == 0 else ["", ""])
         velocity.set_xlim(curves["prestress"]["x"].min(), curves["prestress"]["x"].max())
         velocity.set_ylim(0.0, 1.15 * max(before["y"].max(), end["y"].max()))
         velocity.locator_params(nbins=3)
-        velocity.set_xlabel(r"$x$")
+        if band == bands - 1:
+            velocity.set_xlabel(r"$\bar x$", labelpad=1.0)
+        if column == 0:
+            stress.set_ylabel(r"$\bar\tau$", labelpad=1.0)
+            velocity.set_ylabel(r"$\dot{\bar u}$", labelpad=1.0)
         for axes in (stress, velocity):
-            axes.tick_params(labelsize=6.0)
-        stress.tick_params(bottom=False)
-    panels[0, 0].set_ylabel(r"$\tau$")
-    panels[1, 0].set_ylabel(r"$\dot u$")
+            axes.tick_params(labelsize=6.0, pad=2.0)
+        stress.tick_params(bottom=False, labelbottom=False)
 
 
 def _write_levels(axes, example: pd.Series) -> None:
