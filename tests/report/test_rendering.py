@@ -5,11 +5,14 @@ from __future__ import annotations
 import copy
 import json
 import re
+from base64 import b64decode
 from html.parser import HTMLParser
+from io import BytesIO
 from types import SimpleNamespace
 
 import pytest
 import yaml
+from PIL import Image
 from pypdf import PdfReader
 
 from slippulse.claims.reading import measured_text
@@ -66,6 +69,17 @@ def test_the_html_is_a_page_with_one_title_and_a_way_back(html):
 def test_its_figures_have_anchors_and_enlarge(html, report):
     names = re.findall(r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img [^>]*></a>', html)
     assert sorted(names) == sorted((name, name) for name in report.inputs.figures)
+
+
+def test_its_pictures_are_the_figures_pixel_by_pixel(html, report):
+    pictures = re.findall(r'<figure id="(\w+)">.*?<img [^>]*src="data:image/webp;base64,([^"]+)"', html, re.S)
+    assert len(pictures) == len(report.inputs.figures)
+    for name, content in pictures:
+        with (
+            Image.open(BytesIO(b64decode(content))) as shown,
+            Image.open(f"{report.inputs.figures_folder}/{name}.png") as drawn,
+        ):
+            assert shown.convert("RGB").tobytes() == drawn.convert("RGB").tobytes()
 
 
 def test_its_equations_are_mathml(html):
