@@ -45,6 +45,11 @@ class Picture {
     if (points.length > 1) this.inside.push(`<path class="${kind}" d="M${path}"/>`);
   }
 
+  area(points, kind) {
+    const corners = points.map(([x, y]) => `${this.x(x).toFixed(1)},${this.y(y).toFixed(1)}`).join(" ");
+    this.inside.push(`<polygon class="${kind}" points="${corners}"/>`);
+  }
+
   dot(x, y, kind = "") {
     this.inside.push(`<circle class="${kind}" cx="${this.x(x)}" cy="${this.y(y)}" r="${kind ? 5 : 4}"/>`);
   }
@@ -63,10 +68,12 @@ class Picture {
 
   // A scale of colours above the axes.
   scale(colours, text) {
-    const { left } = this.box;
-    this.outside += colours.map((colour, k) => `<rect x="${left + 4 * k}" y="6" width="4.5" height="10"`
+    const { left, right } = this.box;
+    // On a phone there must be room for the text.
+    const wide = Math.min(4, 0.25 * (right - left) / colours.length);
+    this.outside += colours.map((colour, k) => `<rect x="${left + wide * k}" y="6" width="${wide + 0.5}" height="10"`
       + ` fill="rgb(${colour})"/>`).join("");
-    this.write(left + 4 * colours.length + 8, 15, text);
+    this.write(left + wide * colours.length + 8, 15, text);
   }
 
   // Show it; what it says is its alternative text.

@@ -69,14 +69,16 @@ function drawMap(rupture, scene, { exact, pulse }) {
   const map = new Picture(at("map"), {
     x: [0, end], y: [1.04 * low, 1.04 * high], labels: ["time", "position x"], height: Math.min(520, 80 + 0.62 * innerWidth), top: 26,
   });
+  const stuck = found.filter(({ stick }) => stick < end).map(({ y, stick }) => [stick, y]);
+  const edge = [...stuck.filter(([, y]) => y < exact.firstStick), [exact.transitionTime, exact.firstStick],
+    ...stuck.filter(([, y]) => y > exact.firstStick)];
+  map.area([...edge, [end, edge.at(-1)[1]], [end, edge[0][1]]], "stuck");
   map.image(velocityImage(found, end, largest, DATA.colours), [0, end], [low, high],
     [...found.map(({ y, start }) => [start, y]), ...found.map(({ y, stop }) => [stop, y]).reverse()]);
   const undamped = new Rupture({ ...scene, ratio: 0 }, DATA.law);
   map.curve(found.map(({ y, start }) => [start, y]), "front");
   map.curve(found.map(({ y }) => [undamped.arrival(y), y]), "zero");
-  const stuck = found.filter(({ stick }) => stick < end).map(({ y, stick }) => [stick, y]);
-  map.curve([...stuck.filter(([, y]) => y < exact.firstStick), [exact.transitionTime, exact.firstStick],
-    ...stuck.filter(([, y]) => y > exact.firstStick)], "edge");
+  map.curve(edge, "edge");
   const ends = rupture.fronts(exact.transitionTime);
   map.curve(ends.map((y) => [exact.transitionTime, y]), "thin");
   map.curve([[0, exact.firstStick], [exact.transitionTime, exact.firstStick]], "thin");
