@@ -8,6 +8,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pytest
+from matplotlib.legend import Legend
 from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
 
@@ -59,6 +60,7 @@ def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     numbers = drawn.table.select_dtypes("number").to_numpy()
     assert not np.isinf(numbers).any()
     assert not too_small(drawn.figure)
+    assert not cut_off(drawn.figure)
 
 
 def too_small(figure) -> dict[str, float]:
@@ -71,6 +73,16 @@ def too_small(figure) -> dict[str, float]:
             if size < SMALLEST - 1e-9:
                 found[shown] = round(size, 2)
     return found
+
+
+def cut_off(figure) -> list[list[str]]:
+    """Legends of a figure that do not end within it."""
+    page = figure.bbox.padded(1.0)
+    return [
+        [text.get_text() for text in legend.get_texts()]
+        for legend in figure.findobj(Legend)
+        if page.count_contains(legend.get_window_extent().get_points()) < 2
+    ]
 
 
 def test_exponents_have_the_size_that_they_are_given():

@@ -46,7 +46,7 @@ def table(
 
 def plot(table: pd.DataFrame) -> Figure:
     """Left: displacement boundary, on axes where undamped pulses are one. Right: stress boundary. Residuals below."""
-    figure = new_figure(COLUMN, 3.7)
+    figure = new_figure(COLUMN, 4.1)
     grid = figure.subplots(2, 2, height_ratios=(2.6, 1.0), sharex="col")
     pulses = table[table["role"] != "inset"]
     insets = table[table["role"] == "inset"]
@@ -68,18 +68,16 @@ def plot(table: pd.DataFrame) -> Figure:
     gamma = table["gamma"].dropna().iloc[0]
     grid[0, 0].set_ylabel(r"slip velocity / largest")
     grid[1, 0].set_ylabel("simulation\n$-$ exact")
-    grid[1, 0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {gamma:g}$)", fontsize=7)
-    grid[1, 1].set_xlabel(r"$\chi/W$")
-    handles = displacement_handles(pulses[pulses["panel"] == "displacement"])
-    grid[0, 0].legend(
-        handles=handles[:4], loc="upper left", handlelength=0.7, labelspacing=0.2, borderaxespad=0.1
-    )
-    more = stress_handles(pulses[pulses["panel"] == "stress"])
+    grid[1, 0].set_xlabel(rf"$\bar\chi$ / paper's width ($\bar\gamma = {gamma:g}$)", fontsize=7)
+    grid[1, 1].set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
+    *left, simulation = displacement_handles(pulses[pulses["panel"] == "displacement"])
+    *right, _ = stress_handles(pulses[pulses["panel"] == "stress"])
+    # A column a boundary.
     figure.legend(
-        handles=[*handles[4:-1], *more],
+        handles=[*left, *right, simulation],
         loc="outside lower center",
-        ncols=3,
-        columnspacing=0.7,
-        handlelength=1.2,
+        ncols=2,
+        handlelength=1.4,
+        labelspacing=0.3,
     )
     return figure

@@ -82,7 +82,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for axes, symbol in zip(grid[1:, 0], SYMBOLS.values(), strict=True):
         axes.set_ylabel(f"${symbol}$, measured\nover predicted")
     figure.legend(
-        handles=handles(table), loc="outside lower center", ncols=3, columnspacing=0.9, handletextpad=0.3
+        handles=handles(table), loc="outside lower center", ncols=3, columnspacing=0.9, handletextpad=0.6
     )
     return figure
 
@@ -112,3 +112,4 @@ def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
     inset.xaxis.set_major_locator(MaxNLocator(2, integer=True))
     inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
     inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)
+    inset.locator_params("x", nbins=2, integer=True)

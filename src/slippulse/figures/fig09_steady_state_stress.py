@@ -38,7 +38,7 @@ def table(
 def plot(table: pd.DataFrame) -> Figure:
     """Slip with the pre-stress as inset, slip velocity, acceleration near the front; below, simulation less theory."""
     figure = new_figure(PAGE, 3.9)
-    grid = figure.subplots(2, 3, height_ratios=(2.6, 1.0))
+    grid = figure.subplots(2, 3, height_ratios=(2.6, 1.0), sharex="col")
     pulses = table[table["role"] != "inset"]
     for (above, strip), (field, label), letter in zip(grid.T, FIELDS.items(), "abc", strict=True):
         draw_stress(above, strip, pulses, field)

@@ -169,4 +169,4 @@ def draw_locking(axes, rows: pd.DataFrame) -> None:
         Line2D([], [], color=BLUE, linewidth=0.9, label="exact"),
         Line2D([], [], color="0.75", linewidth=0.8, label=r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$"),
     ]
-    axes.legend(handles=marks, loc="upper left", ncols=2)
+    axes.legend(handles=marks, loc="upper left", ncols=2, frameon=True, framealpha=1.0, edgecolor="none")

@@ -129,7 +129,7 @@ def plot(table: pd.DataFrame) -> Figure:
         ylabel=r"|simulation/continuum $-$ 1|",
         title=r"fixed $b$",
     )
-    error_axes.set_ylim(1e-7, 0.1)
+    error_axes.set_ylim(1e-8, 0.1)
     error_axes.legend(loc="lower right")
     panel_letter(error_axes, "b")
     return figure

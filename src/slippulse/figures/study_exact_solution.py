@@ -190,7 +190,7 @@ def _draw_edges(axes, table: pd.DataFrame, quantities: tuple[str, ...]) -> None:
             ({"linestyle": "none", "marker": "o"}, rf"lattice, $\Delta x = {dx:g}$"),
         ):
             axes.plot([], [], color="0.3", markersize=2.5, markerfacecolor="white", label=label, **look)
-    axes.legend(loc="upper left", labelspacing=0.2)
+    axes.legend(loc="upper left", labelspacing=0.2, handlelength=1.4)
     for _, end in table[(table["role"] == "limit") & table["scene"].isin(SCENES[:2])].iterrows():
         axes.axvline(end["position"], color=BLACK, linewidth=0.6, linestyle=":")
         axes.text(

@@ -20,7 +20,7 @@ RULES = ("total", "elastic")
 SWEEPS = ("front_speed", "front_speed_slow")
 # Pre-stress levels drawn against the damping ratio.
 LEVELS = (0.2, 0.5, 0.8)
-SPEED_RANGE = (1.0, 100.0)
+SPEED_RANGE = (1.0, 300.0)
 # Agreement closer than this is drawn here.
 CLOSEST = 1e-9
 MARKERS = ("o", "s", "^", "D", "v", "P")
@@ -154,7 +154,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for axes in grid[0, ::2]:
         axes.set_yscale("log")
         axes.set_ylim(*SPEED_RANGE)
-        axes.set_yticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
+        axes.set_yticks([1, 2, 5, 10, 20, 50, 100], ["1", "2", "5", "10", "20", "50", "100"])
         axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     for rest in grid[1]:
         rest.axhline(CLOSEST, color=GREY, linewidth=0.6, linestyle=":")

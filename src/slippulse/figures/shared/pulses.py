@@ -221,6 +221,8 @@ def draw_prestress(inset, rows: pd.DataFrame, by: str, colours: Mapping) -> None
     inset.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
     inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)
+    # The lowest label stands clear of those below the axis.
+    inset.margins(y=0.15)
 
 
 def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:

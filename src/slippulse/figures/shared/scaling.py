@@ -186,5 +186,5 @@ def draw_damping(figure, table: pd.DataFrame, boundary: str) -> None:
     shown = table.loc[table["role"] == "exact", several].iloc[0]
     handles.append(Line2D([], [], color=GREY, linewidth=0.8, label=f"exact theory, {label} = {shown:g}"))
     figure.legend(
-        handles=handles, loc="outside lower center", ncols=len(handles), columnspacing=0.9, handletextpad=0.3
+        handles=handles, loc="outside lower center", ncols=len(handles), columnspacing=0.9, handletextpad=0.6
     )
