@@ -17,6 +17,7 @@ from pypdf import PdfReader
 
 from slippulse.claims.reading import measured_text
 from slippulse.report.execute import execute
+from slippulse.texts.captions import read_captions
 from slippulse.texts.numerals import with_uncertainty
 
 
@@ -92,6 +93,14 @@ def test_the_pdf_has_pages_on_a4_and_figures(report):
     pages = PdfReader(report.pdf).pages
     assert len(pages) >= 12
     assert {tuple(sorted(round(float(x)) for x in page.mediabox[2:])) for page in pages} == {(595, 842)}
+
+
+def test_the_figures_of_the_pdf_have_their_alternative_texts(report, project):
+    reader = PdfReader(report.pdf)
+    objects = (reader.get_object(number) for number in range(1, int(reader.trailer["/Size"])))
+    said = {entry["/Alt"] for entry in objects if isinstance(entry, dict) and "/Alt" in entry}
+    captions = read_captions(project / "manuscript/captions.yaml")
+    assert {captions[name].alt.strip() for name in report.inputs.figures} <= {text.strip() for text in said}
 
 
 def test_equal_inputs_give_equal_bytes(report, build):

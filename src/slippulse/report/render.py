@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import typst
@@ -15,6 +17,8 @@ from .page import as_page
 
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0
+# Names and alternative texts of the figures of a text, which pandoc does not pass on to Typst.
+ALTERNATIVE = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
 
 
 def render_html(text: str, manuscript: str | Path, output: str | Path) -> None:
@@ -64,7 +68,9 @@ def render_pdf(text: str, manuscript: str | Path, output: str | Path) -> None:
     source = _pandoc(text, manuscript, options)
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         root = Path(folder)
-        (root / "report.typ").write_text(_gather(source, root), encoding="utf-8")
+        (root / "report.typ").write_text(
+            _gather(source, root, dict(ALTERNATIVE.findall(text))), encoding="utf-8"
+        )
         try:
             pdf = typst.compile(
                 str(root / "report.typ"),
@@ -90,12 +96,14 @@ def _pandoc(text: str, manuscript: Path, options: list[str]) -> str:
     return pandoc(text, common + options)
 
 
-def _gather(source: str, root: Path) -> str:
-    """Copy the pictures beside the source, since Typst reads nothing above its root."""
+def _gather(source: str, root: Path, alternatives: Mapping[str, str]) -> str:
+    """Copy the pictures beside the source, since Typst reads nothing above its root, and say what they show."""
 
     def local(match: re.Match) -> str:
         picture = Path(match[1])
         shutil.copyfile(picture, root / picture.name)
-        return f'image("{picture.name}"'
+        # A string of Typst is written as one of JSON.
+        shows = json.dumps(alternatives.get(picture.stem, picture.stem), ensure_ascii=False)
+        return f'image("{picture.name}", alt: {shows}'
 
     return re.sub(r'image\("([^"]+)"', local, source)
