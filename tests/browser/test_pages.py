@@ -16,7 +16,7 @@ PAGES = (
     "index.html", "claims.html", "manuscript/replication.html", "explorer.html", "scenes/barrier.html",
 )  # fmt: skip
 # What the explorer may weigh, and the report with all its figures inside.
-LARGEST = {"explorer.html": 300e3, "manuscript/replication.html": 5e6}
+LARGEST = {"explorer.html": 300e3, "manuscript/replication.html": 3.5e6}
 
 
 @pytest.fixture(scope="module")

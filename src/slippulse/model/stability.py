@@ -48,10 +48,11 @@ def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float
 @np.errstate(over="ignore", invalid="ignore")
 def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
+    derivatives = _derivatives(order, modes + gamma_dx2, damping_ratio * modes)
     allowed = 1.0 + (WEAK_GROWTH if order in WEAK_ORDERS else ROUNDING)
 
     def unstable(steps: np.ndarray) -> np.ndarray:
-        largest = _amplifications(order, steps, modes + gamma_dx2, damping_ratio * modes)
+        largest = _amplifications(steps, derivatives)
         # Not a number is not stable.
         return ~(np.max(largest, axis=-1) <= allowed)
 
@@ -83,19 +84,23 @@ def taylor_amplification(order: int, step: float, stiffness: np.ndarray, damping
     step : in units of dx
     stiffness, damping : of each mode, d^2u/dt^2 = -stiffness u - damping du/dt
     """
-    return float(np.max(_amplifications(order, np.array([step]), stiffness, damping)))
+    return float(np.max(_amplifications(np.array([step]), _derivatives(order, stiffness, damping))))
 
 
-def _amplifications(order: int, steps: np.ndarray, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """Amplification of each mode by each step, shape (steps, modes)."""
-    # Time derivatives of slip, each a combination of slip and velocity at the start.
+def _derivatives(order: int, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    """Time derivatives of slip of each mode, each a combination of slip and velocity at the start."""
     derivatives = [
         np.outer([1.0, 0.0], np.ones_like(stiffness)),
         np.outer([0.0, 1.0], np.ones_like(stiffness)),
     ]
     for _ in range(order):
         derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
-    degrees = np.arange(order + 2)
+    return np.array(derivatives)
+
+
+def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
+    """Amplification of each mode by each step, shape (steps, modes)."""
+    degrees = np.arange(len(derivatives))
     powers = np.asarray(steps, dtype=float)[:, None] ** degrees / [math.factorial(k) for k in degrees]
     slip = np.tensordot(powers, derivatives, 1)
     velocity = np.tensordot(powers[:, :-1], derivatives[1:], 1)
