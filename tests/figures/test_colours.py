@@ -7,7 +7,8 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from slippulse.figures.fig06_burridge_knopoff import COLOURS
-from slippulse.figures.style import CYCLE, SCALES, colour_scale
+from slippulse.figures.style import CYCLE, ORDER_COLOURS, SCALES, colour_scale
+from slippulse.model.scene import ORDERS
 
 # Rows of linear red, green, blue.
 VISION = {
@@ -48,6 +49,11 @@ def test_a_scale_goes_one_way_in_lightness(quantity, vision):
     steps = np.diff(lightness)
     assert (steps > 0.0).all() or (steps < 0.0).all()
     assert abs(lightness[-1] - lightness[0]) > 40.0
+
+
+def test_every_order_has_a_colour():
+    assert set(ORDER_COLOURS) == set(ORDERS)
+    assert len(set(ORDER_COLOURS.values())) == len(ORDERS)
 
 
 def test_states_of_a_block_are_apart_in_grey():

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .style import BLACK, BLUE, CYCLE, GREY, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORDER_COLOURS, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"studies": ["accuracy_cost"]}
@@ -89,10 +89,10 @@ def draw_marks(axes, rows: pd.DataFrame, across: str, name: str) -> None:
         textbook[across], textbook[name], "x-", color=BLACK, markersize=3.5, linewidth=0.6, gid="textbook"
     )
     local = rows[rows["scheme"] == "localised"]
-    for colour, (_, of_order) in zip(CYCLE, local.groupby("order"), strict=False):
+    for order, of_order in local.groupby("order"):
         for step, marks in of_order.groupby("step"):
             axes.plot(
-                marks[across], marks[name], "o", color=colour, markersize=SIZES.get(step, 3.0), alpha=0.8,
+                marks[across], marks[name], "o", color=ORDER_COLOURS[order], markersize=SIZES.get(step, 3.0), alpha=0.8,
                 markeredgewidth=0.0, gid="localised",
             )  # fmt: skip
     presets = rows[rows["preset"].notna()]
@@ -117,8 +117,8 @@ def handles(rows: pd.DataFrame) -> list[Line2D]:
     spacings = ", ".join(f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique())
     out = [Line2D([], [], color=BLACK, marker="x", linewidth=0.6, label=f"textbook, dx = {spacings}")]
     out += [
-        Line2D([], [], color=colour, marker="o", linestyle="none", label=f"order {order:g}")
-        for colour, order in zip(CYCLE, orders, strict=False)
+        Line2D([], [], color=ORDER_COLOURS[order], marker="o", linestyle="none", label=f"order {order:g}")
+        for order in orders
     ]
     out += [
         Line2D(

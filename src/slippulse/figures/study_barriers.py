@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ..texts.numerals import setting
 from ..theory.barrier import barrier_depth_estimate
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, colour_scale, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"studies": ["barriers"]}
@@ -134,7 +134,8 @@ def _draw_curves(axes, table: pd.DataFrame, runs: pd.DataFrame) -> None:
     curves = curves[curves["damping_ratio"] == damped]
     finest = _finest(runs[runs["damping_ratio"] == damped])
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
-    for colour, (tau0, rows) in zip((GREEN, BLUE, PURPLE), curves.groupby("tau0"), strict=False):
+    for tau0, rows in curves.groupby("tau0"):
+        colour = colour_scale("tau_0").to_rgba(tau0)
         axes.plot(
             -rows["barrier"],
             rows["exact"],

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..theory.front_law import front_speed, front_speed_undamped, prestress_for_speed
-from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
+from .style import BLACK, GREY, PAGE, colour_scale, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"measured": ["front_speed", "front_speed_slow"], "settings": ["model.damping_ratio"]}
@@ -127,7 +127,8 @@ def plot(table: pd.DataFrame) -> Figure:
             columnspacing=0.8,
         )
     axes, rest = grid[:, 2]
-    for level, colour in zip(LEVELS, CYCLE, strict=False):
+    for level in LEVELS:
+        colour = colour_scale("tau_0").to_rgba(level)
         for rule, style, marker in zip(RULES, ("-", "--"), ("o", "s"), strict=True):
             line = table[
                 (table["role"] == "over_damping") & (table["release"] == rule) & (table["tau0"] == level)

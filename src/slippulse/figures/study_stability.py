@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..model.stability import MARGIN, largest_step
-from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
+from .style import BLACK, GREY, ORDER_COLOURS, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"studies": ["stability"], "settings": ["studies.stability.between"]}
@@ -46,7 +46,8 @@ def plot(table: pd.DataFrame) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=[1.25, 1.0])
     rows = table[table["kind"] == "boundary"]
     lines = table[table["kind"] == "derived"]
-    for colour, ((scheme, order), curve) in zip(CYCLE, rows.groupby(["scheme", "order"]), strict=True):
+    for (scheme, order), curve in rows.groupby(["scheme", "order"]):
+        colour = BLACK if scheme == "fixed_step" else ORDER_COLOURS[order]
         name = "textbook scheme" if scheme == "fixed_step" else f"localised, order {order}"
         line = lines[(lines["scheme"] == scheme) & (lines["order"] == order)]
         left.plot(

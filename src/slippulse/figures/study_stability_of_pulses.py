@@ -18,7 +18,7 @@ from ..texts.numerals import setting
 from ..theory.front_law import front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
 from ..theory.rupture import Rupture
-from .style import CYCLE, GREY, PAGE, new_figure, panel_letter
+from .style import GREY, PAGE, colour_scale, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "settings": ["measure.front_window"]}
@@ -118,7 +118,8 @@ def plot(table: pd.DataFrame) -> Figure:
     slip_axes, rest_axes, velocity_axes = figure.subplots(1, 3)
     slip = table[table["role"] == "slip"]
     exact = table[table["role"] == "exact"]
-    for colour, (level, rows) in zip(CYCLE, slip.groupby("level"), strict=False):
+    for level, rows in slip.groupby("level"):
+        colour = colour_scale("tau_0").to_rgba(level)
         steady, reach = rows["steady"].iloc[0], rows["memory"].iloc[0]
         line = exact[exact["level"] == level].sort_values("x")
         slip_axes.plot(line["x"], line["y"], color=colour, label=f"{level:g}", gid=f"exact {level:g}")

@@ -23,6 +23,8 @@ PAGE = 7.05
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 SKY, YELLOW, BLACK, GREY = "#56B4E9", "#E69F00", "#000000", "#7f7f7f"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
+# Of each order of the localised scheme; the textbook scheme is black.
+ORDER_COLOURS = {3: BLUE, 4: ORANGE, 5: GREEN, 6: PURPLE, 7: YELLOW, 8: SKY}
 VELOCITY_MAP = "viridis"
 # A quantity has the same colour for the same value in every figure: map, its part that is used, ends, and whether the
 # scale is logarithmic.
