@@ -16,6 +16,7 @@ from PIL import Image
 from pypdf import PdfReader
 
 from slippulse.claims.reading import measured_text
+from slippulse.figures.style import FAMILY
 from slippulse.report.execute import execute
 from slippulse.texts.captions import read_captions
 from slippulse.texts.numerals import with_uncertainty
@@ -101,6 +102,11 @@ def test_the_figures_of_the_pdf_have_their_alternative_texts(report, project):
     said = {entry["/Alt"] for entry in objects if isinstance(entry, dict) and "/Alt" in entry}
     captions = read_captions(project / "manuscript/captions.yaml")
     assert {captions[name].alt.strip() for name in report.inputs.figures} <= {text.strip() for text in said}
+
+
+def test_the_report_has_the_typeface_of_its_figures(report):
+    first = PdfReader(report.pdf).pages[0]["/Resources"]["/Font"]
+    assert any(FAMILY in font.get_object()["/BaseFont"] for font in first.values())
 
 
 def test_equal_inputs_give_equal_bytes(report, build):

@@ -140,7 +140,7 @@ def plot(table: pd.DataFrame) -> Figure:
     figure = new_figure(COLUMN, 3.4)
     for axes, panel, letter in zip(figure.subplots(2, 1), TITLES, "ab", strict=True):
         draw_panel(axes, table[table["panel"] == panel])
-        axes.set_title(TITLES[panel], fontsize=8)
+        axes.set_title(TITLES[panel], fontsize=9)
         panel_letter(axes, letter)
     return figure
 
@@ -164,7 +164,7 @@ def draw_panel(axes, rows: pd.DataFrame) -> None:
         horizontal, vertical, colour = TEXTS[text.name]
         label = axes.text(text.x, text.y, text.text, ha=horizontal, va=vertical, color=colour)
         if text.name == "substrate":
-            label.set(fontsize=7, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})
+            label.set(fontsize=8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0})
     layer = of["rectangle"].set_index("name").loc["layer"]
     height, length = layer["height"], layer["width"]
     axes.set_xlim(-0.65 * height, length + 0.68 * height)

@@ -254,7 +254,7 @@ def _draw_diagram(axes, rows: pd.DataFrame, letter: str) -> None:
         i, j = place([row["x"]], levels["x"])[0], place([row["y"]], levels["y"])[0]
         look = {"facecolor": tint(LOOKS[row["regime"]][0]), "edgecolor": BLACK, "linewidth": 0.7}
         axes.add_patch(Rectangle((i - 0.5, j - 0.5), 1.0, 1.0, **look, zorder=3.0))
-        text = {"ha": "center", "va": "center_baseline", "fontsize": 6.0, "fontweight": "bold", "zorder": 4.0}
+        text = {"ha": "center", "va": "center_baseline", "fontsize": 7.0, "fontweight": "bold", "zorder": 4.0}
         axes.text(i, j, row["series"], **text)
     axes.set_xticks(np.arange(levels["x"].size), [setting(value) for value in levels["x"]])
     axes.tick_params("x", rotation=0 if letter == "b" else 90)
@@ -264,7 +264,7 @@ def _draw_diagram(axes, rows: pd.DataFrame, letter: str) -> None:
         np.arange(levels["y"].size), [""] if letter == "c" else [setting(value) for value in lines]
     )
     axes.set(xlim=(-0.5, levels["x"].size - 0.5), ylim=(-0.5, levels["y"].size - 0.5))
-    axes.tick_params(length=0.0, labelsize=6.0, pad=2.0)
+    axes.tick_params(length=0.0, labelsize=7.0, pad=2.0)
     panel_letter(axes, letter)
     _label(axes, rows, letter)
 
@@ -281,9 +281,9 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
         "b": r"$\Gamma = 1$, asymmetric",
         "c": r"$\Gamma = 0$, symmetric",
     }
-    text = {"fontsize": 7.0, "labelpad": 1.5}
+    text = {"fontsize": 8.0, "labelpad": 1.5}
     both, left, right = r"$\bar\tau_0$ (both sides)", r"$\bar\tau_{0,l}$ (left)", r"$\bar\tau_{0,r}$ (right)"
-    axes.set_title(title.get(letter, r"$\Gamma = 0$, asymmetric"), loc="right", fontsize=7.0)
+    axes.set_title(title.get(letter, r"$\Gamma = 0$, asymmetric"), loc="right", fontsize=8.0)
     axes.set_xlabel(both if letter in "ac" else right, **text)
     if letter in "ab":
         axes.set_ylabel(r"$\bar\gamma$", **text)
@@ -294,7 +294,7 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
     step = rows.loc[rows["role"] == "step", "x"]
     if len(step):
         inner = rows.loc[rows["role"] == "marker", "right"].iloc[0]
-        axes.set_title(rf"$\Gamma = 0,\ \bar\tau_{{0,r}} = {inner:g}$", loc="right", fontsize=7.0)
+        axes.set_title(rf"$\Gamma = 0,\ \bar\tau_{{0,r}} = {inner:g}$", loc="right", fontsize=8.0)
         axes.set_xlabel(rf"$\bar\tau$ beyond $\bar x = {step.iloc[0]:g}$", **text)
 
 
@@ -304,10 +304,10 @@ def _write_groups(axes, runs: pd.DataFrame) -> None:
     groups = runs.groupby("left")["y"].agg(["min", "max"]).sort_values("min")
     for level in groups["max"].iloc[:-1]:
         axes.axhline(place([level], lines)[0] + 0.5, color=BLACK, linewidth=0.8)
-    text = {"fontsize": 6.0, "rotation": 90, "va": "center", "transform": axes.get_yaxis_transform()}
+    text = {"fontsize": 7.0, "rotation": 90, "va": "center", "transform": axes.get_yaxis_transform()}
     for level, ends in groups.iterrows():
         axes.text(1.02, place(ends, lines).mean(), setting(level), **text)
-    axes.text(1.11, place(lines, lines).mean(), r"$\bar\tau_{0,l}$ (left)", **text | {"fontsize": 7.0})
+    axes.text(1.11, place(lines, lines).mean(), r"$\bar\tau_{0,l}$ (left)", **text | {"fontsize": 8.0})
 
 
 def tint(colour: str) -> tuple[float, ...]:
@@ -356,10 +356,12 @@ def _draw_legend(figure, table: pd.DataFrame) -> None:
     legend = figure.legend(
         handles=handles,
         loc="lower left",
-        labelspacing=0.35,
+        labelspacing=0.25,
         handlelength=1.6,
-        fontsize=6.5,
+        fontsize=7.5,
         borderaxespad=0.0,
     )
     # Beneath (c), where there is room for it.
     legend.set_in_layout(False)
+    for text in legend.get_texts():
+        text.set_linespacing(0.9)

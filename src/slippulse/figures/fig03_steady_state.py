@@ -59,7 +59,7 @@ def plot(table: pd.DataFrame) -> Figure:
         above, strip = grid[:, column]
         rows = pulses[pulses["panel"] == boundary]
         draw(above, strip, rows, "slip_velocity")
-        above.set_title(title, fontsize=8)
+        above.set_title(title, fontsize=9)
         above.set_ylim(-0.05, 1.75)
         shown = insets[insets["panel"] == boundary]
         draw_prestress(above.inset_axes([0.6, 0.66, 0.38, 0.26]), shown, by, colours(rows))
@@ -67,8 +67,8 @@ def plot(table: pd.DataFrame) -> Figure:
         panel_letter(strip, "cd"[column])
     gamma = table["gamma"].dropna().iloc[0]
     grid[0, 0].set_ylabel(r"slip velocity / largest")
-    grid[1, 0].set_ylabel("simulation\n$-$ exact")
-    grid[1, 0].set_xlabel(rf"$\bar\chi$ / paper's width ($\bar\gamma = {gamma:g}$)", fontsize=7)
+    grid[1, 0].set_ylabel("simulation\n$-$ exact", linespacing=0.9)
+    grid[1, 0].set_xlabel(rf"$\bar\chi$ / paper's width ($\bar\gamma = {gamma:g}$)", fontsize=8)
     grid[1, 1].set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
     *left, simulation = displacement_handles(pulses[pulses["panel"] == "displacement"])
     *right, _ = stress_handles(pulses[pulses["panel"] == "stress"])
@@ -78,6 +78,5 @@ def plot(table: pd.DataFrame) -> Figure:
         loc="outside lower center",
         ncols=2,
         handlelength=1.4,
-        labelspacing=0.3,
     )
     return figure

@@ -133,7 +133,7 @@ def plot(table: pd.DataFrame) -> Figure:
         bar.set_label(rf"slip velocity $\dot u$ (largest {largest:#.3g})")
         profile.set_ylabel(r"position $x$")
         panel_letter(profile, letter)
-        side.suptitle(_title(roles, boundary), fontsize=8.0)
+        side.suptitle(_title(roles, boundary), fontsize=9.0)
         maps.append(space_time)
     figure.legend(
         handles=_legend(maps), loc="outside lower center", ncols=3, handlelength=1.6, columnspacing=1.0
@@ -165,7 +165,7 @@ def _draw_exact(axes, roles: Mapping[str, pd.DataFrame]) -> None:
                 label=label, gid=role,
             )  # fmt: skip
     if "limit" in roles:
-        axes.text(0.98, 0.02, "exact solution ends early", transform=axes.transAxes, ha="right", fontsize=6.0)
+        axes.text(0.98, 0.02, "exact solution ends early", transform=axes.transAxes, ha="right", fontsize=7.0)
 
 
 def _draw_transition(axes, roles: Mapping[str, pd.DataFrame]) -> None:
@@ -220,5 +220,5 @@ def _draw_arrows(axes, ends: pd.DataFrame, level: float) -> None:
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
-        label = rf"${name}_\mathrm{{trans}} = {value:#.3g}$"
-        axes.text(beside, height, label, va="center", fontsize=7.5, path_effects=HALO, zorder=4.0)
+        label = rf"$\bar {name}_\mathrm{{trans}} = {value:#.3g}$"
+        axes.text(beside, height, label, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0)

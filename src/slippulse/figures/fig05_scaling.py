@@ -68,8 +68,8 @@ def plot(table: pd.DataFrame) -> Figure:
     ):
         above, below = grid[0, column], grid[1:, column]
         draw_collapse(above, markers[markers["panel"].str.startswith(boundary)], boundary)
-        above.set_title(title, fontsize=8)
-        above.set_xlabel(r"predicted $L$, $T$")
+        above.set_title(title, fontsize=9)
+        above.set_xlabel(r"predicted $\bar L$, $\bar T$")
         draw_inset(above, table[table["panel"] == f"{boundary}_inset"], boundary)
         across, label = OTHERS[boundary]
         for axes, quantity in zip(below, SYMBOLS, strict=True):
@@ -80,7 +80,7 @@ def plot(table: pd.DataFrame) -> Figure:
             panel_letter(grid[row, column], "abcdef"[2 * row + column])
     grid[0, 0].set_ylabel(r"measured $L$, $T$")
     for axes, symbol in zip(grid[1:, 0], SYMBOLS.values(), strict=True):
-        axes.set_ylabel(f"${symbol}$, measured\nover predicted")
+        axes.set_ylabel(f"${symbol}$, measured\nover predicted", linespacing=0.9)
     figure.legend(
         handles=handles(table), loc="outside lower center", ncols=3, columnspacing=0.9, handletextpad=0.6
     )
@@ -109,7 +109,6 @@ def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
     inset = axes.inset_axes([0.62, 0.16, 0.36, 0.3])
     for level, group in rows.groupby("left"):
         inset.plot(group["x"], group["y"], color=scale.to_rgba(level), linewidth=0.8)
-    inset.xaxis.set_major_locator(MaxNLocator(2, integer=True))
-    inset.set_title(r"$\tau(x)$", fontsize=6.0, pad=1.0)
-    inset.tick_params(labelsize=6.0, length=1.5, pad=1.0)
+    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=7.0, pad=1.0)
+    inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
     inset.locator_params("x", nbins=2, integer=True)

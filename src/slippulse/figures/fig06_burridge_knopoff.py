@@ -144,7 +144,7 @@ def plot(table: pd.DataFrame) -> Figure:
         rows = table[table["panel"] == name]
         strip = figure.add_subplot(grid[2 * index], sharex=axes)
         draw_prestress(strip, rows[rows["row"] == 0])
-        strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=8)
+        strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
         draw_rows(axes, rows, pitches[name], leaf=name == "displacement")
     figure.legend(handles=legend_handles(), loc="outside lower center", ncols=4)
@@ -177,7 +177,7 @@ def draw_prestress(axes, rows: pd.DataFrame) -> None:
     axes.set_ylim(min(0.0, float(level.min())) - 0.15, 1.12)
     axes.set_yticks(sorted({0.0, 1.0, float(rows["left"].iloc[0])}))
     axes.tick_params(axis="x", length=0, labelbottom=False)
-    axes.tick_params(axis="y", labelsize=6)
+    axes.tick_params(axis="y", labelsize=7)
     for side in ("right", "top", "bottom"):
         axes.spines[side].set_visible(False)
 
@@ -218,7 +218,7 @@ def draw_rows(axes, rows: pd.DataFrame, pitch: float, leaf: bool) -> None:
             rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0],
             ha="right",
             va="center",
-            fontsize=7,
+            fontsize=8,
         )
     axes.set_xlim(low, high)
     axes.set_ylim(-pitch * rows["row"].max() - 0.2, (PLATE if leaf else HEIGHT) + 0.08)

@@ -45,7 +45,7 @@ def plot(table: pd.DataFrame) -> Figure:
         above.set_ylabel(f"{label} / scale")
         strip.set_xlabel(r"$\chi/W$")
         panel_letter(above, letter)
-    grid[1, 0].set_ylabel("simulation\n$-$ exact")
+    grid[1, 0].set_ylabel("simulation\n$-$ exact", linespacing=0.9)
     grid[0, 0].set_ylim(-0.04, 1.5)
     colours = profile_colours(pulses)
     draw_prestress(

@@ -121,7 +121,7 @@ def plot(table: pd.DataFrame) -> Figure:
             1.0 - (index // 2 + 0.6) / (rows + 0.4),
             line,
             va="center",
-            fontsize=7.0,
+            fontsize=8.0,
         )
     return figure
 
@@ -136,7 +136,7 @@ def _draw_space_time(figure, roles: Mapping[str, pd.DataFrame]) -> None:
     profile.set_ylabel(r"position $x$")
     panel_letter(profile, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
-    figure.suptitle(f"{title}\n{_parameters(roles)}", fontsize=8.0)
+    figure.suptitle(f"{title}\n{_parameters(roles)}", fontsize=9.0)
 
 
 def _parameters(roles: Mapping[str, pd.DataFrame]) -> str:

@@ -44,8 +44,8 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
         axes.set_ylim(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values))
         lines.append((line, values))
     panels[0].set_xlim(lower, upper)
-    panels[1].set_xlabel(r"position $x$")
-    clock = figure.suptitle("", fontsize=8.0)
+    panels[1].set_xlabel(r"position $\bar x$")
+    clock = figure.suptitle("", fontsize=9.0)
     plain = title.replace("$", r"\$")
 
     def draw(frame: int) -> list:

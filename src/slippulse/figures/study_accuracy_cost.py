@@ -46,7 +46,7 @@ def plot(table: pd.DataFrame) -> Figure:
     for number, (name, title) in enumerate(PANELS.items()):
         axes = figure.add_subplot(grid[number // 3, number % 3])
         draw_trade(axes, trade, name)
-        axes.set_title(title, fontsize=8)
+        axes.set_title(title, fontsize=9)
         panel_letter(axes, "abcdef"[number])
         if number % 3 == 0:
             axes.set_ylabel("relative error")
@@ -105,7 +105,7 @@ def draw_marks(axes, rows: pd.DataFrame, across: str, name: str) -> None:
             (getattr(preset, across), getattr(preset, name)),
             xytext=(4, 6),
             textcoords="offset points",
-            fontsize=6,
+            fontsize=7,
         )
     axes.set_xscale("log")
     axes.set_yscale("log")

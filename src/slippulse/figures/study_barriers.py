@@ -114,7 +114,7 @@ def _draw_map(axes, smooth: pd.DataFrame, runs: pd.DataFrame, scale: LogNorm):
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
     image = axes.pcolormesh(x, y, grid.to_numpy(), norm=scale, cmap=MAP, shading="gouraud", rasterized=True)
     lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors="white", linewidths=0.5)
-    axes.clabel(lines, fmt="%g", fontsize=6.0, zorder=2.5)
+    axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
     finest = _finest(runs)
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
         axes.scatter(
@@ -199,7 +199,7 @@ def _draw_passing(axes, rows: pd.DataFrame, ratios: np.ndarray) -> None:
             )  # fmt: skip
     axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     axes.set_yticks(
-        range(len(pairs)), [rf"{tau0:g} $\to$ {setting(barrier)}" for tau0, barrier in pairs], fontsize=6.0
+        range(len(pairs)), [rf"{tau0:g} $\to$ {setting(barrier)}" for tau0, barrier in pairs], fontsize=7.0
     )
     for face, label in (("0.3", "passed"), ("white", "not passed")):
         axes.plot([], [], "o", color="0.3", markerfacecolor=face, markersize=3.5, label=label)

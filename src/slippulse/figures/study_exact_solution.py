@@ -148,7 +148,7 @@ def _draw_map(figure: Figure, axes, rows: pd.DataFrame) -> None:
     axes.axvline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     for place, name in ((0.04, "exact"), (0.96, "lattice")):
         axes.text(
-            place, 0.04, name, transform=axes.transAxes, fontsize=7.0,
+            place, 0.04, name, transform=axes.transAxes, fontsize=8.0,
             ha="left" if place < 0.5 else "right",
         )  # fmt: skip
     bar = figure.colorbar(image, ax=axes, location="top", aspect=25, pad=0.02)
@@ -219,8 +219,8 @@ def _draw_differences(axes, rows: pd.DataFrame) -> None:
     ends = np.array([found["dx"].min(), found["dx"].max()])
     guide = 0.5 * found["value"].min() / ends[0]
     axes.plot(ends, guide * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
-    axes.set_title(_name(rows), loc="right", fontsize=7.5)
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\mathrm{d}\bar x$")
+    axes.set_title(_name(rows), loc="right", fontsize=8.5)
     axes.legend(loc="upper left", labelspacing=0.25)
     axes.set_xticks([0.005, 0.01, 0.02, 0.04, 0.08], ["0.005", "0.01", "0.02", "0.04", "0.08"])
     axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())

@@ -109,11 +109,17 @@ def plot(table: pd.DataFrame) -> Figure:
             axes.set_xlabel(f"{'paper' if reference == 'paper' else 'exact'} ${SYMBOLS[quantity]}$")
             axes.set_ylabel(f"measured / {reference}")
             axes.text(
-                0.03, 0.97, "deviation\n" + "\n".join(lines), transform=axes.transAxes, va="top", fontsize=6.0
+                0.03,
+                0.97,
+                "deviation\n" + "\n".join(lines),
+                transform=axes.transAxes,
+                va="top",
+                fontsize=7.0,
+                linespacing=1.0,
             )
         low, high = grid[row, 0].get_ylim()
         for axes in grid[row, :2]:
-            axes.set_ylim(min(low, 0.7), high + 0.35 * (high - low))
+            axes.set_ylim(min(low, 0.6), high + 0.4 * (high - low))
         _draw_refinement(grid[row, 2], table[table["quantity"] == quantity], quantity)
         for axes, letter in zip(grid[row], "abcdef"[3 * row : 3 * row + 3], strict=True):
             panel_letter(axes, letter)
@@ -147,6 +153,8 @@ def _draw_refinement(axes, rows: pd.DataFrame, quantity: str) -> None:
     axes.plot(ends, 0.3 * ends, color=BLACK, linewidth=0.8, linestyle=":")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x/W$")
     axes.set_ylabel(f"|measured/exact $-$ 1|, ${SYMBOLS[quantity]}$")
-    axes.set_ylim(1e-6, 0.3)
+    axes.set_ylim(3e-7, 0.3)
     if quantity == "time":
-        axes.legend(title=r"$\Gamma = 1$: $\tau_0,\ \gamma$", fontsize=6.0, ncols=2, loc="lower right")
+        axes.legend(
+            title=r"$\Gamma = 1$: $\bar\tau_0,\ \bar\gamma$", fontsize=7.0, ncols=2, loc="lower right"
+        )

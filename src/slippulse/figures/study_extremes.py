@@ -58,11 +58,11 @@ def plot(table: pd.DataFrame) -> Figure:
     for line in starts:
         axes.axhline(line - 0.5, color="0.85", linewidth=0.5, zorder=0)
     names = [f"{row.family}: {row.value}" for row in table.itertuples()]
-    axes.set_yticks(lines, names, fontsize=6.0)
+    axes.set_yticks(lines, names, fontsize=7.0)
     axes.tick_params(axis="y", length=0.0)
     axes.set_xscale("log")
     axes.set_xlim(LEAST, 3.0)
     axes.set_ylim(len(table) - 0.4, -0.6)
-    axes.set_xlabel("relative error\n(absolute for 0)")
+    axes.set_xlabel("relative error\n(absolute for 0)", linespacing=0.9)
     figure.legend(loc="outside lower center", ncols=3, handletextpad=0.2, columnspacing=0.8)
     return figure

@@ -114,7 +114,7 @@ def _draw_chi2(axes, table: pd.DataFrame) -> None:
             found["damping_ratio"], found["chi2"], marker, color=colour, linestyle="none",
             label=rf"{label}: $\chi^2 = {found['chi2']:.1f}$",
         )  # fmt: skip
-    top = 1.62 * accepted
+    top = 1.75 * accepted
     notebook = table[table["part"] == "notebook"]
     axes.axvline(
         notebook["damping_ratio"].iloc[0], ymax=accepted / top, color=GREY, linewidth=0.8, linestyle="--",
@@ -122,7 +122,7 @@ def _draw_chi2(axes, table: pd.DataFrame) -> None:
     )  # fmt: skip
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
     axes.text(
-        0.98, accepted, f"5 % at {dof} degrees of freedom", transform=axes.get_yaxis_transform(), fontsize=6.0,
+        0.98, accepted, f"5 % at {dof} degrees of freedom", transform=axes.get_yaxis_transform(), fontsize=7.0,
         ha="right", va="bottom",
     )  # fmt: skip
     _ratio_axis(axes)
@@ -202,4 +202,4 @@ def _draw_right_panel(axes, rows: pd.DataFrame) -> None:
     _ratio_axis(axes)
     axes.set_xlim(0.04, 0.25)
     axes.yaxis.set_major_locator(matplotlib.ticker.MultipleLocator(0.01))
-    axes.legend(loc="lower left", fontsize=6.0, labelspacing=0.3)
+    axes.legend(loc="lower left", fontsize=7.0, labelspacing=0.3)

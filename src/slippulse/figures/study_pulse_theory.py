@@ -98,5 +98,5 @@ def plot(table: pd.DataFrame) -> Figure:
     grid[0, 2].plot([], [], color=GREY, marker="o", linestyle="none", label="simulation")
     handles, labels = grid[0, 2].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), columnspacing=1.0)
-    grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$")
+    grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$", linespacing=0.9)
     return figure

@@ -71,7 +71,7 @@ def plot(table: pd.DataFrame) -> Figure:
     left.legend(loc="lower left", labelspacing=0.2)
     right.axhline(1.0, color=BLACK, linewidth=0.7)
     right.axhline(MARGIN, color=GREY, linewidth=1.8, alpha=0.7)
-    right.text(0.98, MARGIN - 0.004, "largest step taken", color="0.4", ha="right", va="top", fontsize=6.5,
+    right.text(0.98, MARGIN - 0.004, "largest step taken", color="0.4", ha="right", va="top", fontsize=7.5,
                transform=right.get_yaxis_transform())  # fmt: skip
     top = float(rows["measured_rupture_ratio"].max())
     right.set_ylim(MARGIN - 0.05, top + 0.05)

@@ -164,7 +164,7 @@ def plot(table: pd.DataFrame) -> Figure:
     )
     rest_axes.legend(loc="lower left")
     if (table["role"] == "limit").any():
-        slip_axes.text(0.02, 0.02, "exact solution ends early", transform=slip_axes.transAxes, fontsize=6.0)
+        slip_axes.text(0.02, 0.02, "exact solution ends early", transform=slip_axes.transAxes, fontsize=7.0)
     velocity = table[table["role"] == "velocity"]
     left = velocity["left"].min()
     shown = velocity[velocity["left"] == left]
@@ -178,7 +178,7 @@ def plot(table: pd.DataFrame) -> Figure:
         )  # fmt: skip
     place = shown["place"].iloc[0]
     velocity_axes.axvline(place, color=GREY, linewidth=0.6, linestyle=":")
-    velocity_axes.text(place, 0.02, " step", transform=velocity_axes.get_xaxis_transform(), fontsize=6.0)
+    velocity_axes.text(place, 0.02, " step", transform=velocity_axes.get_xaxis_transform(), fontsize=7.0)
     velocity_axes.set(
         yscale="log",
         xlabel=r"time $t$",
@@ -188,7 +188,7 @@ def plot(table: pd.DataFrame) -> Figure:
     positive = shown.loc[shown["y"] > 0.0, "y"]
     velocity_axes.set_ylim(max(1e-2, positive.min()), 20.0 * positive.max())
     velocity_axes.legend(
-        title=r"$\bar\tau$ beyond", ncols=3, fontsize=6.0, loc="upper left", columnspacing=0.6
+        title=r"$\bar\tau$ beyond", ncols=3, fontsize=7.0, loc="upper left", columnspacing=0.6
     )
     for axes, letter in zip((slip_axes, rest_axes, velocity_axes), "abc", strict=True):
         panel_letter(axes, letter)

@@ -35,14 +35,17 @@ SCALES = {
     "width": ("YlOrBr", (0.35, 1.0), (0.5, 16.0), True),
 }
 
+# A Times, as the journal has, which Matplotlib brings along; the report has the same.
+FAMILY = "STIXGeneral"
 RC = {
-    "font.size": 8.0,
-    "axes.labelsize": 8.0,
-    "axes.titlesize": 8.0,
-    "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0,
-    "legend.fontsize": 7.0,
+    "font.size": 9.0,
+    "axes.labelsize": 9.0,
+    "axes.titlesize": 9.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
     "legend.frameon": False,
+    "legend.labelspacing": 0.2,
     "lines.linewidth": 1.1,
     "lines.markersize": 3.5,
     "axes.linewidth": 0.6,
@@ -50,7 +53,8 @@ RC = {
     "axes.spines.right": True,
     "xtick.direction": "in",
     "ytick.direction": "in",
-    "mathtext.fontset": "dejavusans",
+    "font.family": [FAMILY, "DejaVu Sans"],
+    "mathtext.fontset": "stix",
     "axes.prop_cycle": matplotlib.cycler(color=CYCLE),
     # The layout is found at the resolution of the PNG, which then meets its formulas already set.
     "figure.dpi": 300,
@@ -81,7 +85,7 @@ def colour_scale(quantity: str) -> ScalarMappable:
 
 def panel_letter(axes, letter: str) -> None:
     """Mark a panel (a), (b), ... above its upper left corner."""
-    axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=8.0)
+    axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9.0)
 
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:

@@ -9,12 +9,15 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
+import matplotlib
 import typst
 
 from ..data.files import write_whole
 from ..texts.pandoc import pandoc
 from .page import as_page
 
+# Those of the figures, which Matplotlib brings along.
+FONTS = str(Path(matplotlib.get_data_path()) / "fonts/ttf")
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0
 # Names and alternative texts of the figures of a text, which pandoc does not pass on to Typst.
@@ -77,6 +80,7 @@ def render_pdf(text: str, manuscript: str | Path, output: str | Path) -> None:
                 root=str(root),
                 format="pdf",
                 ignore_system_fonts=True,
+                font_paths=[FONTS],
                 timestamp=TIMESTAMP,
             )
         except typst.TypstError as error:

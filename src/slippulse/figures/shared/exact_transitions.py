@@ -66,7 +66,7 @@ def draw_peak(axes, table: pd.DataFrame) -> None:
     axes.set(xlabel=r"pre-stress $\tau_0$", ylabel=r"exact $T_\mathrm{trans}\,\gamma^{1/2}/\pi$")
     axes.set_ylim(0.85, 1.52)
     axes.legend(
-        loc="upper right", ncols=2, columnspacing=0.6, handlelength=1.2, handletextpad=0.4, fontsize=6.0
+        loc="upper right", ncols=2, columnspacing=0.6, handlelength=1.2, handletextpad=0.4, fontsize=7.0
     )
 
 
@@ -92,8 +92,8 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
         low, high = axes.get_ylim()
         axes.set_ylim(max(0.0, low), high + 0.35 * (high - low) * (quantity == "stop"))
     panels[0].legend(
-        title=r"$\tau_{0,l}$", loc="upper center", ncols=4, columnspacing=0.5, handlelength=0.7, handletextpad=0.3,
-        fontsize=6.0,
+        title=r"$\bar\tau_{0,l}$", loc="upper center", ncols=4, columnspacing=0.5, handlelength=0.7, handletextpad=0.3,
+        fontsize=7.0,
     )  # fmt: skip
     if (table["role"] == "limit").any():
         panels[1].text(
@@ -102,5 +102,5 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
             "some exact solutions\nend early",
             transform=panels[1].transAxes,
             va="top",
-            fontsize=6.0,
+            fontsize=7.0,
         )

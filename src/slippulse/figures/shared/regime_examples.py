@@ -61,7 +61,7 @@ def draw_examples(figure, table: pd.DataFrame, colours: Mapping[str, str]) -> No
         velocity.plot(end["x"], end["y"], color=colours[example["regime"]])
         kind, _, rest = example["regime"].rpartition(", ")
         title = rf"$\bf{{{example['series']}}}$  {kind}," + f"\n    {rest}"
-        stress.set_title(title, loc="left", fontsize=6.5, linespacing=1.1)
+        stress.set_title(title, loc="left", fontsize=7.5, linespacing=1.1)
         stress.set_ylim(-1.2, 1.2)
         stress.set_yticks([0.0, 1.0], ["0", "1"] if column == 0 else ["", ""])
         velocity.set_xlim(curves["prestress"]["x"].min(), curves["prestress"]["x"].max())
@@ -73,14 +73,14 @@ def draw_examples(figure, table: pd.DataFrame, colours: Mapping[str, str]) -> No
             stress.set_ylabel(r"$\bar\tau$", labelpad=1.0)
             velocity.set_ylabel(r"$\dot{\bar u}$", labelpad=1.0)
         for axes in (stress, velocity):
-            axes.tick_params(labelsize=6.0, pad=2.0)
+            axes.tick_params(labelsize=7.0, pad=2.0)
         stress.tick_params(bottom=False, labelbottom=False)
 
 
 def _write_levels(axes, example: pd.Series) -> None:
     """The levels far to the left and right, which may be too close to 0 to see."""
     left, right = example["left"], example["beyond"]
-    text = {"fontsize": 6.0, "transform": axes.get_yaxis_transform()}
+    text = {"fontsize": 7.0, "transform": axes.get_yaxis_transform()}
     for level, x, side in ((left, 0.03, "left"), (right, 0.97, "right")):
         if side == "right" or left != right:
             # Within the panel, beside the line.
