@@ -282,11 +282,11 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
         "c": r"$\Gamma = 0$, symmetric",
     }
     text = {"fontsize": 8.0, "labelpad": 1.5}
-    both, left, right = r"$\bar\tau_0$ (both sides)", r"$\bar\tau_{0,l}$ (left)", r"$\bar\tau_{0,r}$ (right)"
+    both, left, right = r"$\tau_0$ (both sides)", r"$\tau_{0,l}$ (left)", r"$\tau_{0,r}$ (right)"
     axes.set_title(title.get(letter, r"$\Gamma = 0$, asymmetric"), loc="right", fontsize=8.0)
     axes.set_xlabel(both if letter in "ac" else right, **text)
     if letter in "ab":
-        axes.set_ylabel(r"$\bar\gamma$", **text)
+        axes.set_ylabel(r"$\gamma$", **text)
     elif letter in "de":
         axes.set_ylabel(left, **text)
     if letter == "b":
@@ -294,8 +294,8 @@ def _label(axes, rows: pd.DataFrame, letter: str) -> None:
     step = rows.loc[rows["role"] == "step", "x"]
     if len(step):
         inner = rows.loc[rows["role"] == "marker", "right"].iloc[0]
-        axes.set_title(rf"$\Gamma = 0,\ \bar\tau_{{0,r}} = {inner:g}$", loc="right", fontsize=8.0)
-        axes.set_xlabel(rf"$\bar\tau$ beyond $\bar x = {step.iloc[0]:g}$", **text)
+        axes.set_title(rf"$\Gamma = 0,\ \tau_{{0,r}} = {inner:g}$", loc="right", fontsize=8.0)
+        axes.set_xlabel(rf"$\tau$ beyond $x = {step.iloc[0]:g}$", **text)
 
 
 def _write_groups(axes, runs: pd.DataFrame) -> None:
@@ -307,7 +307,7 @@ def _write_groups(axes, runs: pd.DataFrame) -> None:
     text = {"fontsize": 7.0, "rotation": 90, "va": "center", "transform": axes.get_yaxis_transform()}
     for level, ends in groups.iterrows():
         axes.text(1.02, place(ends, lines).mean(), setting(level), **text)
-    axes.text(1.11, place(lines, lines).mean(), r"$\bar\tau_{0,l}$ (left)", **text | {"fontsize": 8.0})
+    axes.text(1.11, place(lines, lines).mean(), r"$\tau_{0,l}$ (left)", **text | {"fontsize": 8.0})
 
 
 def tint(colour: str) -> tuple[float, ...]:

@@ -68,8 +68,8 @@ def plot(table: pd.DataFrame) -> Figure:
     gamma = table["gamma"].dropna().iloc[0]
     grid[0, 0].set_ylabel(r"slip velocity / largest")
     grid[1, 0].set_ylabel("simulation\n$-$ exact", linespacing=0.9)
-    grid[1, 0].set_xlabel(rf"$\bar\chi$ / paper's width ($\bar\gamma = {gamma:g}$)", fontsize=8)
-    grid[1, 1].set_xlabel(r"$\bar\chi/\bar W_{\bar\tau}$")
+    grid[1, 0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {gamma:g}$)", fontsize=8)
+    grid[1, 1].set_xlabel(r"$\chi/W$")
     *left, simulation = displacement_handles(pulses[pulses["panel"] == "displacement"])
     *right, _ = stress_handles(pulses[pulses["panel"] == "stress"])
     # A column a boundary.

@@ -220,5 +220,5 @@ def _draw_arrows(axes, ends: pd.DataFrame, level: float) -> None:
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
-        label = rf"$\bar {name}_\mathrm{{trans}} = {value:#.3g}$"
+        label = rf"${name}_\mathrm{{trans}} = {value:#.3g}$"
         axes.text(beside, height, label, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0)

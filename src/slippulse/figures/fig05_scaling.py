@@ -69,7 +69,7 @@ def plot(table: pd.DataFrame) -> Figure:
         above, below = grid[0, column], grid[1:, column]
         draw_collapse(above, markers[markers["panel"].str.startswith(boundary)], boundary)
         above.set_title(title, fontsize=9)
-        above.set_xlabel(r"predicted $\bar L$, $\bar T$")
+        above.set_xlabel(r"predicted $L$, $T$")
         draw_inset(above, table[table["panel"] == f"{boundary}_inset"], boundary)
         across, label = OTHERS[boundary]
         for axes, quantity in zip(below, SYMBOLS, strict=True):
@@ -109,6 +109,6 @@ def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
     inset = axes.inset_axes([0.62, 0.16, 0.36, 0.3])
     for level, group in rows.groupby("left"):
         inset.plot(group["x"], group["y"], color=scale.to_rgba(level), linewidth=0.8)
-    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=7.0, pad=1.0)
+    inset.xaxis.set_major_locator(MaxNLocator(2, integer=True))
+    inset.set_title(r"$\tau(x)$", fontsize=7.0, pad=1.0)
     inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
-    inset.locator_params("x", nbins=2, integer=True)

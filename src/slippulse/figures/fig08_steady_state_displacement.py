@@ -42,6 +42,6 @@ def plot(table: pd.DataFrame) -> Figure:
     # The undamped lattice rings beyond the theory at the front; the axes leave room for some of it.
     grid[0, 2].set_ylim(1.5 * float(scaled.min()), 1.5 * float(scaled.max()))
     grid[1, 2].set_ylim(-0.5, 0.5)
-    grid[0, 1].set_title(rf"$\Gamma = 1$, $\bar\gamma = {gamma:g}$", fontsize=9)
+    grid[0, 1].set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", fontsize=9)
     figure.legend(handles=displacement_handles(table), loc="outside lower center", ncols=4)
     return figure

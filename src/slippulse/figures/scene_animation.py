@@ -44,7 +44,7 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
         axes.set_ylim(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values))
         lines.append((line, values))
     panels[0].set_xlim(lower, upper)
-    panels[1].set_xlabel(r"position $\bar x$")
+    panels[1].set_xlabel(r"position $x$")
     clock = figure.suptitle("", fontsize=9.0)
     plain = title.replace("$", r"\$")
 

@@ -219,7 +219,7 @@ def _draw_differences(axes, rows: pd.DataFrame) -> None:
     ends = np.array([found["dx"].min(), found["dx"].max()])
     guide = 0.5 * found["value"].min() / ends[0]
     axes.plot(ends, guide * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\mathrm{d}\bar x$")
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
     axes.set_title(_name(rows), loc="right", fontsize=8.5)
     axes.legend(loc="upper left", labelspacing=0.25)
     axes.set_xticks([0.005, 0.01, 0.02, 0.04, 0.08], ["0.005", "0.01", "0.02", "0.04", "0.08"])

@@ -155,6 +155,4 @@ def _draw_refinement(axes, rows: pd.DataFrame, quantity: str) -> None:
     axes.set_ylabel(f"|measured/exact $-$ 1|, ${SYMBOLS[quantity]}$")
     axes.set_ylim(3e-7, 0.3)
     if quantity == "time":
-        axes.legend(
-            title=r"$\Gamma = 1$: $\bar\tau_0,\ \bar\gamma$", fontsize=7.0, ncols=2, loc="lower right"
-        )
+        axes.legend(title=r"$\Gamma = 1$: $\tau_0,\ \gamma$", fontsize=7.0, ncols=2, loc="lower right")

@@ -163,8 +163,8 @@ def plot(table: pd.DataFrame) -> Figure:
         rest.set_ylim(0.5 * CLOSEST, 1e-1)
     # Elastic speeds are close to one another: over the undamped speed they are not a bundle.
     grid[0, 1].set_ylim(0.97, 1.85)
-    grid[0, 0].set_ylabel(r"front speed $\bar v$")
-    grid[0, 1].set_ylabel(r"$\bar v\,\sqrt{1-\bar\tau_0^2}$")
+    grid[0, 0].set_ylabel(r"front speed $v$")
+    grid[0, 1].set_ylabel(r"$v\,\sqrt{1-\tau_0^2}$")
     grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$", linespacing=0.9)
     return figure
 

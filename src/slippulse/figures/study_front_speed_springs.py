@@ -120,8 +120,8 @@ def plot(table: pd.DataFrame) -> Figure:
         _draw_springs(*grid[:, column], springs[springs["release"] == rule])
         grid[0, column].set_title(f"release: {rule} stress", loc="right")
     _draw_fixed_beta(*grid[:, 2], table[table["part"] == "fixed_beta"])
-    grid[0, 2].set_title(r"fixed $\bar\beta$, elastic", loc="right")
-    grid[0, 0].set_ylabel(r"front speed $\bar v$")
+    grid[0, 2].set_title(r"fixed $\beta$, elastic", loc="right")
+    grid[0, 0].set_ylabel(r"front speed $v$")
     grid[1, 0].set_ylabel("|simulation/theory\n" + r"$-\,1|$", linespacing=0.9)
     for rest in grid[1]:
         rest.set(yscale="log", ylim=(0.5 * CLOSEST, 5e-2))

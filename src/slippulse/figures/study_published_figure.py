@@ -118,7 +118,7 @@ def _draw_chi2(axes, table: pd.DataFrame) -> None:
     notebook = table[table["part"] == "notebook"]
     axes.axvline(
         notebook["damping_ratio"].iloc[0], ymax=accepted / top, color=GREY, linewidth=0.8, linestyle="--",
-        label=rf"notebook (total): $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$",
+        label=rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$",
     )  # fmt: skip
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
     axes.text(

@@ -148,7 +148,7 @@ def plot(table: pd.DataFrame) -> Figure:
     top = float(exact["y"].max())
     slip_axes.set_ylim(None, 1.75 * top)
     slip_axes.legend(
-        title=r"exact, $\bar\tau_0$ beyond", loc="upper right", ncols=2, columnspacing=0.8,
+        title=r"exact, $\tau_0$ beyond", loc="upper right", ncols=2, columnspacing=0.8,
         frameon=True, framealpha=1.0, edgecolor="none",
     )  # fmt: skip
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
@@ -186,10 +186,8 @@ def plot(table: pd.DataFrame) -> Figure:
         title=rf"$\Gamma = 0$, $\tau = {shown['before'].iloc[0]:g}$ before",
     )
     positive = shown.loc[shown["y"] > 0.0, "y"]
-    velocity_axes.set_ylim(max(1e-2, positive.min()), 20.0 * positive.max())
-    velocity_axes.legend(
-        title=r"$\bar\tau$ beyond", ncols=3, fontsize=7.0, loc="upper left", columnspacing=0.6
-    )
+    velocity_axes.set_ylim(max(1e-2, positive.min()), 40.0 * positive.max())
+    velocity_axes.legend(title=r"$\tau$ beyond", ncols=3, fontsize=7.0, loc="upper left", columnspacing=0.6)
     for axes, letter in zip((slip_axes, rest_axes, velocity_axes), "abc", strict=True):
         panel_letter(axes, letter)
     return figure

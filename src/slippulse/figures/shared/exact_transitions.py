@@ -92,7 +92,7 @@ def draw_one_way(panels, table: pd.DataFrame) -> None:
         low, high = axes.get_ylim()
         axes.set_ylim(max(0.0, low), high + 0.35 * (high - low) * (quantity == "stop"))
     panels[0].legend(
-        title=r"$\bar\tau_{0,l}$", loc="upper center", ncols=4, columnspacing=0.5, handlelength=0.7, handletextpad=0.3,
+        title=r"$\tau_{0,l}$", loc="upper center", ncols=4, columnspacing=0.5, handlelength=0.7, handletextpad=0.3,
         fontsize=7.0,
     )  # fmt: skip
     if (table["role"] == "limit").any():

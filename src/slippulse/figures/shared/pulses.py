@@ -217,10 +217,10 @@ def draw_prestress(inset, rows: pd.DataFrame, by: str, colours: Mapping) -> None
     """Pre-stress profiles in an inset, in the colours of the pulses."""
     for key, group in rows.groupby(by):
         inset.plot(group["x"], group["y"], color=colours[key], linewidth=0.8)
-    inset.set_title(r"$\bar\tau(\bar x)$", fontsize=7.0, pad=1.0)
+    inset.set_ylim(min(-0.1, 1.3 * float(rows["y"].min())), 1.1)
+    inset.yaxis.set_major_locator(MaxNLocator(3, integer=True))
+    inset.set_title(r"$\tau(x)$", fontsize=7.0, pad=1.0)
     inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
-    # The lowest label stands clear of those below the axis.
-    inset.margins(y=0.15)
 
 
 def displacement_handles(rows: pd.DataFrame) -> list[Line2D]:

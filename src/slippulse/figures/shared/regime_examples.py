@@ -68,10 +68,10 @@ def draw_examples(figure, table: pd.DataFrame, colours: Mapping[str, str]) -> No
         velocity.set_ylim(0.0, 1.15 * max(before["y"].max(), end["y"].max()))
         velocity.locator_params(nbins=3)
         if band == bands - 1:
-            velocity.set_xlabel(r"$\bar x$", labelpad=1.0)
+            velocity.set_xlabel(r"$x$", labelpad=1.0)
         if column == 0:
-            stress.set_ylabel(r"$\bar\tau$", labelpad=1.0)
-            velocity.set_ylabel(r"$\dot{\bar u}$", labelpad=1.0)
+            stress.set_ylabel(r"$\tau$", labelpad=1.0)
+            velocity.set_ylabel(r"$\dot u$", labelpad=1.0)
         for axes in (stress, velocity):
             axes.tick_params(labelsize=7.0, pad=2.0)
         stress.tick_params(bottom=False, labelbottom=False)
