@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import matplotlib
 import numpy as np
@@ -21,6 +21,8 @@ NEEDS = {"studies": ["barriers"]}
 MAP = "cividis"
 # Points of the smooth map along each axis, and contour lines on it.
 FINE, CONTOURS = 41, (1.0, 1.5, 2.0, 3.0, 4.5, 7.0, 10.0, 14.0)
+# The labels of the lines keep this factor from the ends of the axis of barriers.
+RIM = 1.12
 MARKERS, COLOURS = ("o", "s", "^"), (BLUE, ORANGE)
 # gamma of the curves, for which the later estimate is drawn; exact depths scale to it.
 GAMMA = 0.65
@@ -109,12 +111,23 @@ def _finest(runs: pd.DataFrame) -> pd.DataFrame:
     return runs[runs["dx"] == runs["dx"].min()]
 
 
+def _label_places(x: np.ndarray, y: np.ndarray, depth: np.ndarray) -> Iterator[tuple[float, float]]:
+    """Where a label stands on each contour: on the left, but a label's height away from the rim."""
+    for level in CONTOURS:
+        for column in range(x.size // 5, x.size):
+            order = np.argsort(depth[:, column])
+            place = np.interp(level, depth[order, column], y[order])
+            if RIM * y.min() < place < y.max() / RIM:
+                yield x[column], place
+                break
+
+
 def _draw_map(axes, smooth: pd.DataFrame, runs: pd.DataFrame, scale: LogNorm):
     grid = smooth.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
     image = axes.pcolormesh(x, y, grid.to_numpy(), norm=scale, cmap=MAP, shading="gouraud", rasterized=True)
     lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors="white", linewidths=0.5)
-    axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
+    axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5, manual=list(_label_places(x, y, grid.to_numpy())))
     finest = _finest(runs)
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
         axes.scatter(
@@ -210,5 +223,13 @@ def _draw_passing(axes, rows: pd.DataFrame, ratios: np.ndarray) -> None:
         xlabel="length of the barrier / exact depth", ylabel=r"$\tau_0 \to \tau_\mathrm{b}$", xticks=lengths
     )
     axes.set_xlim(lengths[0] - 0.1, lengths[-1] + 0.1)
-    axes.set_ylim(-0.6, len(pairs) + 1.2)
-    axes.legend(loc="upper center", ncols=4, handletextpad=0.2, columnspacing=1.2)
+    axes.set_ylim(-0.6, len(pairs) + 1.6)
+    axes.legend(
+        loc="upper center",
+        ncols=4,
+        handletextpad=0.2,
+        columnspacing=1.2,
+        frameon=True,
+        framealpha=1.0,
+        edgecolor="none",
+    )
