@@ -41,7 +41,7 @@ help:
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility, narrow screens"
-	@echo "make test-all    these and the slow ones: every file and example, kills, Slurm"
+	@echo "make test-all    these and the slow ones: edits, every example, kills, Slurm"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
 	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
 	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
