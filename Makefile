@@ -108,16 +108,16 @@ faults: $(READY)
 	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
 
 test: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadgroup --no-loadscope-reorder -m "not slow"
 
 test-pages: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser
 
 test-slow: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow --ignore tests/browser
 	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
 
-test-all: test test-slow slurm-test
+test-all: test test-pages test-slow slurm-test
 
 slurm-test: $(VENV)/.slurm
 	@"$(BIN)/python" tests/slurm_cluster.py

@@ -97,6 +97,7 @@ def test_without_records_there_is_nothing_to_say(tmp_path):
     assert measure.pipeline(tmp_path) == {}
 
 
+@pytest.mark.slow
 def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatch, capsys):
     """On scenes a hundredth of the size."""
     for name, value in {"DURATION": 20.0, "DX": 0.05, "REPEATS": 1, "POWERS": (3, 4), "LENGTH": 60.0}.items():

@@ -11,6 +11,9 @@ from slippulse.model.prestress import Prestress
 from slippulse.pages.explorer import LARGEST_RATIO, explorer_page, simulated_runs
 from slippulse.theory import Rupture, front_speed, steady_pulse
 
+# All by `make test-pages`, which opens the other pages too.
+pytestmark = pytest.mark.slow
+
 SLIDERS = ("beta", "dx", "left", "right", "width", "gamma")
 RUN = {
     "boundary": "displacement", "left": 0.3, "right": 0.3, "width": 1.0, "peak": 1.0, "gamma": 0.5, "beta": 1e-3,
@@ -69,9 +72,8 @@ def from_python(scene: dict, pulse: dict) -> dict[str, float]:
     }
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.slow)])
-def test_its_numbers_are_those_of_the_library(count, file, opened):
-    scenes = random_scenes(count)
+def test_its_numbers_are_those_of_the_library(file, opened):
+    scenes = random_scenes(200)
     with opened(file) as page:
         found = page.evaluate(
             """scenes => scenes.map((scene) => {
@@ -120,7 +122,6 @@ def test_beta_over_dx_alone_sets_the_speed(file, opened):
         assert page.locator("#ratio").text_content() == "0.1"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", SLIDERS)
 def test_a_slider_works_by_keyboard(name, file, opened):
     with opened(file) as page:
@@ -149,7 +150,6 @@ def test_each_control_is_reached_by_the_keyboard_and_named(file, opened):
             assert page.locator(f"label[for={name}]").text_content()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [390, 1280])
 def test_everybody_can_use_it(width, scheme, file, opened, violations):

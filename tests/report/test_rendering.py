@@ -109,6 +109,7 @@ def test_the_report_has_the_typeface_of_its_figures(report):
     assert any(FAMILY in font.get_object()["/BaseFont"] for font in first.values())
 
 
+@pytest.mark.slow
 def test_equal_inputs_give_equal_bytes(report, build):
     again = build(report.inputs)
     assert again.pdf.read_bytes() == report.pdf.read_bytes()

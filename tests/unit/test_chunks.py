@@ -105,7 +105,7 @@ def made(project, tmp_path_factory):
     ("name", "chunks"),
     [
         ("displacement", 2),
-        ("stress", 5),
+        pytest.param("stress", 5, marks=pytest.mark.slow),
         pytest.param("displacement", 5, marks=pytest.mark.slow),
         pytest.param("profiles", 2, marks=pytest.mark.slow),
     ],

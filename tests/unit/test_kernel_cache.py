@@ -119,6 +119,7 @@ def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
     assert {path.name for path in untouched_kernels.rglob("*.nbc")} == compiled
 
 
+@pytest.mark.slow
 def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp_path):
     """What went missing in the meantime is, and nothing else."""
     folder = tmp_path / "kernels"

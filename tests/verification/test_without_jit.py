@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import tolerances as tol
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = """
 import sys
 import numpy as np

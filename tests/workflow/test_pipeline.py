@@ -44,6 +44,7 @@ def figures(jobs: dict[str, int]) -> int:
     return sum(name.startswith("fig") for name in jobs)
 
 
+@pytest.mark.slow
 def test_the_default_is_the_whole_paper(folder):
     jobs = planned(snakemake(folder, "--dry-run"))
     studies = yaml.safe_load((folder / "config/config.yaml").read_text(encoding="utf-8"))["studies"]
