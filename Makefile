@@ -108,7 +108,7 @@ faults: $(READY)
 	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
 
 test: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadgroup --no-loadscope-reorder -m "not slow"
+	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
 
 test-pages: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser

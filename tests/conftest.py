@@ -21,10 +21,8 @@ from slippulse.steps.reach import declared
 PROJECT = Path(__file__).resolve().parents[1]
 
 
-# What takes longest, first, so that two workers end together.
+# The files that take longest, first, so that two workers end together.
 LONGEST = ("test_every_figure", "test_faults", "test_rendering", "test_results_folder", "test_pipeline")
-# Folders whose files draw from the same runs and studies, which each worker would make anew.
-TOGETHER = ("figures", "studies")
 
 
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
@@ -63,10 +61,7 @@ def untouched_kernels(tmp_path_factory) -> Path:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long files first; within a file the order stays, and a file stays in one worker."""
-    for item in items:
-        folder = item.path.parent.name
-        item.add_marker(pytest.mark.xdist_group(folder if folder in TOGETHER else item.path.stem))
+    """Long files first; within a file the order stays."""
     items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
 
 
