@@ -8,8 +8,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from importlib import import_module
 from pathlib import Path
+from threading import Thread
 
 import pytest
 import yaml
@@ -22,11 +24,13 @@ PROJECT = Path(__file__).resolve().parents[1]
 
 
 # The files that take longest, first, so that two workers end together.
-LONGEST = ("test_every_figure", "test_faults", "test_rendering", "test_results_folder", "test_pipeline")
+LONGEST = ("test_every_figure", "test_faults", "test_rendering", "test_pipeline")
 
 
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
+# The file beside both that says that they are there, and how long a worker waits for it in seconds.
+READY, LONGEST_WAIT = "ready", 300.0
 
 
 def compile_into(folder: Path) -> None:
@@ -36,12 +40,28 @@ def compile_into(folder: Path) -> None:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile the kernels once, before the workers start and each would."""
+    """Compile the kernels once, while the workers collect their tests."""
     if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput"):
         folder = Path(tempfile.mkdtemp(prefix="slippulse-kernels-"))
-        compile_into(folder / "untouched")
-        shutil.copytree(folder / "untouched", folder / "shared")
         os.environ |= {SHARED: str(folder / "shared"), UNTOUCHED: str(folder / "untouched")}
+        Thread(target=prepare, args=(folder,)).start()
+
+
+def prepare(folder: Path) -> None:
+    """Compile, and let the workers begin, whatever became of it."""
+    try:
+        compile_into(folder / "untouched")
+        shutil.copytree(folder / "untouched", folder / "shared", dirs_exist_ok=True)
+    finally:
+        (folder / READY).touch()
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """A worker waits for the kernels, or after a while compiles them itself."""
+    if hasattr(session.config, "workerinput") and UNTOUCHED in os.environ:
+        ready, end = Path(os.environ[UNTOUCHED]).with_name(READY), time.monotonic() + LONGEST_WAIT
+        while not ready.exists() and time.monotonic() < end:
+            time.sleep(0.1)
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:

@@ -17,6 +17,8 @@ from slippulse.texts.captions import read_captions
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
+# The figures of the paper, and among the slow tests the studies.
+DRAWN = [pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES]
 # Points, at the width of the journal.
 SMALLEST = 6.0
 SKETCHES = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone", "study_extremes"}
@@ -27,14 +29,18 @@ def test_there_is_a_module_for_every_figure_of_the_paper():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_fits_a_page_and_has_a_caption(draw, project, name):
-    width, height = draw(name).figure.get_size_inches()
-    assert width <= PAGE + 1e-9 and height <= 9.0
+def test_it_has_a_caption(project, name):
     caption = read_captions(project / "manuscript/captions.yaml")[name]
     assert len(caption.caption.split()) > 20
 
 
-@pytest.mark.parametrize("name", sorted(set(NAMES) - SKETCHES))
+@pytest.mark.parametrize("name", DRAWN)
+def test_it_fits_a_page(draw, name):
+    width, height = draw(name).figure.get_size_inches()
+    assert width <= PAGE + 1e-9 and height <= 9.0
+
+
+@pytest.mark.parametrize("name", [drawn for drawn in DRAWN if drawn.values[0] not in SKETCHES])
 def test_axes_with_data_are_labelled(draw, name):
     figure = draw(name).figure
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes] + [
@@ -46,9 +52,7 @@ def test_axes_with_data_are_labelled(draw, name):
             assert len(line.get_xdata()) == len(line.get_ydata())
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES]
-)
+@pytest.mark.parametrize("name", DRAWN)
 def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     drawn = draw(name)
     assert len(drawn.table) > 0
@@ -90,7 +94,9 @@ def test_exponents_have_the_size_that_they_are_given():
     assert exponent[1] / letter[1] == pytest.approx(SCRIPTS)
 
 
-@pytest.mark.parametrize("name", ["fig03_steady_state", "study_arrest"])
+@pytest.mark.parametrize(
+    "name", ["fig03_steady_state", pytest.param("study_arrest", marks=pytest.mark.slow)]
+)
 def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
     drawn = draw(name)
     with matplotlib.rc_context({"savefig.dpi": 50}):

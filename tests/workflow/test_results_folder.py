@@ -19,7 +19,7 @@ from pypdf import PdfReader
 
 from slippulse.data.records import read_records
 
-pytestmark = pytest.mark.workflow
+pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
 SWEEP = {
     "boundary": "displacement", "left": [0.5, 0.6], "right": "same", "gamma": [0.65], "duration": {"time": 6.0},
@@ -129,7 +129,6 @@ def test_an_edited_measurement_is_made_anew_with_a_word_before_anything_is_built
     assert study.inputs["measurements/mine.csv"] == hashlib.sha256(before).hexdigest()
 
 
-@pytest.mark.slow
 def test_another_configuration_of_one_target_marks_the_page_it_leaves_behind(folder):
     """A page that was written from other data is marked; the run says so, and verify names it."""
     before = (folder / PAGE).read_text(encoding="utf-8")
