@@ -94,9 +94,7 @@ def test_exponents_have_the_size_that_they_are_given():
     assert exponent[1] / letter[1] == pytest.approx(SCRIPTS)
 
 
-@pytest.mark.parametrize(
-    "name", ["fig03_steady_state", pytest.param("study_arrest", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("name", ["fig03_steady_state", pytest.param("study_arrest", marks=pytest.mark.slow)])
 def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
     drawn = draw(name)
     with matplotlib.rc_context({"savefig.dpi": 50}):
