@@ -26,7 +26,7 @@ def main(config_path: str, folder: str) -> None:
         "exponents": lambda: measure.exponents(accuracy),
         "settings": lambda: measure.settings_compared(config["presets"], window),
         "requirements": lambda: requirements.table(config["studies"]["requirements"]).to_dict("records"),
-        "pipeline": lambda: measure.pipeline(Path(folder)),
+        "pipeline": lambda: measure.pipeline(Path(folder).parent),
     }
     found = {}
     for name, part in parts.items():

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from slippulse.data.job_times import read_job_records
-from slippulse.data.provenance import machine_class
+from slippulse.data.provenance import job_times, machine_class
+from slippulse.data.records import read_records
 from slippulse.data.versions import versions
 from slippulse.measure.fronts import front_speed
 from slippulse.model.prestress import Prestress
@@ -249,13 +249,14 @@ def settings_compared(presets: Mapping, window: float) -> list[dict]:
     return found
 
 
-def pipeline(folder: Path) -> dict:
-    """Seconds and memory of the pipeline's jobs by rule, from Snakemake's own records; empty before it has run."""
-    records = read_job_records(folder)
-    if records.empty:
+def pipeline(results: Path) -> dict:
+    """Seconds and memory of the pipeline's jobs by step, from their records; empty before it has run."""
+    records = read_records(results)
+    if not records:
         return {}
+    by_step = job_times(results)
     return {
-        "job_seconds": float(records["seconds"].sum()),
-        "largest_memory_MB": float(records["memory"].max()),
-        "by_rule": {rule: float(rows["seconds"].sum()) for rule, rows in records.groupby("rule")},
+        "job_seconds": sum(by_step.values()),
+        "largest_memory_MB": max(record.used["memory_MB"] for record in records),
+        "by_step": by_step,
     }

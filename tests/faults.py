@@ -68,6 +68,7 @@ def prepare(folder: Path) -> Path:
 def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
     """A run in a process group of its own."""
     command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
+    command += ["--force-use-threads"]
     command += ["--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
     with open(folder / "said.txt", "a", encoding="utf-8") as said:
         return subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, start_new_session=True)

@@ -55,6 +55,7 @@ def snakemake(
     """Run Snakemake in a folder, with that folder's library."""
     # The profile of the folder logs for people; here the plain lines are read.
     command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
+    command += ["--force-use-threads"]
     command += ["--cores", str(cores)]
     command += ["--configfile", overlay] if overlay else []
     library = (folder / "src").resolve()

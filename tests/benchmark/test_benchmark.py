@@ -12,7 +12,7 @@ import tolerances as tol
 import slippulse as sp
 from benchmarks import __main__ as command
 from benchmarks import measure, stencils
-from slippulse.data.job_times import read_job_records
+from slippulse.data.records import write_record
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
 
@@ -75,22 +75,23 @@ def test_the_kernel_is_timed_with_everything_included():
     assert 30 < blocks < 80
 
 
-def test_records_are_read_by_rule(tmp_path):
-    head = "s\th:m:s\tmax_rss\tmax_vms\tmax_uss\tmax_pss\tio_in\tio_out\tmean_load\tcpu_time\n"
-    (tmp_path / "simulate").mkdir()
-    for name, seconds, memory in (
-        ("simulate/a", 2.5, "150.0"),
-        ("simulate/b", 1.5, "-"),
-        ("write_claims", 1.0, "90"),
+def test_records_are_read_by_step(tmp_path):
+    results = tmp_path / "results"
+    for name, step, seconds, memory in (
+        ("a", "simulate", 2.5, 150),
+        ("b", "simulate", 1.5, 90),
+        ("c", "measure", 1.0, 80),
     ):
-        text = head + f"{seconds}\t0:00:02\t{memory}\t1\t1\t1\t0\t0\t100\t{2 * seconds}\n"
-        (tmp_path / f"{name}.tsv").write_text(text, encoding="utf-8")
-    records = read_job_records(tmp_path)
-    assert list(records["rule"]) == ["simulate", "simulate", "write_claims"]
-    assert list(records["job"]) == ["simulate/a", "simulate/b", "write_claims"]
-    assert records["processor_seconds"].sum() == 10.0
-    assert records["memory"].max() == 150.0
-    assert measure.pipeline(tmp_path)["by_rule"] == {"simulate": 4.0, "write_claims": 1.0}
+        (results / f"{name}.csv").parent.mkdir(exist_ok=True)
+        (results / f"{name}.csv").write_text(name)
+        used = {"seconds": seconds, "processor_seconds": seconds, "memory_MB": memory}
+        write_record(step, {}, {"made": f"{results}/{name}.csv"}, {}, used)
+    found = measure.pipeline(results)
+    assert found == {
+        "job_seconds": 5.0,
+        "largest_memory_MB": 150,
+        "by_step": {"simulate": 4.0, "measure": 1.0},
+    }
 
 
 def test_without_records_there_is_nothing_to_say(tmp_path):

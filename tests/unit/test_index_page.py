@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 from slippulse.data.provenance import provenance
+from slippulse.data.records import write_record
 from slippulse.figures.style import new_figure, save_figure
 from slippulse.pages.claims import claims_page
 from slippulse.pages.index import index_page
@@ -67,7 +68,7 @@ class Outline(HTMLParser):
 def page(project, config, tmp_path) -> str:
     """The page of a small run whose preset is not the shipped one."""
     results = tmp_path / "results"
-    for folder in ("figures", "benchmarks", "scenes"):
+    for folder in ("figures", "scenes"):
         (results / folder).mkdir(parents=True)
     for name in NAMES:
         figure = new_figure(3.0, 2.0)
@@ -78,9 +79,9 @@ def page(project, config, tmp_path) -> str:
     (results / "claims.json").write_text(json.dumps(claims), encoding="utf-8")
     (results / "findings.json").write_text(json.dumps([FINDING]), encoding="utf-8")
     (results / "claims.html").write_text(claims_page(claims), encoding="utf-8")
-    (results / "benchmarks/one.tsv").write_text("s\th:m:s\n1.5\t0:00:01\n")
+    write_record("one", {}, {"made": f"{results}/claims.json"}, {}, {"seconds": 1.5})
     (results / "scenes/made.html").write_text("<p>")
-    facts = provenance(project, config | {"preset": "draft"}, config, results / "benchmarks")
+    facts = provenance(project, config | {"preset": "draft"}, config, results)
     (results / "provenance.json").write_text(json.dumps(facts), encoding="utf-8")
 
     caption = {

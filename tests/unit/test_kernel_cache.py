@@ -165,17 +165,3 @@ def test_numba_takes_the_private_option():
     assert "NRT_incref" not in next(iter(uncounted.inspect_llvm().values()))
     with pytest.raises(numba.core.errors.NumbaError):
         numba.njit(_nrt=False)(made)(3)
-
-
-def test_numba_finds_no_blas_while_kernels_are_loaded():
-    """`jit.load_without_blas` replaces `numba.np.linalg.ensure_blas`, which numba.np.arraymath calls as it is loaded.
-
-    Should numba look for BLAS in another way, remove the function: jobs start 0.2 s later.
-    """
-    program = (
-        "import sys; from slippulse.solver import jit; assert 'numba.np.arraymath' in sys.modules;"
-        "assert 'scipy.linalg' not in sys.modules, 'numba has loaded scipy.linalg';"
-        "from numba.np import arraymath, linalg; assert linalg.ensure_blas.__module__ == linalg.__name__;"
-        "assert arraymath.ensure_blas is not None"
-    )
-    subprocess.run([sys.executable, "-c", program], check=True)

@@ -17,6 +17,7 @@ from slippulse.data.provenance import (
     source_files,
     tree_digest,
 )
+from slippulse.data.records import write_record
 
 
 def test_an_overlay_is_marked_value_by_value():
@@ -47,17 +48,18 @@ def test_sources_are_the_library_and_the_workflow(project):
         "Snakefile",
         "src/slippulse/model/scene.py",
         "workflow/rules/common.smk",
-        "workflow/scripts/step.py",
     } <= names
     assert not any("__pycache__" in name or name.startswith("tests") for name in names)
 
 
 def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
-    (tmp_path / "simulate").mkdir()
-    (tmp_path / "simulate/a.tsv").write_text("s\tcpu_time\tmax_rss\n1.25\t1\t100\n")
-    (tmp_path / "simulate/b.tsv").write_text("s\tcpu_time\tmax_rss\n0.5\t1\t100\n")
-    assert job_times(tmp_path) == {"simulate": 1.75}
-    facts = provenance(project, config | {"preset": "draft"}, config, tmp_path)
+    results = tmp_path / "results"
+    results.mkdir()
+    for name, seconds in (("a.csv", 1.25), ("b.csv", 0.5)):
+        (results / name).write_text(name)
+        write_record("simulate", {}, {"made": f"{results}/{name}"}, {}, {"seconds": seconds})
+    assert job_times(results) == {"simulate": 1.75}
+    facts = provenance(project, config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]
     assert set(facts) == {
         "paper", "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine",

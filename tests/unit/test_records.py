@@ -28,7 +28,7 @@ def make(results: Path, name: str, content: str, *sources: str) -> Path:
     path = results / name
     write_text(content, path)
     files = {"sources": [str(results / source) for source in sources]}
-    write_record("some_step", files, {"made": str(path)}, {"configuration": "abc"})
+    write_record("some_step", files, {"made": str(path)}, {"configuration": "abc"}, {})
     return path
 
 

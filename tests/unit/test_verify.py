@@ -18,7 +18,7 @@ from slippulse.data.verify import compare, main
 def noted(path: Path, content: str, *sources: Path) -> None:
     """A file as a job writes and notes it."""
     write_text(content, path)
-    write_record("some_step", {"sources": [str(source) for source in sources]}, {"made": str(path)}, {})
+    write_record("some_step", {"sources": [str(source) for source in sources]}, {"made": str(path)}, {}, {})
 
 
 @pytest.fixture

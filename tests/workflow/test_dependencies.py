@@ -78,7 +78,7 @@ def test_no_rule_depends_on_another_file_of_the_sources(seen):
     }
     # The report says what differs from the shipped configuration.
     assert others == {"write_report": {"config/config.yaml"}}
-    workflow = {"Snakefile", "workflow/scripts/step.py", "workflow/rules/common.smk"}
+    workflow = {"Snakefile", "workflow/rules/common.smk"}
     assert workflow <= seen["write_provenance"]
 
 

@@ -157,12 +157,6 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
     assert result.stderr.count("\n") == 1 and "allowed: a results folder that can be written" in result.stderr
 
 
-def test_a_job_leaves_at_once_but_not_before_all_is_said(tmp_path):
-    program = "from slippulse.steps.job import leave\nprint('said', end='')\nleave()\nprint('not reached')\n"
-    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert (result.returncode, result.stdout, result.stderr) == (0, "said", "")
-
-
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")
 def test_sources_that_cannot_be_written_are_enough():
     project = Path(__file__).resolve().parents[2]

@@ -16,8 +16,6 @@ rule write_claims:
         html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
     log:
         "results/logs/write_claims.log",
-    benchmark:
-        "results/benchmarks/write_claims.tsv"
     params:
         step="write_claims",
         claims=plain(config["claims"]),
@@ -28,5 +26,5 @@ rule write_claims:
         configuration=digest_of(config),
     message:
         "Judging the claims"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)

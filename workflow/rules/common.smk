@@ -12,6 +12,7 @@ from slippulse.configuration.read import read_config
 from slippulse.configuration.scenes import all_simulations
 from slippulse.data.alterations import changes
 from slippulse.data.records import digest_of
+from slippulse.steps.job import Jobs
 from slippulse.steps.reach import PACKAGE, declared, sources
 
 
@@ -37,6 +38,16 @@ SIMULATIONS = all_simulations(config)
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
+
+JOBS = Jobs(program=["snakemake.cli"])
+
+
+def run_step(rule, wildcards, input, output, params, threads, log):
+    """Run the step of a rule on plain values, in a process of its own."""
+    settings = dict(params.items()) | {"threads": threads}
+    name = " ".join([rule, *wildcards])
+    JOBS.run(settings.pop("step"), name, dict(input.items()), dict(output.items()), settings, log[0])
+
 
 # Each figure by name; what it draws stands in its module.
 FIGURES, STUDIES = (

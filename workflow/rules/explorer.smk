@@ -9,12 +9,10 @@ rule write_explorer:
         html="results/explorer.html",
     log:
         "results/logs/write_explorer.log",
-    benchmark:
-        "results/benchmarks/write_explorer.tsv"
     params:
         step="write_explorer",
         configuration=configuration(EXPLORER_SIMULATIONS, measure=config["measure"]),
     message:
         "Writing results/explorer.html"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)

@@ -21,8 +21,6 @@ for figure, needs in NEEDS.items():
             csv=f"results/figures/{figure}.csv",
         log:
             f"results/logs/figures/{figure}.log",
-        benchmark:
-            f"results/benchmarks/figures/{figure}.tsv"
         params:
             step="draw_figure",
             figure=figure,
@@ -30,5 +28,5 @@ for figure, needs in NEEDS.items():
             configuration=configuration_of_figure(figure),
         message:
             f"Drawing {figure}"
-        script:
-            "../scripts/step.py"
+        run:
+            run_step(rule, wildcards, input, output, params, threads, log)

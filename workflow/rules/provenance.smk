@@ -49,8 +49,6 @@ rule write_provenance:
         manifest="results/codecheck.yml",
     log:
         "results/logs/write_provenance.log",
-    benchmark:
-        "results/benchmarks/write_provenance.tsv"
     params:
         step="write_provenance",
         config=plain(config),
@@ -58,8 +56,8 @@ rule write_provenance:
         configuration=digest_of(config),
     message:
         "Noting what the results were made from"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_index:
@@ -79,8 +77,6 @@ rule write_index:
         html="results/index.html",
     log:
         "results/logs/write_index.log",
-    benchmark:
-        "results/benchmarks/write_index.tsv"
     params:
         step="write_index",
         galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES}
@@ -89,5 +85,5 @@ rule write_index:
         configuration=digest_of(config),
     message:
         "Writing results/index.html, the page to open"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)

@@ -33,8 +33,6 @@ rule write_report:
         verdicts="results/manuscript/verdicts.yaml",
     log:
         "results/logs/write_report.log",
-    benchmark:
-        "results/benchmarks/write_report.tsv"
     params:
         step="write_report",
         figures=list(NEEDS),
@@ -42,5 +40,5 @@ rule write_report:
         configuration=digest_of(config),
     message:
         "Writing the replication report"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)

@@ -24,8 +24,6 @@ rule draw_scene:
         html="results/scenes/{scene}.html",
     log:
         "results/logs/draw_scene/{scene}.log",
-    benchmark:
-        "results/benchmarks/draw_scene/{scene}.tsv"
     wildcard_constraints:
         scene="|".join(SCENES) or "(?!)",
     params:
@@ -36,8 +34,8 @@ rule draw_scene:
         configuration=lambda wildcards: configuration_of_numbers(wildcards.scene),
     message:
         "Drawing scene {wildcards.scene}"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule animate_scene:
@@ -48,8 +46,6 @@ rule animate_scene:
         gif="results/scenes/{scene}.gif",
     log:
         "results/logs/animate_scene/{scene}.log",
-    benchmark:
-        "results/benchmarks/animate_scene/{scene}.tsv"
     wildcard_constraints:
         scene="|".join(SCENES) or "(?!)",
     params:
@@ -58,8 +54,8 @@ rule animate_scene:
         configuration=lambda wildcards: configuration_of_data(wildcards.scene),
     message:
         "Animating scene {wildcards.scene}"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_scenes_page:
@@ -70,16 +66,14 @@ rule write_scenes_page:
         html="results/scenes/index.html",
     log:
         "results/logs/write_scenes_page.log",
-    benchmark:
-        "results/benchmarks/write_scenes_page.tsv"
     params:
         step="write_scenes_page",
         scenes={name: scene["title"] for name, scene in SCENES.items()},
         configuration=configuration(SCENES, measure=config["measure"]),
     message:
         "Writing the list of scenes"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule draw_sweep:
@@ -92,8 +86,6 @@ rule draw_sweep:
         csv="results/figures/sweep_{sweep}.csv",
     log:
         "results/logs/draw_sweep/{sweep}.log",
-    benchmark:
-        "results/benchmarks/draw_sweep/{sweep}.tsv"
     wildcard_constraints:
         sweep="|".join(config["simulations"]),
     params:
@@ -102,5 +94,5 @@ rule draw_sweep:
         configuration=lambda wildcards: configuration_of_numbers(wildcards.sweep),
     message:
         "Drawing sweep {wildcards.sweep}"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)

@@ -15,16 +15,14 @@ rule compile_kernels:
         kernels="results/kernels.txt",
     log:
         "results/logs/compile_kernels.log",
-    benchmark:
-        "results/benchmarks/compile_kernels.tsv"
     # Everything waits for it.
     priority: 2
     params:
         step="compile_kernels",
     message:
         "Compiling the lattice kernels (once)"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule simulate:
@@ -36,8 +34,6 @@ rule simulate:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
-    benchmark:
-        "results/benchmarks/simulate/{simulation}.tsv"
     # Before what only draws: the claims wait for the last of the measurements.
     priority: 1
     threads: job_threads
@@ -51,8 +47,8 @@ rule simulate:
         configuration=lambda wildcards: configuration_of_data(wildcards.simulation),
     message:
         "Simulating {wildcards.simulation}"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule measure:
@@ -63,8 +59,6 @@ rule measure:
         measured="results/measurements/{simulation}.csv",
     log:
         "results/logs/measure/{simulation}.log",
-    benchmark:
-        "results/benchmarks/measure/{simulation}.tsv"
     priority: 1
     params:
         step="measure",
@@ -72,8 +66,8 @@ rule measure:
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Measuring {wildcards.simulation}"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule study_grid:
@@ -87,8 +81,6 @@ rule study_grid:
         coarser="results/uncertainties/coarser/{simulation}.csv",
     log:
         "results/logs/study_grid/{simulation}.log",
-    benchmark:
-        "results/benchmarks/study_grid/{simulation}.tsv"
     priority: 1
     resources:
         runtime=job_minutes,
@@ -101,8 +93,8 @@ rule study_grid:
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule join_data:
@@ -113,8 +105,6 @@ rule join_data:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/join_data/{simulation}.log",
-    benchmark:
-        "results/benchmarks/join_data/{simulation}.tsv"
     wildcard_constraints:
         simulation=CHUNKED,
     resources:
@@ -125,8 +115,8 @@ rule join_data:
         configuration=lambda wildcards: configuration_of_data(wildcards.simulation),
     message:
         "Putting the data of {wildcards.simulation} together"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule join_measurements:
@@ -137,8 +127,6 @@ rule join_measurements:
         measured="results/measurements/{simulation}.csv",
     log:
         "results/logs/join_measurements/{simulation}.log",
-    benchmark:
-        "results/benchmarks/join_measurements/{simulation}.tsv"
     wildcard_constraints:
         simulation=CHUNKED,
     priority: 1
@@ -147,8 +135,8 @@ rule join_measurements:
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Putting the measurements of {wildcards.simulation} together"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule join_uncertainties:
@@ -162,8 +150,6 @@ rule join_uncertainties:
         coarser="results/uncertainties/coarser/{simulation}.csv",
     log:
         "results/logs/join_uncertainties/{simulation}.log",
-    benchmark:
-        "results/benchmarks/join_uncertainties/{simulation}.tsv"
     wildcard_constraints:
         simulation=CHUNKED,
     priority: 1
@@ -175,5 +161,5 @@ rule join_uncertainties:
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Putting the grid studies of {wildcards.simulation} together"
-    script:
-        "../scripts/step.py"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)

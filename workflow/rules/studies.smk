@@ -13,8 +13,6 @@ for study in SOLVER_STUDIES:
             table=f"results/studies/{study}.csv",
         log:
             f"results/logs/studies/{study}.log",
-        benchmark:
-            f"results/benchmarks/studies/{study}.tsv"
         resources:
             runtime=20,
         params:
@@ -24,5 +22,5 @@ for study in SOLVER_STUDIES:
             configuration=configuration(study=settings_of_study(study)),
         message:
             f"Studying {study}"
-        script:
-            "../scripts/step.py"
+        run:
+            run_step(rule, wildcards, input, output, params, threads, log)

@@ -14,8 +14,7 @@ from pathlib import Path
 import yaml
 
 from .alterations import changes
-from .job_times import read_job_records
-from .records import file_digest
+from .records import file_digest, read_records
 from .versions import PACKAGES
 
 PAPER = {
@@ -80,20 +79,22 @@ def machine_class() -> dict:
     }
 
 
-def job_times(benchmarks: str | Path) -> dict[str, float]:
-    """Seconds that the jobs of each rule took, all together, from their benchmark files."""
-    seconds = read_job_records(benchmarks).groupby("rule", sort=False)["seconds"].sum()
-    return {rule: round(float(total), 2) for rule, total in seconds.items()}
+def job_times(results: str | Path) -> dict[str, float]:
+    """Seconds that the jobs of each step took, all together, from their records."""
+    seconds: dict[str, float] = {}
+    for record in read_records(results):
+        seconds[record.step] = round(seconds.get(record.step, 0.0) + record.used["seconds"], 2)
+    return seconds
 
 
-def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: str | Path) -> dict:
+def provenance(root: str | Path, config: Mapping, shipped: Mapping, results: str | Path) -> dict:
     """Everything that a result depends on.
 
     Parameters
     ----------
     root : folder of the project
     config, shipped : the configuration with and without overlays
-    benchmarks : folder of the jobs' benchmark files
+    results : folder of the results, with the records of their jobs
     """
     from importlib.metadata import version
 
@@ -110,7 +111,7 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, benchmarks: 
         "machine": machine_class(),
         "times": {
             "written": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
-            "seconds_of_jobs": job_times(benchmarks),
+            "seconds_of_jobs": job_times(results),
         },
     }
 

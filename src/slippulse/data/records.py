@@ -39,7 +39,7 @@ def results_of(path: str | Path) -> Path:
     return next(parent for parent in Path(path).parents if parent.name == "results")
 
 
-def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping, used: Mapping) -> None:
     """Note what a job has made.
 
     Parameters
@@ -47,6 +47,7 @@ def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping)
     step : its module
     files, outputs : paths, or lists of paths, by name
     settings : with ``configuration``, the digest of the configuration behind the outputs
+    used : seconds, processor_seconds, memory_MB
     """
     made = _paths(outputs)
     base = results_of(made[0])
@@ -60,6 +61,7 @@ def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping)
         "configuration": settings.get("configuration", ""),
         "outputs": digests(made),
         "inputs": digests(_paths(files)),
+        "used": dict(used),
     }
     name = Path(made[0]).relative_to(base)
     text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
@@ -71,13 +73,14 @@ def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping)
 
 @dataclass(frozen=True)
 class Record:
-    """One job: where its record is, and what it made from what (paths below results/, digests)."""
+    """One job: where its record is, what it made from what (paths below results/, digests), and what it used."""
 
     path: Path
     step: str
     configuration: str
     outputs: Mapping[str, str]
     inputs: Mapping[str, str]
+    used: Mapping[str, float]
 
 
 def read_records(results: str | Path) -> list[Record]:
@@ -87,9 +90,7 @@ def read_records(results: str | Path) -> list[Record]:
     for path in sorted((results / FOLDER).rglob("*.json")):
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
-            record = Record(
-                path, **{key: content[key] for key in ("step", "configuration", "outputs", "inputs")}
-            )
+            record = Record(path, **content)
         except (OSError, ValueError, KeyError, TypeError):
             path.unlink(missing_ok=True)
             continue

@@ -10,14 +10,12 @@ What each flag gains, measured in turns with and without it, the least of severa
 - ``reassoc`` and ``nsz`` in the one sum over many blocks: a damped crack runs 1.1 times as fast.
 - ``contract``, fused multiplication and addition: 1.00 to 1.07 times as fast; ``error_model="numpy"``, division without
   a test for zero: nothing. Both stay, since without them results would change in their last bits.
-- ``load_without_blas``: a job starts in 1.1 s instead of 1.35 s.
 
 ``tests/unit/test_kernel_cache.py`` fails where numba changes what is private of these.
 """
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
 from pathlib import Path
@@ -46,28 +44,6 @@ def cache_folder() -> Path:
         base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
     return Path(base) / f"kernels-{source_digest()}"
 
-
-def load_without_blas() -> None:
-    """Load numba's array functions while they find no BLAS, which stays away from their inner product alone.
-
-    Looking for it loads scipy.linalg, and no kernel multiplies matrices.
-    """
-    with contextlib.suppress(ImportError, AttributeError):
-        from numba.np import linalg
-
-        look = linalg.ensure_blas
-
-        def none_found() -> None:
-            raise ImportError("not looked for")
-
-        linalg.ensure_blas = none_found
-        try:
-            import numba.np.arraymath  # noqa: F401
-        finally:
-            linalg.ensure_blas = look
-
-
-load_without_blas()
 
 if not os.environ.get("NUMBA_CACHE_DIR"):
     numba.config.CACHE_DIR = str(cache_folder())

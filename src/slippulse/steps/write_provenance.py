@@ -14,7 +14,7 @@ from ..texts.captions import read_captions
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     """Files: results, captions. Outputs: provenance, checksums, manifest. Settings: config, shipped."""
     base = Path(outputs["provenance"]).parent
-    facts = provenance(".", settings["config"], settings["shipped"], base / "benchmarks")
+    facts = provenance(".", settings["config"], settings["shipped"], base)
     comments = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, comments), outputs["manifest"])

@@ -1,0 +1,17 @@
+"""Libraries that most steps use, loaded once for all jobs of a run.
+
+Nothing of the project's own: that may be edited while a run goes on.
+"""
+
+import gc
+
+import h5netcdf  # noqa: F401
+import matplotlib.pyplot  # noqa: F401
+import numba
+import scipy.special  # noqa: F401
+import xarray  # noqa: F401
+
+# The first function compiled loads most of numba.
+numba.njit(lambda: 0)()
+# Memory that nobody touches is shared with every job.
+gc.freeze()
