@@ -23,6 +23,8 @@ AROUND = np.linspace(-4.0, 4.0, 17)
 HALF_WAY = 0.55
 # Behind a front that creeps to its arrest blocks stick this much later, times the root of the way (measured).
 LINGERING = 10.0
+# It fades on this way, times (gamma^2 beta)^-1/3: damping spreads it over the wave of leaf springs (measured: 2 to 16).
+FADING = 8.0
 # A front that arrests covers a cell in this time: longer than any run.
 STOPPED = 1e9
 
@@ -97,7 +99,9 @@ def front_paths(scene: Scene) -> FrontPaths:
     held = release == "elastic" or ratio < HALF_WAY
     stiffness = scene.dx * math.sqrt(scene.gamma) if held else 0.0
     if min(levels) <= 0.5 * stiffness or profile.bumps:
-        return cells.with_stops(*_stopped(profile, cells, scene.gamma, stiffness))
+        cells = cells.with_stops(*_stopped(profile, cells, scene, stiffness))
+    if release == "elastic" and ratio > 1.0:
+        return replace(cells, release=np.maximum(cells.release, _viscous_delay(cells, scene)))
     return cells
 
 
@@ -122,24 +126,40 @@ def _cells(profile: Prestress, ratio: float, release: str, fastest: float, reach
     return FrontPaths(size, level, speed, x, start).with_stops(-math.inf, math.inf)
 
 
-def _stopped(profile: Prestress, cells: FrontPaths, gamma: float, stiffness: float) -> tuple[float, float]:
+def _viscous_delay(cells: FrontPaths, scene: Scene) -> np.ndarray:
+    """Before this time strong damping keeps the elastic stress at the edge of what slides below the threshold.
+
+    Released blocks share the push P on them through their damping, so that the strain at their edge grows as
+    P t/(2 beta). It frees the next block at the strain (1 - tau) dx.
+    """
+    total, distance = np.cumsum(cells.size * cells.level), np.abs(cells.x)
+    push = np.interp(distance, cells.x, total) - np.interp(-distance, cells.x, total)
+    delay = 2.0 * scene.beta * scene.dx * np.maximum(1.0 - cells.level, 0.0) / np.maximum(push, scene.dx)
+    right = cells.x > 0.0
+    delay[right] = np.maximum.accumulate(delay[right])
+    delay[~right] = np.maximum.accumulate(delay[~right][::-1])[::-1]
+    return delay
+
+
+def _stopped(profile: Prestress, cells: FrontPaths, scene: Scene, stiffness: float) -> tuple[float, float]:
     """Where the push behind each outward front is used up, or too small for a block.
 
     The push is the integral of the pre-stress over the side; with leaf springs over a length of pi/sqrt(gamma) of it.
     A block is held where no front outruns the waves on the lattice, stiffness sqrt(1 - tau^2) > 2 tau.
     """
-    x, size, level = cells.x, cells.size, cells.level
-    push, ends = size * level, []
+    x, size, level, gamma = cells.x, cells.size, cells.level, scene.gamma
+    push, ends, far = size * level, [], profile.level(x)
     memory = math.pi / math.sqrt(gamma) if gamma else math.inf
-    # Without pre-stress far away a front fades for ever, in the tail of the Gaussian too.
+    fading = FADING * (gamma**2 * scene.beta) ** (-1.0 / 3.0) if gamma * scene.beta else math.inf
     held = stiffness * np.sqrt(1.0 - np.clip(level, 0.0, 1.0) ** 2) > 2.0 * np.maximum(level, 0.0)
-    held &= profile.level(x) != 0.0
-    sides = [(x < 0.0, profile.left), (x > 0.0, profile.right)]
-    pushes = [
-        float(np.sum(push[side])) if level == 0.0 else math.inf if level > 0.0 else 0.0
-        for side, level in sides
-    ]
-    for (side, _), other, outwards in zip(sides, pushes[::-1], (-1, 1), strict=True):
+    # Without pre-stress far away a front fades, in the tail of the Gaussian too, until damping spreads it out.
+    held &= (far != 0.0) | (np.abs(x) > fading)
+    sides, pushes = (x < 0.0, x > 0.0), []
+    for side, outwards, beyond in zip(sides, (-1, 1), (far[0], far[-1]), strict=True):
+        total = np.cumsum(push[side][::outwards])
+        lasting = math.inf if beyond > 0.0 else float(total[-1])
+        pushes.append(lasting if beyond >= 0.0 and np.all(total > 0.0) else 0.0)
+    for side, other, outwards in zip(sides, pushes[::-1], (-1, 1), strict=True):
         along, places, lengths = push[side][::outwards], x[side][::outwards], size[side][::outwards]
         total = np.cumsum(along)
         if math.isfinite(memory):
@@ -162,22 +182,21 @@ def sliding_times(scene: Scene, paths: FrontPaths) -> np.ndarray:
     scene, paths : a scene and its paths
 
     Source: the steady pulse at the front's speed, without damping pi sqrt(v^2 - 1)/(v sqrt(gamma)), strongly damped the
-    root of beta v k^3 = gamma; under a stress boundary blocks stick when a wave from where the fronts arrest comes by.
+    root of beta v k^3 = gamma; without leaf springs blocks stick when a wave from where the fronts arrest comes by.
     """
-    v = paths.speed
-    if scene.boundary == "displacement":
-        with np.errstate(divide="ignore"):
-            undamped = np.sqrt(scene.gamma / ((v - 1.0) * (v + 1.0)))
-            damped = (
-                0.5 * math.sqrt(3.0) * np.cbrt(scene.gamma / (scene.beta * v)) if scene.beta else math.inf
-            )
-        return math.pi / (np.minimum(undamped, damped) * v)
     left, right = paths.stopped
-    stuck = np.full(v.size, math.inf)
+    stuck = np.full(paths.x.size, math.inf)
     for end in (left, right):
         if math.isfinite(end):
             arrival = paths.release[np.searchsorted(paths.x, end) - (1 if end > 0.0 else 0)]
             far = np.abs(paths.x - end)
             stuck = np.minimum(stuck, arrival + far + LINGERING * np.sqrt(far))
     # Strongly damped blocks creep.
-    return np.maximum(stuck - paths.release, 0.0) + scene.damping_ratio * scene.dx
+    sliding = np.maximum(stuck - paths.release, 0.0) + scene.damping_ratio * scene.dx
+    if scene.boundary == "stress":
+        return sliding
+    v = paths.speed
+    with np.errstate(divide="ignore"):
+        undamped = np.sqrt(scene.gamma / ((v - 1.0) * (v + 1.0)))
+        damped = 0.5 * math.sqrt(3.0) * np.cbrt(scene.gamma / (scene.beta * v)) if scene.beta else math.inf
+    return np.minimum(math.pi / (np.minimum(undamped, damped) * v), sliding)
