@@ -6,6 +6,7 @@ Nothing of the project's own: that may be edited while a run goes on.
 import gc
 
 import h5netcdf  # noqa: F401
+import matplotlib.backends.backend_pdf  # noqa: F401
 import matplotlib.pyplot  # noqa: F401
 import numba
 import scipy.special  # noqa: F401
