@@ -3,7 +3,13 @@
 Nothing of the project's own: that may be edited while a run goes on.
 """
 
+# ruff: noqa: E402
+
 import gc
+import os
+
+# Jobs run side by side: the linear algebra of each keeps to one core.
+os.environ["OMP_NUM_THREADS"] = "1"
 
 import h5netcdf  # noqa: F401
 import matplotlib.backends.backend_pdf  # noqa: F401
