@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from base64 import b64decode, b64encode
+from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from itertools import count
 
@@ -35,7 +36,9 @@ def as_page(html: str) -> str:
         ),
         text,
     )
-    text = EMBEDDED.sub(_as_webp, text)
+    with ThreadPoolExecutor() as pool:
+        pictures = pool.map(_as_webp, EMBEDDED.findall(text))
+        text = EMBEDDED.sub(lambda picture: next(pictures), text)
     return head + opening + text.replace("</table>", "</table></div>")
 
 
@@ -44,10 +47,10 @@ def _linked(figure: re.Match) -> str:
     return f'{figure[1]}<a href="{PICTURE.format(figure[2])}">{figure[3]}</a>'
 
 
-def _as_webp(picture: re.Match) -> str:
+def _as_webp(png: str) -> str:
     """A picture with the same pixels in two thirds of the bytes."""
     content = BytesIO()
-    with Image.open(BytesIO(b64decode(picture[1]))) as png:
+    with Image.open(BytesIO(b64decode(png))) as picture:
         # Higher settings take longer and gain nothing.
-        png.convert("RGB").save(content, format="WEBP", lossless=True, method=2, quality=75)
+        picture.convert("RGB").save(content, format="WEBP", lossless=True, method=2, quality=75)
     return "data:image/webp;base64," + b64encode(content.getvalue()).decode("ascii")
