@@ -21,10 +21,13 @@ from slippulse.data.store import load_table, save_table
 from slippulse.steps.reach import declared
 
 PROJECT = Path(__file__).resolve().parents[1]
+# Two workers share two cores.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-
-# The files that take longest, first, so that two workers end together.
-LONGEST = ("test_every_figure", "test_faults", "test_rendering", "test_pipeline")
+# Files first that run no kernel, while the kernels are compiled; then those that take longest, so that the workers end
+# together.
+WITHOUT_KERNELS = ("test_rendering", "test_final_regime", "test_refused_commands", "test_dependencies")
+FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults", "test_pipeline")
 
 
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
@@ -56,9 +59,13 @@ def prepare(folder: Path) -> None:
         (folder / READY).touch()
 
 
-def pytest_collection_finish(session: pytest.Session) -> None:
+def pytest_runtest_setup(item: pytest.Item) -> None:
     """A worker waits for the kernels, or after a while compiles them itself."""
-    if hasattr(session.config, "workerinput") and UNTOUCHED in os.environ:
+    if (
+        item.path.stem not in WITHOUT_KERNELS
+        and hasattr(item.config, "workerinput")
+        and UNTOUCHED in os.environ
+    ):
         ready, end = Path(os.environ[UNTOUCHED]).with_name(READY), time.monotonic() + LONGEST_WAIT
         while not ready.exists() and time.monotonic() < end:
             time.sleep(0.1)
@@ -81,8 +88,8 @@ def untouched_kernels(tmp_path_factory) -> Path:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long files first; within a file the order stays."""
-    items.sort(key=lambda item: LONGEST.index(item.path.stem) if item.path.stem in LONGEST else len(LONGEST))
+    """In the order of files above; within a file the order stays."""
+    items.sort(key=lambda item: FIRST.index(item.path.stem) if item.path.stem in FIRST else len(FIRST))
 
 
 @pytest.fixture(scope="session")
@@ -108,15 +115,15 @@ def paper_accuracy() -> dict:
 def study(project, tmp_path_factory):
     """A function that runs a study with the shipped settings and returns its table, through the CSV."""
     config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
-    folder = tmp_path_factory.mktemp("studies")
-    done = {}
+    # Of all workers: what one has made the other reads.
+    shared = UNTOUCHED in os.environ
+    folder = Path(os.environ[UNTOUCHED]).parent if shared else tmp_path_factory.mktemp("studies")
 
     def run(name: str):
-        if name not in done:
+        path = folder / f"{name}.csv"
+        if not path.exists():
             settings = selected(config, declared(f"studies.{name}", "SETTINGS"), config["studies"][name])
-            table = import_module(f"slippulse.studies.{name}").table(settings)
-            save_table(table, folder / f"{name}.csv")
-            done[name] = load_table(folder / f"{name}.csv")
-        return done[name]
+            save_table(import_module(f"slippulse.studies.{name}").table(settings), path)
+        return load_table(path)
 
     return run

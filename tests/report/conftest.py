@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import re
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -129,7 +130,18 @@ def shipped(project) -> dict:
 
 
 @pytest.fixture(scope="session")
-def make_inputs(project, shipped, tmp_path_factory):
+def pictures(tmp_path_factory) -> list[Path]:
+    """A picture as PDF and PNG."""
+    figure = Figure(figsize=(4, 2))
+    figure.add_subplot().plot(np.arange(3))
+    paths = [tmp_path_factory.mktemp("pictures") / f"picture.{ending}" for ending in ("pdf", "png")]
+    for path in paths:
+        figure.savefig(path)
+    return paths
+
+
+@pytest.fixture(scope="session")
+def make_inputs(project, shipped, pictures, tmp_path_factory):
     """A function that writes the files of an invented run and returns them as inputs of the report."""
 
     def make(config: dict | None = None, scale: float = 1.0, figures: list[str] | None = None) -> Inputs:
@@ -148,13 +160,9 @@ def make_inputs(project, shipped, tmp_path_factory):
         save_table(pd.DataFrame([EDGE]), measured["extremes"])
         captions = yaml.safe_load((project / "manuscript/captions.yaml").read_text(encoding="utf-8"))
         figures = figures if figures is not None else [name for name in captions if name.startswith("fig")]
-        picture = Figure(figsize=(4, 2))
-        picture.add_subplot().plot(np.arange(3))
         for name in figures:
-            for ending in ("pdf", "png"):
-                picture.savefig(
-                    folder / f"{name}.{ending}", metadata={"CreationDate": None} if ending == "pdf" else {}
-                )
+            for picture in pictures:
+                shutil.copyfile(picture, folder / f"{name}{picture.suffix}")
         return Inputs(
             config=config,
             claims_file=str(folder / "claims.json"),

@@ -29,6 +29,7 @@ def panel(settings):
     return _Panel(study_module.readings_of(settings["published"], "space_time_displacement"), settings["end"])
 
 
+@pytest.mark.slow
 def test_it_finds_the_parameters_of_a_lattice_run(settings, panel):
     truth, ratio = np.array([0.3, 0.6]), 0.12
     for name, value in zip(

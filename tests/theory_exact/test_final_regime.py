@@ -83,7 +83,11 @@ def test_with_leaf_springs_a_pulse_without_prestress_gets_ever_narrower_and_slow
     assert 0.4 < peaks[1] / peaks[0] < 0.8
 
 
-@pytest.mark.parametrize(("left", "right"), [(-0.02, 0.1), (-0.1, 0.02), (-0.6, 0.6), (-0.9, 0.02)])
+# A weak drive behind a barrier: the longest to compute.
+SHALLOW = [pytest.param(left, 0.02, marks=pytest.mark.slow) for left in (-0.1, -0.9)]
+
+
+@pytest.mark.parametrize(("left", "right"), [(-0.02, 0.1), (-0.6, 0.6), *SHALLOW])
 def test_without_leaf_springs_a_barrier_before_a_positive_level_leaves_the_centre_a_share_of_the_velocity(
     left, right
 ):

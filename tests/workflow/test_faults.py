@@ -33,7 +33,7 @@ def finished(tmp_path_factory) -> Path:
 
 @pytest.mark.parametrize(
     ("kills", "targets"),
-    [(1, (SCENE, FIGURE)), pytest.param(6, TARGETS, marks=pytest.mark.slow)],
+    [(1, (SCENE,)), pytest.param(6, TARGETS, marks=pytest.mark.slow)],
     ids=["one", "six"],
 )
 def test_kills_are_survived(tmp_path, kills, targets):
