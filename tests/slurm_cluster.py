@@ -233,7 +233,15 @@ def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
 def draft(folder: Path, environment: dict[str, str], *arguments: str) -> float:
     """The draft replication in a folder; returns seconds."""
     began = time.monotonic()
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", *arguments]
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--workflow-profile",
+        "none",
+        "--force-use-threads",
+        *arguments,
+    ]
     with open(folder / "said.txt", "wb") as said:
         done = subprocess.run(
             [*command, "--config", "preset=draft", "--", "all"],

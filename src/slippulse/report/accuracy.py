@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..studies.outcomes import FLAGGED
-from ..texts.numerals import number, percent, setting
+from ..texts.numerals import number, percent, setting, with_uncertainty
 from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
@@ -102,18 +102,21 @@ def sticking(rupture: Rupture | None, positions: Sequence[float]) -> str:
     return table(head, rows, [10, 15, 15, 15], "rrrr")
 
 
-def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
+def speeds(measured: pd.DataFrame, study: pd.DataFrame) -> str:
     """Front speed and peak slip velocity of steady pulses: simulated, exact, and by the paper's formulas.
 
     Parameters
     ----------
     measured : measured numbers of one simulation, one row a run
-    taus : pre-stress levels to show; all of them if not given
+    study : its grid study, for their uncertainties
     """
+    errors = study.set_index(["point", "quantity"])["uncertainty"]
+
+    def with_error(row, quantity: str) -> str:
+        return with_uncertainty(getattr(row, quantity), errors.get((row.Index, quantity)))
+
     rows = []
     for row in measured.itertuples():
-        if taus is not None and not np.isclose(row.left, taus).any():
-            continue
         speed = attempt(front_speed, row.left, row.damping_ratio, row.release)
         pulse = attempt(steady_pulse, row.left, row.gamma, row.beta, speed)
         undamped = attempt(front_speed_undamped, row.left)
@@ -121,12 +124,12 @@ def speeds(measured: pd.DataFrame, taus: Sequence[float] | None = None) -> str:
             [
                 setting(row.left),
                 setting(row.damping_ratio),
-                number(row.front_speed_right, 5),
+                with_error(row, "front_speed_right"),
                 number(speed, 5),
                 number(undamped, 5),
-                number(row.pulse_peak_velocity, 4),
-                number(pulse and pulse.peak_velocity, 4),
-                number(row.gamma**-0.5, 4),
+                with_error(row, "pulse_peak_velocity"),
+                number(pulse and pulse.peak_velocity, 5),
+                number(row.gamma**-0.5, 5),
             ]
         )
     head = [

@@ -3,8 +3,6 @@
 Nothing of the project's own: that may be edited while a run goes on.
 """
 
-# ruff: noqa: E402
-
 import gc
 import os
 
@@ -12,7 +10,7 @@ import os
 os.environ["OMP_NUM_THREADS"] = "1"
 
 import h5netcdf  # noqa: F401
-import matplotlib.backends.backend_pdf  # noqa: F401
+import matplotlib.backends.backend_pdf
 import matplotlib.pyplot  # noqa: F401
 import numba
 import scipy.special  # noqa: F401
