@@ -43,6 +43,7 @@ def test_what_dominates_a_preset(other, dominates):
     assert "energy" not in JUDGED
 
 
+@pytest.mark.slow
 def test_every_preset_is_on_the_curve_and_compared(trade, config):
     presets = trade[trade["preset"].notna()]
     assert set(presets["preset"]) == set(config["presets"])
@@ -55,11 +56,13 @@ def test_every_preset_is_on_the_curve_and_compared(trade, config):
 
 
 @pytest.mark.parametrize("preset", ["draft", "paper"])
+@pytest.mark.slow
 def test_no_measured_setting_is_cheaper_and_better_than_a_preset(trade, preset):
     (row,) = trade[trade["preset"] == preset].itertuples()
     assert not isinstance(row.dominated_by, str), row.dominated_by
 
 
+@pytest.mark.slow
 def test_front_speed_is_set_by_the_order(trade):
     """At one spacing and step, each two orders buy at least a factor of four."""
     rows = trade[(trade["scheme"] == "localised") & (trade["dx"] == 0.01) & (trade["step"] == 0.5)].set_index(
@@ -69,6 +72,7 @@ def test_front_speed_is_set_by_the_order(trade):
     assert rows["front_speed"][3] > 4.0 * rows["front_speed"][5]
 
 
+@pytest.mark.slow
 def test_transitions_are_set_by_the_spacing(trade):
     """First order in dx, whatever the step."""
     rows = trade[(trade["order"] == 8) & (trade["step"] == 0.5)].sort_values("dx")
@@ -76,6 +80,7 @@ def test_transitions_are_set_by_the_spacing(trade):
     assert np.all(np.abs(np.log2(ratio) - 1.0) < tol.ORDER_BAND)
 
 
+@pytest.mark.slow
 def test_the_exact_solution_is_on_the_curve(trade):
     """Fronts and sticks owe nothing to the spacing; where a front stands is read at its multiples."""
     (row,) = trade[trade["scheme"] == "continuum"].itertuples()
@@ -84,11 +89,13 @@ def test_the_exact_solution_is_on_the_curve(trade):
     assert row.arrest_position < 2.0 * row.dx and row.seconds > 0.0 and np.isnan(row.work)
 
 
+@pytest.mark.slow
 def test_seconds_rise_with_the_work(trade):
     lattices = trade[trade["scheme"] == "localised"]
     assert lattices["seconds"].corr(lattices["work"], method="spearman") > 0.9
 
 
+@pytest.mark.slow
 def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):
     """Halving its step makes the front speed worse as often as better."""
     rows = trade[trade["scheme"] == "fixed_step"].sort_values("step", ascending=False)
@@ -96,6 +103,7 @@ def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):
     assert rows["front_speed"].min() > 5e-4
 
 
+@pytest.mark.slow
 def test_the_textbook_front_locks_on_whole_steps_a_block(study):
     table = study("accuracy_cost")
     rows = table[(table["part"] == "locking") & (table["scheme"] == "fixed_step") & (table["step"] > 0.72)]
@@ -104,6 +112,7 @@ def test_the_textbook_front_locks_on_whole_steps_a_block(study):
     assert np.ptp(rows["front_speed"]) > 0.2
 
 
+@pytest.mark.slow
 def test_the_localised_front_does_not(study):
     table = study("accuracy_cost")
     rows = table[(table["part"] == "locking") & (table["scheme"] == "localised")]

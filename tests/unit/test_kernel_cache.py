@@ -106,6 +106,7 @@ def run_with(folder, program: str, **more: str) -> None:
 COMPILE_ALL = "from slippulse.solver.compilation import compile_all; compile_all()"
 
 
+@pytest.mark.slow
 def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
     """Another type of an argument would be compiled for once more."""
     compiled = {path.name for path in untouched_kernels.rglob("*.nbc")}

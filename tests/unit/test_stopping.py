@@ -23,7 +23,7 @@ LONG = (
 RUNS = {"one": "sp.simulate(scene)\n", "sweep": "sp.run_sweep([scene] * 3, threads=2)\n"}
 
 
-@pytest.mark.parametrize("kind", RUNS)
+@pytest.mark.parametrize("kind", ["one", pytest.param("sweep", marks=pytest.mark.slow)])
 def test_an_interrupt_stops_a_run_within_a_second(kind):
     """Two are allowed here, since the machine may be busy."""
     process = subprocess.Popen(

@@ -68,6 +68,7 @@ def test_one_figure_needs_only_its_own_simulations(folder):
     assert jobs == {"compile_kernels": 1, "simulate": 2, "measure": 2, "fig04_space_time": 1}
 
 
+@pytest.mark.slow
 def test_the_graph_in_the_readme_is_the_pipelines(folder, project):
     drawn = snakemake(
         folder, "--rulegraph", "mermaid-js", "--", "results/figures/fig05_scaling.png", "results/claims.json"
