@@ -15,6 +15,8 @@ import pytest
 from faults import TARGETS, Report, digests, fault_run, prepare
 from pipeline_copy import copy_project, snakemake
 
+from slippulse.steps.job import JobFailed, Jobs
+
 pytestmark = pytest.mark.workflow
 
 SCENE = "results/measurements/one.csv"
@@ -161,6 +163,14 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
     )
     assert result.returncode == 1
     assert result.stderr.count("\n") == 1 and "allowed: a results folder that can be written" in result.stderr
+
+
+def test_a_job_that_fails_has_said_why(tmp_path, capfd):
+    with pytest.raises(JobFailed, match="exit code 1"):
+        Jobs().run("no_such_step", "a job", {}, {}, {}, tmp_path / "logs/one.log")
+    said = capfd.readouterr().err
+    assert said.count("\n") == 1 and "No module named" in said and "one.log" in said
+    assert "Traceback" in (tmp_path / "logs/one.log").read_text()
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")

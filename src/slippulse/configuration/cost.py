@@ -132,6 +132,7 @@ def _scene_cost(scene: Scene) -> tuple[float, float]:
         places = 0.5 * blocks if scene.symmetric else blocks
         return EXACT + places * (PLACE + SLOW_PLACE * scene.duration * slow), blocks
     seconds = START + BLOCK * blocks
+    # A block of a symmetric scene counts half.
     steps = np.where(sliding > 0.4, lengths / step, 0.0)
     if scene.scheme == "fixed_step":
         lattice = smallest * 2.0 ** np.ceil(np.log2(np.maximum(released[1:] / smallest, 1.0)))
