@@ -15,7 +15,7 @@ from .front_paths import STOPPED, front_paths, sliding_times
 
 # Seconds on one core of the reference machine: the start of a scene; a step; a sliding block in a step, by order; an
 # event, by order; a block of the lattice, to be set up and written; a block that is looked at by the textbook scheme.
-START, STEP, UPDATE, EVENT, BLOCK, LOOK = 0.9e-3, 1.8e-7, 0.8e-9, (0.35e-6, 0.1e-6), 0.7e-7, 5e-9
+START, STEP, UPDATE, EVENT, BLOCK, LOOK = 1.1e-3, 1.8e-7, 0.8e-9, (0.35e-6, 0.1e-6), 0.7e-7, 5e-9
 # The exact solution: its start; a place, and one behind a slow front for each unit of time; a sample.
 EXACT, PLACE, SLOW_PLACE, SAMPLE = 0.15, 5e-5, 4e-5, 1.5e-6
 # An instant of a stick, to be found.

@@ -21,8 +21,8 @@ RATIO, NEAREST = 1.25, 1e-3
 AROUND = np.linspace(-4.0, 4.0, 17)
 # Where the damping of the rule "elastic" is half way between its limits.
 HALF_WAY = 0.55
-# Behind a front that creeps to its arrest blocks stick this much later, times the root of the way (measured).
-LINGERING = 10.0
+# Behind a front that creeps to its arrest blocks stick so much later, times powers of the way: the less (measured).
+LINGERING = ((1.2, 1.6), (10.0, 0.5))
 # It fades on this way, times (gamma^2 beta)^-1/3: damping spreads it over the wave of leaf springs (measured: 2 to 16).
 FADING = 8.0
 # A front that arrests covers a cell in this time: longer than any run.
@@ -127,17 +127,17 @@ def _cells(profile: Prestress, ratio: float, release: str, fastest: float, reach
 
 
 def _viscous_delay(cells: FrontPaths, scene: Scene) -> np.ndarray:
-    """Before this time strong damping keeps the elastic stress at the edge of what slides below the threshold.
+    """The time that a front takes where strong damping keeps the elastic stress ahead of it below the threshold.
 
     Released blocks share the push P on them through their damping, so that the strain at their edge grows as
-    P t/(2 beta). It frees the next block at the strain (1 - tau) dx.
+    P t/(2 beta). It frees the next block at the strain (1 - tau) dx, and begins anew at the next one.
     """
-    total, distance = np.cumsum(cells.size * cells.level), np.abs(cells.x)
+    total, distance = np.cumsum(cells.size * np.maximum(cells.level, 0.0)), np.abs(cells.x)
     push = np.interp(distance, cells.x, total) - np.interp(-distance, cells.x, total)
-    delay = 2.0 * scene.beta * scene.dx * np.maximum(1.0 - cells.level, 0.0) / np.maximum(push, scene.dx)
+    delay = 2.0 * scene.beta * np.maximum(1.0 - cells.level, 0.0) / np.maximum(push, scene.dx) * cells.size
     right = cells.x > 0.0
-    delay[right] = np.maximum.accumulate(delay[right])
-    delay[~right] = np.maximum.accumulate(delay[~right][::-1])[::-1]
+    delay[right] = np.cumsum(delay[right])
+    delay[~right] = np.cumsum(delay[~right][::-1])[::-1]
     return delay
 
 
@@ -190,7 +190,8 @@ def sliding_times(scene: Scene, paths: FrontPaths) -> np.ndarray:
         if math.isfinite(end):
             arrival = paths.release[np.searchsorted(paths.x, end) - (1 if end > 0.0 else 0)]
             far = np.abs(paths.x - end)
-            stuck = np.minimum(stuck, arrival + far + LINGERING * np.sqrt(far))
+            later = np.minimum(*(factor * far**power for factor, power in LINGERING))
+            stuck = np.minimum(stuck, arrival + far + later)
     # Strongly damped blocks creep.
     sliding = np.maximum(stuck - paths.release, 0.0) + scene.damping_ratio * scene.dx
     if scene.boundary == "stress":
