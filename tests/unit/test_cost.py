@@ -87,6 +87,15 @@ def test_fronts_that_outrun_the_waves_are_expected_to_cost(change, at_least):
     assert expected_seconds(sp.Scene(**usual | change)) > at_least
 
 
+def test_a_front_is_not_stopped_before_it_begins():
+    """A dent at the middle of a very wide nucleation: the run begins beyond it."""
+    dented = sp.Prestress(0.999, 0.3, 1e9, 1.0, (), ((-4.5, -1.0, 2.3),))
+    scene = sp.Scene(
+        "displacement", dented, 2.0, 1.0, gamma=10.0, beta=0.3, release="elastic", max_step=0.09, order=6
+    )
+    assert expected_seconds(scene) > 10.0
+
+
 def test_the_quick_bound_is_a_bound():
     chance = random.Random(5)
     for scene in (wide_scene(chance) for _ in range(300)):

@@ -170,7 +170,10 @@ def _stopped(profile: Prestress, cells: FrontPaths, scene: Scene, stiffness: flo
         used_up = np.flatnonzero(
             (total <= 0.0) | (held[side][::outwards] & (stiffness > 0.0) & (np.abs(places) > memory))
         )
-        ends.append(float(places[used_up[0]]) if used_up.size else outwards * math.inf)
+        end = float(places[used_up[0]]) if used_up.size else outwards * math.inf
+        # Where the run begins elsewhere, that may be beyond.
+        begins = cells.start[side][::outwards][np.abs(places) > abs(end)] == 0.0
+        ends.append(outwards * math.inf if float(profile(0.0)) < 1.0 and begins.any() else end)
     return ends[0], ends[1]
 
 
