@@ -14,6 +14,8 @@ import numpy as np
 
 from ..model.prestress import Prestress
 from ..model.scene import Scene
+from .fading import fading_rate
+from .momentum import momentum_limits
 
 # Neighbouring positions differ by this factor, from a thousandth of the Gaussian's width outwards.
 RATIO, NEAREST = 1.25, 1e-3
@@ -21,10 +23,10 @@ RATIO, NEAREST = 1.25, 1e-3
 AROUND = np.linspace(-4.0, 4.0, 17)
 # Where the damping of the rule "elastic" is half way between its limits.
 HALF_WAY = 0.55
-# Behind a front that creeps to its arrest blocks stick so much later, times powers of the way: the less (measured).
-LINGERING = ((1.2, 1.6), (10.0, 0.5))
-# It fades on this way, times (gamma^2 beta)^-1/3: damping spreads it over the wave of leaf springs (measured: 2 to 16).
-FADING = 8.0
+# Strongly damped blocks creep for so many times beta, where the way is shorter (measured).
+CREEPING = 10.0
+# Fronts fade beyond so many widths of the Gaussian.
+NUCLEUS = 1.6
 # A front that arrests covers a cell in this time: longer than any run.
 STOPPED = 1e9
 
@@ -40,6 +42,8 @@ class FrontPaths:
     speed : of the front there
     x : middle of each cell
     start : 0 where the run begins with a release, infinite elsewhere
+    later, spent : without leaf springs, how much later a front comes for want of momentum, and when that of a block is
+        used up; infinite where it does not come, or where momentum lasts
     stopped : where the left and the right front arrest; infinite where they do not
     release : when the first of all fronts comes by
     """
@@ -49,6 +53,8 @@ class FrontPaths:
     speed: np.ndarray
     x: np.ndarray
     start: np.ndarray
+    later: np.ndarray
+    spent: np.ndarray
     stopped: tuple[float, float] = (-math.inf, math.inf)
     release: np.ndarray | None = None
 
@@ -94,19 +100,24 @@ def front_paths(scene: Scene) -> FrontPaths:
     reach = max(1.0, 10.0 * profile.width, 2.0 * fast * scene.duration)
     reach += max((abs(centre) + 10.0 * width for centre, _, width in profile.bumps), default=0.0)
     # Few different ones, so that the scenes of a sweep share their cells.
-    cells = _cells(profile, ratio, release, fastest, 4.0 ** math.ceil(math.log(reach, 4.0)))
-    # The damping force in the released stress frees blocks that stiff springs would hold.
-    held = release == "elastic" or ratio < HALF_WAY
-    stiffness = scene.dx * math.sqrt(scene.gamma) if held else 0.0
-    if min(levels) <= 0.5 * stiffness or profile.bumps:
-        cells = cells.with_stops(*_stopped(profile, cells, scene, stiffness))
-    if release == "elastic" and ratio > 1.0:
+    cells = _cells(
+        profile, ratio, release, fastest, 4.0 ** math.ceil(math.log(reach, 4.0)), scene.gamma > 0.0
+    )
+    if scene.gamma:
+        cells = cells.with_stops(*_stopped(profile, cells, scene))
+    else:
+        comes = cells.release + cells.later
+        never = ~(comes < cells.spent) & (cells.start > 0.0)
+        cells = replace(cells, release=np.where(never, np.maximum(cells.release, STOPPED), comes))
+    if release == "elastic" and ratio > 1.0 and scene.scheme != "continuum":
         return replace(cells, release=np.maximum(cells.release, _viscous_delay(cells, scene)))
     return cells
 
 
 @lru_cache(maxsize=1024)
-def _cells(profile: Prestress, ratio: float, release: str, fastest: float, reach: float) -> FrontPaths:
+def _cells(
+    profile: Prestress, ratio: float, release: str, fastest: float, reach: float, springs: bool
+) -> FrontPaths:
     """Paths of fronts that arrest nowhere, as far as they may come."""
     near = NEAREST * min(profile.width, 1.0)
     outwards = near * RATIO ** np.arange(math.ceil(math.log(reach / near) / math.log(RATIO)))
@@ -123,7 +134,12 @@ def _cells(profile: Prestress, ratio: float, release: str, fastest: float, reach
     if float(profile(0.0)) >= 1.0:
         start[[np.searchsorted(x, 0.0) - 1, np.searchsorted(x, 0.0)]] = 0.0
     speed = np.minimum(approximate_speed(level, ratio, release), fastest)
-    return FrontPaths(size, level, speed, x, start).with_stops(-math.inf, math.inf)
+    later, spent = np.zeros(x.size), np.full(x.size, math.inf)
+    begins = np.isfinite(start)
+    if np.any(level < 0.0) and begins.any() and not springs:
+        middle = 0.0 if begins[np.searchsorted(x, 0.0)] else float(np.mean(x[begins]))
+        later, spent = momentum_limits(x - middle, np.cumsum(size * level), 4.0 * profile.width)
+    return FrontPaths(size, level, speed, x, start, later, spent).with_stops(-math.inf, math.inf)
 
 
 def _viscous_delay(cells: FrontPaths, scene: Scene) -> np.ndarray:
@@ -141,40 +157,35 @@ def _viscous_delay(cells: FrontPaths, scene: Scene) -> np.ndarray:
     return delay
 
 
-def _stopped(profile: Prestress, cells: FrontPaths, scene: Scene, stiffness: float) -> tuple[float, float]:
-    """Where the push behind each outward front is used up, or too small for a block.
+def _stopped(profile: Prestress, cells: FrontPaths, scene: Scene) -> tuple[float, float]:
+    """Where the push behind each outward front is used up, or where it has faded.
 
     The push is the integral of the pre-stress over the side; with leaf springs over a length of pi/sqrt(gamma) of it.
-    A block is held where no front outruns the waves on the lattice, stiffness sqrt(1 - tau^2) > 2 tau.
     """
     x, size, level, gamma = cells.x, cells.size, cells.level, scene.gamma
-    push, ends, far = size * level, [], profile.level(x)
-    memory = math.pi / math.sqrt(gamma) if gamma else math.inf
-    fading = FADING * (gamma**2 * scene.beta) ** (-1.0 / 3.0) if gamma * scene.beta else math.inf
-    held = stiffness * np.sqrt(1.0 - np.clip(level, 0.0, 1.0) ** 2) > 2.0 * np.maximum(level, 0.0)
-    # Without pre-stress far away a front fades, in the tail of the Gaussian too, until damping spreads it out.
-    held &= (far != 0.0) | (np.abs(x) > fading)
-    sides, pushes = (x < 0.0, x > 0.0), []
-    for side, outwards, beyond in zip(sides, (-1, 1), (far[0], far[-1]), strict=True):
-        total = np.cumsum(push[side][::outwards])
-        lasting = math.inf if beyond > 0.0 else float(total[-1])
-        pushes.append(lasting if beyond >= 0.0 and np.all(total > 0.0) else 0.0)
-    for side, other, outwards in zip(sides, pushes[::-1], (-1, 1), strict=True):
+    push, ends = size * level, []
+    memory = math.pi / math.sqrt(gamma)
+    nucleus = NUCLEUS * profile.width / max(1.0, gamma * scene.dx**2)
+    fading = np.where(np.abs(x) > nucleus, size * fading_rate(level, scene), 0.0)
+    for side, outwards in ((x < 0.0, -1), (x > 0.0, 1)):
         along, places, lengths = push[side][::outwards], x[side][::outwards], size[side][::outwards]
         total = np.cumsum(along)
-        if math.isfinite(memory):
-            most = memory * np.maximum.accumulate(np.clip(along / lengths, 0.0, 1.0))
-            total = total - np.maximum.accumulate(np.maximum(total - most, 0.0))
-        else:
-            total = total + other
-        used_up = np.flatnonzero(
-            (total <= 0.0) | (held[side][::outwards] & (stiffness > 0.0) & (np.abs(places) > memory))
-        )
-        end = float(places[used_up[0]]) if used_up.size else outwards * math.inf
+        most = memory * np.maximum.accumulate(np.clip(along / lengths, 0.0, 1.0))
+        total -= np.maximum.accumulate(np.maximum(total - most, 0.0))
+        left = total / np.maximum.accumulate(np.maximum(total, 1e-300)) - np.cumsum(fading[side][::outwards])
+        used_up = np.flatnonzero(left <= 0.0)
+        inner = places - 0.5 * outwards * lengths
+        end = float(inner[used_up[0]]) if used_up.size else outwards * math.inf
         # Where the run begins elsewhere, that may be beyond.
         begins = cells.start[side][::outwards][np.abs(places) > abs(end)] == 0.0
         ends.append(outwards * math.inf if float(profile(0.0)) < 1.0 and begins.any() else end)
     return ends[0], ends[1]
+
+
+def viscous(scene: Scene, paths: FrontPaths) -> bool:
+    """Whether blocks creep to where they stick: by "total" only if less slips than damping spreads over (measured)."""
+    slips = float(np.sum(paths.size[paths.release < scene.duration]))
+    return scene.scheme != "continuum" and (scene.release == "elastic" or slips < 3.5 * scene.beta)
 
 
 def sliding_times(scene: Scene, paths: FrontPaths) -> np.ndarray:
@@ -188,19 +199,21 @@ def sliding_times(scene: Scene, paths: FrontPaths) -> np.ndarray:
     root of beta v k^3 = gamma; without leaf springs blocks stick when a wave from where the fronts arrest comes by.
     """
     left, right = paths.stopped
-    stuck = np.full(paths.x.size, math.inf)
+    stuck = paths.spent
     for end in (left, right):
-        if math.isfinite(end):
+        if scene.gamma and math.isfinite(end):
             arrival = paths.release[np.searchsorted(paths.x, end) - (1 if end > 0.0 else 0)]
-            far = np.abs(paths.x - end)
-            later = np.minimum(*(factor * far**power for factor, power in LINGERING))
-            stuck = np.minimum(stuck, arrival + far + later)
-    # Strongly damped blocks creep.
-    sliding = np.maximum(stuck - paths.release, 0.0) + scene.damping_ratio * scene.dx
+            stuck = np.minimum(stuck, arrival + np.abs(paths.x - end))
+    sliding = np.maximum(stuck - paths.release, 0.0)
+    if viscous(scene, paths):
+        sliding += CREEPING * scene.beta**2 / (scene.beta + np.minimum(sliding, 1e9) + scene.dx)
     if scene.boundary == "stress":
         return sliding
-    v = paths.speed
+    v, beta = np.maximum(paths.speed, 1.0), 0.0 if scene.scheme == "continuum" else scene.beta
     with np.errstate(divide="ignore"):
         undamped = np.sqrt(scene.gamma / ((v - 1.0) * (v + 1.0)))
-        damped = 0.5 * math.sqrt(3.0) * np.cbrt(scene.gamma / (scene.beta * v)) if scene.beta else math.inf
-    return np.minimum(math.pi / (np.minimum(undamped, damped) * v), sliding)
+        damped = 0.5 * math.sqrt(3.0) * np.cbrt(scene.gamma / (beta * v)) if beta else math.inf
+        pulse = math.pi / (np.minimum(undamped, damped) * v)
+    # At the wave speed, the first wave of the leaf springs.
+    way = np.abs(paths.x)
+    return np.minimum(np.maximum(pulse, np.hypot(way, math.pi / math.sqrt(scene.gamma)) - way), sliding)
