@@ -136,7 +136,8 @@ def _scene_cost(scene: Scene) -> tuple[float, float]:
     # One block creeps for ever where it is damped beyond its oscillation between stuck neighbours; the last of many
     # where it is so far beyond, unless a strong pre-stress drives it back (measured).
     alone = float(np.sum(weight[paths.release < scene.duration])) < 2.0 * fold
-    creeps = scene.damping_ratio**2 > (1.0 if alone else 5.0) * (2.0 + scene.gamma * scene.dx**2)
+    beyond = 1.0 if alone else 5.0 if profile.symmetric else 3.0
+    creeps = scene.damping_ratio**2 > beyond * (2.0 + scene.gamma * scene.dx**2)
     creeps &= scene.scheme != "continuum"
     creeps &= viscous(scene, paths) or max(profile.left, profile.right) > -1.0
     stick = paths.release + sliding_times(scene, paths)
