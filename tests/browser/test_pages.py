@@ -1,4 +1,5 @@
-"""The pages of a results folder as readers meet them, in a browser: links, accessibility, narrow screens, the dark.
+"""The pages of a results folder as readers meet them, in a browser: links, accessibility, narrow screens, the dark;
+and that every column of its tables is explained.
 
 `make test-pages` says which folder; without one, or with an unfinished one, nothing is tested here.
 """
@@ -10,6 +11,8 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
+
+from slippulse.data.variables import is_described
 
 RESULTS = os.environ.get("PAGES", "")
 PAGES = (
@@ -29,6 +32,14 @@ def results(project) -> Path:
     if missing:
         pytest.skip(f"{RESULTS} is not whole: no {missing[0]}; make replicate TARGET=everything")
     return folder
+
+
+def test_every_column_of_every_table_is_explained(results):
+    tables = sorted(results.rglob("*.csv"))
+    assert len(tables) > 100
+    for path in tables:
+        columns = path.open(encoding="utf-8").readline().rstrip("\n").split(",")
+        assert [column for column in columns if not is_described(column)] == [], path
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -213,7 +213,30 @@ VARIABLES = {
     "instant": ("1", "when a state is drawn"),
     "axis": ("text", "what varies along the horizontal axis"),
     "colour": ("text", "what varies by colour"),
+    "observed_order": ("1", "order at which a number converges as the spacing falls"),
+    "seconds": ("s", "time on one core, as estimated"),
+    "reading": ("text", "which number was read off a published figure"),
+    "drawn": ("1", "the number as it was read"),
+    "reading_error": ("1", "uncertainty of the reading"),
+    "tau0_error": ("1", "uncertainty of the fitted pre-stress level"),
+    "gamma_error": ("1", "uncertainty of the fitted elasticity ratio"),
+    "correction": ("1", "what the published lattice adds to the exact number"),
+    "pull": ("1", "deviation over its uncertainty"),
+    "chi2": ("1", "sum of the squared pulls"),
+    "x_scale": ("1", "what x is drawn in units of"),
+    "y_scale": ("1", "what y is drawn in units of"),
+    "searched_to": ("1", "largest step that was tried, over the derived bound"),
+    "final": ("text", "regime that exact theory has in the end"),
+    "end": ("text", "regime by the state at the end of the run"),
+    "coarser": ("count", "coarser lattices on which the regime is another"),
 }
+# A column of its own for each time that the configuration lists.
+TIMES_IN_NAMES = "trailing_edge_"
+
+
+def is_described(column: str) -> bool:
+    """Whether the table of columns explains a column."""
+    return column in VARIABLES or column.startswith(TIMES_IN_NAMES)
 
 
 def columns_page() -> str:
