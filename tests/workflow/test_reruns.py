@@ -160,8 +160,13 @@ def test_another_configuration_runs_only_its_chain(jobs_with, case):
 # Shared values, with rules that read them and rules that must not run for them.
 SKETCHES = {"fig01_system_sketch", "fig07_damage_zone", "study_stability", "compile_kernels"}
 DATA = {"simulate", "join_data", "animate_scene", "fig06_burridge_knopoff", *STUDIED}
+HELD = {"fig08_steady_state_displacement", "fig10_damping_displacement"}
 SHARED = {
-    "share": ({"measure": {"share": 0.9}}, {"measure", "study_grid", "draw_scene", "write_claims"}, SKETCHES | DATA),
+    "share": (
+        {"measure": {"share": 0.9}},
+        {"measure", "study_grid", "draw_scene", "write_claims", "fig05_scaling"},
+        SKETCHES | DATA | HELD,
+    ),
     "damping": (
         {"model": {"damping_ratio": 0.2}},
         {"simulate", "measure", "study_grid", "animate_scene", "fig04_space_time"},

@@ -128,7 +128,14 @@ def configuration_of_data(job):
 @cache
 def configuration_of_numbers(job):
     """The same for what is measured in the data of one simulation."""
-    return configuration([Path(job).parts[0]], measure=config["measure"])
+    name = Path(job).parts[0]
+    return configuration([name], measure=measure_of([name]))
+
+
+def measure_of(simulations):
+    """How they are measured: a share of the way to the arrest counts under a stress boundary only."""
+    stressed = any(sweep_of(name)["boundary"] == "stress" for name in simulations)
+    return plain(config["measure"] if stressed else {**config["measure"], "share": None})
 
 
 def figure_files(names):
@@ -192,7 +199,7 @@ def settings_of_study(name):
 def configuration_of_figure(name):
     """Digest of all that a figure comes from."""
     studies = {study: settings_of_study(study) for study in NEEDS[name].get("studies", [])}
-    measure = config["measure"] if "measured" in NEEDS[name] else {}
+    measure = measure_of(NEEDS[name]["measured"]) if "measured" in NEEDS[name] else {}
     return configuration(
         simulations_of([name]), values=settings_of_figure(name), studies=studies, measure=measure
     )

@@ -62,7 +62,7 @@ rule measure:
     priority: 1
     params:
         step="measure",
-        measure=plain(config["measure"]),
+        measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Measuring {wildcards.simulation}"
@@ -89,7 +89,7 @@ rule study_grid:
         step="study_grid",
         simulation=lambda wildcards: wildcards.simulation,
         sweeps=lambda wildcards: coarser_sweeps(wildcards.simulation),
-        measure=plain(config["measure"]),
+        measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"

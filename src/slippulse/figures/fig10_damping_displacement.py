@@ -12,7 +12,7 @@ from .shared.scaling import collapse_rows, draw_damping, exact_rows, summaries
 from .style import PAGE, new_figure
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.
-NEEDS = {"measured": ["damping_displacement"], "settings": ["measure.share"]}
+NEEDS = {"measured": ["damping_displacement"]}
 
 
 def table(
@@ -22,7 +22,7 @@ def table(
     sweep = measured["damping_displacement"]
     rows = collapse_rows(sweep, "displacement")
     middle = sweep[sweep["gamma"] == sweep["gamma"].quantile(0.5, interpolation="nearest")]
-    exact = exact_rows(middle, "displacement", settings["measure"]["share"])
+    exact = exact_rows(middle, "displacement")
     return pd.concat([rows, exact, summaries(rows, ("panel", "damping_ratio"))], ignore_index=True)
 
 

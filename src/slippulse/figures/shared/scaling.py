@@ -44,14 +44,14 @@ def collapse_rows(measured: pd.DataFrame, boundary: str) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def exact_rows(measured: pd.DataFrame, boundary: str, share: float) -> pd.DataFrame:
+def exact_rows(measured: pd.DataFrame, boundary: str, share: float = 1.0) -> pd.DataFrame:
     """Rows of role "exact" for runs of a sweep: the paper's prediction x, and exact theory y.
 
     Parameters
     ----------
     measured : the runs wanted, as rows of a measured table
     boundary : "displacement" or "stress"
-    share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+    share : under a stress boundary, that of |x_minus| which the left front covers at T_trans
     """
     rows = []
     for _, run in measured.iterrows():
