@@ -17,7 +17,7 @@ from .front_paths import STOPPED, FrontPaths, front_paths, sliding_times, viscou
 # event, by order; a block of the lattice, to be laid, and one that slips, to be written.
 START, STEP, UPDATE, EVENT, LAID, WRITTEN = 0.8e-3, 1.8e-7, 0.8e-9, (0.35e-6, 0.1e-6), 2e-8, 7e-8
 # A step of the textbook scheme: a block of the lattice, a sliding one on top.
-LOOK, SLIDE = 3e-9, 5e-9
+LOOK, SLIDE = 3.2e-9, 2.2e-9
 # The exact solution: its start, and with slow fronts times the root of time; a place that sticks, one that slides on
 # with leaf springs, one that does without, and for each unit of time; a wave of the leaf springs, and a pair of those
 # that slide together; a panel of the Gaussian, which has so many a width and is laid whole, its bytes; a sample.
