@@ -16,6 +16,7 @@ from slippulse.configuration.expand import expand, resolve
 from slippulse.configuration.scenes import scene_problems, scene_simulation
 from slippulse.data.points import point
 from slippulse.data.store import load_table, save_table
+from slippulse.figures import own_sweep
 from slippulse.figures import scene as figure
 from slippulse.figures.scene import number_text
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
@@ -146,3 +147,38 @@ def test_the_animation_runs_from_rest_to_the_end(drawn, tmp_path):
         film.seek(film.n_frames - 1)
         last = film.convert("RGB")
     assert np.any(np.asarray(first) != np.asarray(last))
+
+
+SWEEPS = {
+    "over gamma": {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.3, 0.65]},
+    "over levels": {"boundary": "stress", "left": [-1.0, -0.5], "right": [0.0]},
+    "one run": {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.65]},
+    "over both": {"boundary": "displacement", "left": [0.4, 0.5], "right": "same", "gamma": [0.3, 0.65]},
+    "over three": {
+        "boundary": "displacement", "left": [0.4, 0.5], "right": "same", "gamma": [0.3, 0.65],
+        "damping_ratio": [0.0, 0.1],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "lines", "runs"),
+    [
+        ("over gamma", 1, 2),
+        ("over levels", 1, 2),
+        ("one run", 1, 1),
+        ("over both", 2, 2),
+        ("over three", 4, 2),
+    ],
+)
+def test_a_sweep_of_ones_own_is_drawn_whatever_varies(config, tmp_path, name, lines, runs):
+    sweep = SWEEPS[name] | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
+    scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
+    measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
+    save_table(own_sweep.table(measured, config["measure"]["share"]), tmp_path / "sweep.csv")
+    drawn = own_sweep.plot(load_table(tmp_path / "sweep.csv"))
+    speeds = drawn.axes[0]
+    # Of each line, theory and markers full and open.
+    assert len(speeds.lines) == 3 * lines
+    assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
+    assert bool(drawn.legends) is (lines > 1)

@@ -212,7 +212,6 @@ VARIABLES = {
     "beta_to": ("1", "largest damping of a range"),
     "instant": ("1", "when a state is drawn"),
     "axis": ("text", "what varies along the horizontal axis"),
-    "colour": ("text", "what varies by colour"),
     "observed_order": ("1", "order at which a number converges as the spacing falls"),
     "seconds": ("s", "time on one core, as estimated"),
     "reading": ("text", "which number was read off a published figure"),

@@ -23,7 +23,7 @@ NEEDS = {
     "measured": ["space_time_displacement", "space_time_stress"],
 }
 
-PANELS = (("displacement", "a", 1), ("stress", "b", 0))
+PANELS = {"displacement": "a", "stress": "b"}
 PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 EXACT_POINTS = 241
 HALO = [effects.withStroke(linewidth=2.2, foreground="white")]
@@ -50,7 +50,7 @@ def table(
     and when), flag (series: the flags).
     """
     parts = []
-    for panel, *_ in PANELS:
+    for panel in PANELS:
         name = f"space_time_{panel}"
         run, numbers = point(data[name], 0), measured[name].iloc[0]
         parts += [
@@ -97,7 +97,9 @@ def _exact_edges(run: xr.Dataset) -> pd.DataFrame:
 
 
 def _transition(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
-    """Where the fronts are at T_trans: as measured, as the paper estimates it, and at the last release."""
+    """Where the fronts are at T_trans: as measured, as the paper estimates it, at the last release; if at all."""
+    if "transition_time" not in numbers:
+        return pd.DataFrame({"role": []})
     time, length = numbers["transition_time"], numbers["transition_length"]
     right = float(position_at(run, time, "right"))
     half = 0.5 * numbers["paper_transition_length"]
@@ -120,7 +122,7 @@ def plot(table: pd.DataFrame) -> Figure:
     figure = new_figure(COLUMN, 5.6)
     figure.get_layout_engine().set(wspace=0.01, w_pad=0.03)
     maps = []
-    for side, (panel, letter, boundary) in zip(figure.subfigures(2, 1), PANELS, strict=True):
+    for side, (panel, letter) in zip(figure.subfigures(2, 1), PANELS.items(), strict=True):
         profile, space_time = side.subplots(1, 2, sharey=True, width_ratios=(0.27, 1.0))
         chosen = table[table["panel"] == panel]
         roles = {role: rows for role, rows in chosen.groupby("role")}
@@ -133,7 +135,7 @@ def plot(table: pd.DataFrame) -> Figure:
         bar.set_label(rf"slip velocity $\dot u$ (largest {largest:#.3g})")
         profile.set_ylabel(r"position $x$")
         panel_letter(profile, letter)
-        side.suptitle(_title(roles, boundary), fontsize=9.0)
+        side.suptitle(_title(roles), fontsize=9.0)
         maps.append(space_time)
     figure.legend(
         handles=_legend(maps), loc="outside lower center", ncols=3, handlelength=1.6, columnspacing=1.0
@@ -141,10 +143,10 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _title(roles: Mapping[str, pd.DataFrame], boundary: int) -> str:
+def _title(roles: Mapping[str, pd.DataFrame]) -> str:
     value = roles["parameter"].set_index("series")["value"]
-    parts = [rf"$\Gamma = {boundary}$"]
-    if boundary:
+    parts = [rf"$\Gamma = {int(value['gamma'] > 0.0)}$"]
+    if value["gamma"] > 0.0:
         parts.append(rf"$\gamma = {value['gamma']:g}$")
     if value["left"] == value["right"]:
         parts.append(rf"$\tau_0 = {value['left']:g}$")
@@ -171,10 +173,9 @@ def _draw_exact(axes, roles: Mapping[str, pd.DataFrame]) -> None:
 def _draw_transition(axes, roles: Mapping[str, pd.DataFrame]) -> None:
     low = min(rows["position"].min() for rows in (roles["prestress"], roles["map"]))
     level = 0.5 * (low + roles["front"]["position"].min())
-    ends = roles["measured"].set_index("series")
     # A run that is too short for its transition has none to draw.
-    if np.isfinite(ends["time"]).all():
-        _draw_arrows(axes, ends, level)
+    if "measured" in roles and np.isfinite(roles["measured"]["time"]).all():
+        _draw_arrows(axes, roles["measured"].set_index("series"), level)
     marker = {"linestyle": "none", "markeredgewidth": 0.8, "markersize": 4.5, "zorder": 5.0}
     for role, symbol, face, label in (
         ("paper", "D", ORANGE, "paper's estimate"),

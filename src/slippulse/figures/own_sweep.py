@@ -21,7 +21,6 @@ AXES = {
     "dx": r"$\Delta x$",
 }
 PANELS, ROWS = 6, 2
-COLOURS = len(CYCLE)
 
 
 def table(measured: pd.DataFrame, share: float) -> pd.DataFrame:
@@ -34,14 +33,21 @@ def table(measured: pd.DataFrame, share: float) -> pd.DataFrame:
 
     Returns
     -------
-    rows of quantity, label, value, theory (NaN where there is none), flags, and the axes that vary
+    rows of quantity, label, value, theory (NaN where there is none), flags, the axis that takes most values, and the
+    series by all others that vary, empty where none does
     """
-    varying = [name for name in AXES if measured[name].nunique() > 1] or ["left"]
-    # Many values make the axis of the drawing, few its colours.
+    varying: list[str] = []
+    for name in AXES:
+        # A level that follows another one is no axis of its own.
+        follows = any((measured[name] == measured[other]).all() for other in varying)
+        if measured[name].nunique() > 1 and not follows:
+            varying.append(name)
     varying.sort(key=lambda name: (measured[name].dtype.kind != "f", -measured[name].nunique()))
+    axis, *others = varying or ["left"]
     rows = []
     for run in measured.to_dict("records"):
         exact = theories(run, share)
+        series = ", ".join(f"{AXES[name]} = {_text(run[name])}" for name in others)
         for quantity, label in LABELS[run["boundary"]].items():
             if np.isfinite(run.get(quantity, np.nan)):
                 rows.append(
@@ -51,11 +57,14 @@ def table(measured: pd.DataFrame, share: float) -> pd.DataFrame:
                         "value": run[quantity],
                         "run_flags": run["run_flags"],
                     }
-                    | {"theory": exact.get(quantity, np.nan), "axis": varying[0], "x": run[varying[0]]}
-                    | {"colour": varying[-1] if len(varying) > 1 else "", "level": run[varying[-1]]}
+                    | {"theory": exact.get(quantity, np.nan), "axis": axis, "x": run[axis], "series": series}
                 )
-    columns = ["quantity", "label", "value", "theory", "run_flags", "axis", "x", "colour", "level"]
+    columns = ["quantity", "label", "value", "theory", "run_flags", "axis", "x", "series"]
     return pd.DataFrame(rows, columns=columns)
+
+
+def _text(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -65,9 +74,11 @@ def plot(table: pd.DataFrame) -> Figure:
     grid = figure.subplots(ROWS, PANELS // ROWS).ravel()
     for axes, letter, quantity in zip(grid, "abcdef", quantities, strict=False):
         rows = table[table["quantity"] == quantity]
-        for colour, (level, group) in zip(_colours(rows), rows.groupby("level"), strict=False):
+        groups = rows.groupby("series", dropna=False, sort=False)
+        colours = CYCLE if 1 < groups.ngroups <= len(CYCLE) else [GREY] * groups.ngroups
+        for colour, (series, group) in zip(colours, groups, strict=False):
             group = group.sort_values("x")
-            label = f"{AXES[group['colour'].iloc[0]]} = {level}" if group["colour"].iloc[0] else None
+            label = series if isinstance(series, str) and series else None
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
             for sound, face in ((True, colour), (False, "none")):
                 some = group[(group["run_flags"].isna() | (group["run_flags"] == "")) == sound]
@@ -86,8 +97,3 @@ def plot(table: pd.DataFrame) -> Figure:
     if quantities and grid[0].get_legend_handles_labels()[0]:
         figure.legend(*grid[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
-
-
-def _colours(rows: pd.DataFrame) -> list[str]:
-    count = rows["level"].nunique()
-    return list(CYCLE) if 1 < count <= COLOURS else [GREY] * count
