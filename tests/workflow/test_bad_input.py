@@ -80,6 +80,8 @@ CASES = {
     "scheme": ("model: {scheme: euler}", ["model.scheme: 'euler'", "localised, fixed_step"]),
     "boundary": (STEADY + "{boundary: free}}", ["boundary: 'free'", "displacement, stress"]),
     "record": (STEADY + "{record: [everything]}}", ["record.0: 'everything'", "fronts, fields, samples"]),
+    "fields without fronts": (STEADY + "{record: [fields]}}", ["record: ['fields']", "a list of fronts (always"]),
+    "samples without fronts": (STEADY + "{record: [samples]}}", ["record: ['samples']", "a list of fronts (always"]),
     "range of stiffness turned round": (
         "figures: {fig07_damage_zone: {stiffness_ratios: {from: 2.0}}}",
         ["stiffness_ratios.to: 1.0", "> from = 2"],
@@ -96,6 +98,7 @@ CASES = {
     "null for a shipped simulation": (
         "simulations: {steady_displacement: null}", ["steady_displacement: null", "what is shipped stays"],
     ),
+    "null for the preset": ("preset: null", ["preset: missing", "null removes a key", "draft, paper, reference"]),
     "null for a preset's key": ("presets: {paper: {dx: null}}", ["presets.paper.dx: missing", "null removes a key"]),
     "null in a list": (STEADY + "{gamma: [null]}}", ["gamma.0: None", "a number > 0"]),
     "a number as a name": (
@@ -108,7 +111,7 @@ CASES = {
     ),
     "reading of a quantity that is not recorded": (
         "simulations: {space_time_displacement: {record: [fronts], samples: null}}",
-        ["published.velocity_displacement.quantity: 'largest_velocity'", "this takes record: [fields]"],
+        ["published.velocity_displacement.quantity: 'largest_velocity'", "this takes record: [fronts, fields]"],
     ),
     "null for a scene that is not there": (
         "scenes: {barier: null}", ["scenes.barier: null", "did you mean 'barrier'"],
@@ -120,7 +123,7 @@ CASES = {
     # what belongs together
     "samples that are not recorded": (
         OWN + "gamma: [0.5], left: [0.5], right: same, samples: {times: 2, positions: 1, extent: 0.0}}}",
-        ["mine.samples: given, but not recorded", "record: [samples]"],
+        ["mine.samples: given, but not recorded", "samples in record"],
     ),
     "peak below 1 everywhere": (
         OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: 0.5, right: 0.5, peak: 0.9}]")
@@ -179,7 +182,7 @@ CASES = {
         ["duration.half_periods", "displacement"],
     ),
     "samples not stated": (
-        OWN.replace("fronts", "samples") + "gamma: [0.5], left: [0.5], right: same}}",
+        OWN.replace("fronts", "fronts, samples") + "gamma: [0.5], left: [0.5], right: same}}",
         ["mine.samples: missing"],
     ),
     "balance that does not exist": (
@@ -205,9 +208,93 @@ CASES = {
     "misspelt key of a scene": ("scenes: {barrier: {gama: 0.3}}", ["scenes.barrier.gama", "did you mean 'gamma'"]),
     "misspelt scene": ("scenes: {bariere: {gamma: 0.3}}", ["scenes.bariere.boundary", "did you mean 'barrier'"]),
     "scene with a path as a name": ("scenes: {../barrier: {}}", ["'../barrier'", "lower-case letters"]),
+    "a scene named as the page of all": (
+        "scenes: {index: {title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}}",
+        ["scenes.index: results/scenes has another file of that name", "neither index nor SCENE_numbers"],
+    ),
+    "a scene named as the numbers of another": (
+        "scenes: {barrier_numbers: {title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}}",
+        ["scenes.barrier_numbers: results/scenes has another file of that name", "neither index nor SCENE_numbers"],
+    ),
+    "blank title": ("scenes: {barrier: {title: ' '}}", ["scenes.barrier.title: ' '", "not blank"]),
+    "title that rings": ('scenes: {barrier: {title: "\\a bell"}}', [r"scenes.barrier.title: '\x07 bell'", "printable"]),
+    "title with a return": ('scenes: {barrier: {title: "a\\rb"}}', [r"scenes.barrier.title: 'a\rb'", "printable"]),
+    "title with a null": ('scenes: {barrier: {title: "\\0"}}', [r"scenes.barrier.title: '\x00'", "printable"]),
     "title of two lines": ('scenes: {barrier: {title: "a\\nb"}}', [r"scenes.barrier.title: 'a\nb'", "one line"]),
     "gamma under stress in a scene": ("scenes: {one_way_pulse: {gamma: 0.5}}", ["one_way_pulse.gamma", "left out"]),
     "two dampings in a scene": ("scenes: {barrier: {beta: 0.1, damping_ratio: 0.1}}", ["barrier.beta", "one or the"]),
+    # studies and figures
+    "a million million steps": ("studies: {stability: {steps: 1000000000000}}", ["stability.steps: 1000", "to 10000"]),
+    "a resolution that is never reached": (
+        "studies: {stability: {resolution: 1.0e-300}}", ["stability.resolution: 1e-300", "from 1.0e-6 to 0.1"],
+    ),
+    "a chain of half a terabyte": (
+        "studies: {stability: {blocks: 1000000000}}", ["stability.blocks: 1000", "from 50 to 10000"],
+    ),
+    "a bisection from far away": (
+        "studies: {stability: {between: [0.9, 1000.0]}}", ["stability.between: [0.9, 1000.0]", "upper a number from"],
+    ),
+    "a run for ever": (
+        "studies: {extremes: {long_run: {duration: 1.0e+12}}}", ["long_run.duration: 1000000000000.0", "to 1.0e+6"],
+    ),
+    "a spacing of atoms": (
+        "studies: {extremes: {level_near_one: {dx: 1.0e-9}}}", ["level_near_one.dx: 1e-09", "from 1.0e-4 to 1"],
+    ),
+    "fronts that outrun the waves in a study": (
+        "studies: {extremes: {level_near_one: {dx: 1.0e-4, duration: 1.0e+3}}}",
+        ["studies.extremes.level_near_one.cost: 3 runs", "hours on one core", "allow_large=true"],
+    ),
+    "single precision for long": (
+        "studies: {extremes: {float32: {gamma: [1.0e-10]}}}",
+        ["studies.extremes.float32.cost: 1 runs", "hours on one core", "allow_large=true"],
+    ),
+    "the published figure on a lattice of millions": (
+        "studies: {published_figure: {beta: 1.0e-6, end: 100.0}}",
+        ["studies.published_figure.cost", "hours on one core", "allow_large=true"],
+    ),
+    "spacing of a pulse above 1": ("studies: {extremes: {dx: {pulse: [50.0]}}}", ["dx.pulse.0: 50.0", "1.0e-4 to 1"]),
+    "spacing of the lattices compared above 1": (
+        "studies: {accuracy_cost: {dx: [100.0]}}", ["accuracy_cost.dx.0: 100.0", "1.0e-4 to 1"],
+    ),
+    "spacing of the crack above 1": (
+        "studies: {accuracy_cost: {dx: [0.8]}}", ["accuracy_cost.stress_scale: 2.0", "up to 1.25"],
+    ),
+    "spacing of barriers above 1": ("studies: {barriers: {dx: [100.0]}}", ["barriers.dx.0: 100.0", "1.0e-4 to 1"]),
+    "a level that is not negative": (
+        "studies: {extremes: {negative_level: {level_dx_friction_ratio_damping: [[1.0, 0.1, 5.0, 0.1]]}}}",
+        ["level_dx_friction_ratio_damping.0: [1.0, 0.1, 5.0, 0.1]", "tau_l a number from -10000 to -1.0e-3"],
+    ),
+    "damping beyond that of the published figure": (
+        "studies: {published_figure: {beta: 0.5}}", ["published_figure.beta: 0.5", "its damping ratios, 0.04"],
+    ),
+    "the published figure cut short": (
+        "studies: {published_figure: {end: 9.0}}", ["published_figure.end: 9.0", "> 10, when the trailing edge"],
+    ),
+    "one duration for a line": (
+        "studies: {requirements: {durations: [50.0]}}", ["requirements.durations: [50.0]", "at least two"],
+    ),
+    "one spacing for a line": ("studies: {requirements: {dx: [0.02]}}", ["requirements.dx: [0.02]", "at least two"]),
+    "a pulse of a million million": (
+        "studies: {requirements: {durations: [50.0, 1.0e+12]}}", ["requirements.durations.1: 1000", "to 1.0e+6"],
+    ),
+    "a thousand million steps to lock on": (
+        "studies: {accuracy_cost: {locking: {steps: {count: 1000000000}}}}", ["locking.steps.count: 1000", "to 10000"],
+    ),
+    "a step of the textbook scheme that is not stable": (
+        "studies: {accuracy_cost: {locking: {steps: {to: 1.0e+6}}}}", ["locking.steps.to: 1000000.0", "1.0e-3 to 1"],
+    ),
+    "a thousand million points of a curve": (
+        "figures: {fig07_damage_zone: {stiffness_ratios: {count: 1000000000}}}",
+        ["stiffness_ratios.count: 1000", "to 10000"],
+    ),
+    "stiffness from nothing to everything": (
+        "figures: {fig07_damage_zone: {stiffness_ratios: {from: 5.0e-324, to: 1.0e+308}}}",
+        ["stiffness_ratios.from: 5e-324", "stiffness_ratios.to: 1e+308", "from 1.0e-6 to 1.0e+6"],
+    ),
+    "a sketch of the universe": (
+        "figures: {fig01_system_sketch: {thickness: 1.0e+308}}", ["system_sketch.thickness: 1e+308", "0.01 to 100"],
+    ),
+    "a window of no block": ("measure: {front_window: 1.0e-6}", ["measure.front_window: 1e-06", ">= 0.05 and < 1"]),
     # sweeps
     "empty axis": (STEADY + "{gamma: []}}", ["gamma: []", "at least one"]),
     "duplicate value": (STEADY + "{left: [0.5, 0.5]}}", ["left: [0.5, 0.5]", "different"]),
@@ -251,7 +338,7 @@ CASES = {
         ["cost: 4 runs", "up to 600 hours on one core", "allow_large=true"],
     ),
     "too much memory in a chunk": (
-        STEADY + "{chunks: 12, record: [samples], samples: {times: 100000, positions: 3000, extent: 1.0}}}",
+        STEADY + "{chunks: 12, record: [fronts, samples], samples: {times: 100000, positions: 3000, extent: 1.0}}}",
         ["chunks: 12, and chunk 1 costs", "up to 4 GB a chunk", "allow_large=true"],
     ),
     "a number that overflows": (STEADY + "{gamma: [1.0e+300]}}", ["steady_displacement"]),
@@ -278,7 +365,7 @@ FILES = {
     "off as a key": (b"model: {off: 1}\n", ["line 1", "'off', which YAML 1.1 reads as False"]),
     "a date": (b"preset: 2020-01-02\n", ["line 1", "2020-01-02", "text in quotes"]),
     "binary number": (b"model: {friction_ratio: 0b11}\n", ["line 1", "'0b11'", "reads as 3"]),
-    "merge key": (b"model: {<<: {release: total}}\n", ["line 1", "<<"]),
+    "merge key": (b"model: {<<: {release: total}}\n", ["line 1", "'<<', which merges mappings", "written out"]),
     "octal in what looks like JSON": (b'{"model": {"friction_ratio": 010}}\n', ["line 1", "reads as 8"]),
     "broken": (b"preset: [draft\n", ["not YAML", "line 2"]),
     "tabs": (b"simulations:\n\tmine: 1\n", ["not YAML", "line 2"]),
@@ -391,6 +478,8 @@ def test_words_for_a_switch_on_the_command_line(shipped, said, meant):
         ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
         ({"allow_large": 2}, "allow_large: 2; allowed: true or false"),
         ({"model": {"damping_ratio": "1:30"}}, "model.damping_ratio: '1:30', which YAML 1.1 reads as 90"),
+        ({"preset": "&a"}, "preset: '&a', an anchor, alias or tag; allowed: a plain value"),
+        ({"preset": "<<"}, "preset: '<<', which merges mappings in YAML 1.1; allowed: the keys themselves"),
         ({"model": {"damping_ratio": "much"}}, "model.damping_ratio: 'much'; allowed: a number >= 0"),
     ],
 )

@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    TypeAdapter,
+    ValidationError,
+)
 from pydantic_core import PydanticCustomError
 
 # Units of the tables in config/README.md, which says what they stand for.
@@ -60,7 +68,7 @@ def number(
         words = f" between {above:g} and {below:g}"
     else:
         signs = {">": above, ">=": at_least, "<=": at_most, "<": below}
-        words = " and ".join(f" {sign} {bound:g}" for sign, bound in signs.items() if bound is not None)
+        words = " and ".join(f" {sign} {_plain(bound)}" for sign, bound in signs.items() if bound is not None)
         words = words.replace("and  ", "and ")
     bounds = {name: bound for name, bound in bounds.items() if bound is not None}
     if whole:
@@ -70,7 +78,9 @@ def number(
 
 def _plain(bound: float) -> str:
     """A bound as it is written in YAML."""
-    return f"{bound:.1e}".replace("e-0", "e-") if 0.0 < abs(bound) < 0.01 else f"{bound:g}"
+    if 0.01 <= abs(bound) < 1e6 or bound == 0.0:
+        return f"{bound:g}"
+    return f"{bound:.1e}".replace("e-0", "e-").replace("e+0", "e+")
 
 
 def allowed_text(kind: Any) -> str:
@@ -88,7 +98,7 @@ def different(item: Any, words: str = "", least: int = 1, most: int | None = Non
     if not words:
         text = allowed_text(item)
         plural = text.replace("a whole number", "whole numbers").replace("a number", "numbers")
-        words = f"a list of different {plural}, at least one"
+        words = f"a list of different {plural}, at least {('one', 'two', 'three', 'four')[least - 1]}"
     return Annotated[
         list[item],
         Field(min_length=least, max_length=most, json_schema_extra={"uniqueItems": True}),
@@ -104,18 +114,31 @@ def _all_different(values: list) -> list:
     return values
 
 
-def row(*names: str) -> Any:
-    """The type of a list of so many numbers."""
-    count = Field(min_length=len(names), max_length=len(names))
-    return Annotated[list[Number], count, Allowed(f"[{', '.join(names)}]")]
-
-
-def rows(*names: str, least: int = 0) -> Any:
-    """The type of a list of such lists."""
-    return Annotated[list[row(*names)], Field(min_length=least), Allowed(f"a list of [{', '.join(names)}]")]
-
-
 Number = number()
+
+
+def row(*names: str, **kinds: Any) -> Any:
+    """The type of a list of so many numbers, by name: any, or of a type of their own."""
+    types = dict.fromkeys(names, Number) | kinds
+    adapter = TypeAdapter(tuple[tuple(types.values())])
+    bounds = "".join(f", {name} {allowed_text(kind)}" for name, kind in kinds.items())
+
+    def within(values: list[float]) -> list[float]:
+        try:
+            return list(adapter.validate_python(values))
+        except ValidationError:
+            raise PydanticCustomError("bounds", "out of bounds") from None
+
+    count = Field(min_length=len(types), max_length=len(types))
+    return Annotated[list[Number], count, AfterValidator(within), Allowed(f"[{', '.join(types)}]{bounds}")]
+
+
+def rows(*names: str, least: int = 0, **kinds: Any) -> Any:
+    """The type of a list of such lists."""
+    kind = row(*names, **kinds)
+    return Annotated[list[kind], Field(min_length=least), Allowed(f"a list of {allowed_text(kind)}")]
+
+
 Positive = number(above=0.0)
 NonNegative = number(at_least=0.0)
 Share = number(above=0.0, below=1.0)

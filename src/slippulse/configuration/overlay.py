@@ -46,6 +46,8 @@ def read_overlay(path: str | Path) -> dict:
     """
     path = Path(path)
     try:
+        if path.exists() and not path.is_file():
+            raise ConfigError(f"{path}: not a regular file; allowed: a readable YAML file")
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
     except OSError as error:
@@ -90,6 +92,8 @@ def read_scalar(text: str, key: str) -> object:
     """
     if misread := _misread(text):
         raise ConfigError(f"{key}: {misread}")
+    if text.lstrip().startswith(("&", "*", "!")):
+        raise ConfigError(f"{key}: {short_repr(text)}, an anchor, alias or tag; allowed: a plain value")
     try:
         value = _load(text)
     except (yaml.YAMLError, ValueError):
@@ -111,6 +115,8 @@ def _is_json(text: str) -> bool:
 
 def _misread(text: str) -> str:
     """What is wrong with a plain scalar that YAML 1.1, which Snakemake reads, takes for something else than 1.2."""
+    if text == "<<":
+        return "'<<', which merges mappings in YAML 1.1; allowed: the keys themselves, written out"
     resolvers = LOADER.yaml_implicit_resolvers.get(text[:1], ())
     if SAME_IN_BOTH.fullmatch(text) or not any(pattern.match(text) for _, pattern in resolvers):
         return ""
@@ -178,6 +184,9 @@ def _refuse_what_is_not_data(path: Path, text: str) -> None:
 
 def main(paths: Sequence[str]) -> int:
     """Check overlay files; returns the exit code."""
+    if not paths:
+        sys.stderr.write("usage: python -m slippulse.configuration.overlay FILE...\n")
+        return 2
     for path in paths:
         try:
             read_overlay(path)

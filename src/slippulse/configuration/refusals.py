@@ -51,7 +51,9 @@ def _describe(problem: Mapping, config: Mapping, shipped: Mapping | None, remove
     kind, place = problem["type"], problem["loc"]
     if kind == "missing":
         hint = " (null removes a key)" if place in removed else _misspelt_parent(place[:-1], shipped)
-        return f"{dotted(place)}: missing; it is required{hint}"
+        presets = config.get("presets") if place == ("preset",) else None
+        names = f"; allowed: {', '.join(map(str, presets))}" if isinstance(presets, Mapping) else ""
+        return f"{dotted(place)}: missing; it is required{hint}{names}"
     walked = list(_walk(place))
     depth, _, allowed = walked[-1]
     if kind == "extra_forbidden":
@@ -177,6 +179,12 @@ def name_problems(config: Mapping, shipped: Mapping | None) -> list[str]:
     for name in config.get("scenes", {}):
         if name in config["simulations"]:
             lines.append(f"scenes.{name}: also the name of a simulation; allowed: a name of its own")
+        if name == "index" or (
+            name.endswith("_numbers") and name.removesuffix("_numbers") in config["scenes"]
+        ):
+            lines.append(
+                f"scenes.{name}: results/scenes has another file of that name; allowed: neither index nor SCENE_numbers"
+            )
     for name, entry in config["published"].items():
         lines += _reading_problems(f"published.{name}", entry, config)
     if shipped is not None:
@@ -195,18 +203,44 @@ def name_problems(config: Mapping, shipped: Mapping | None) -> list[str]:
         if ("tolerance_exponent" in entry) and entry.get("kind") != "approximate":
             key = f"{dotted(['claims', name])}.tolerance_exponent"
             lines.append(f"{key}: given; allowed: where kind is approximate")
-    ranges = {
-        "figures.fig07_damage_zone.stiffness_ratios": config["figures"]["fig07_damage_zone"][
-            "stiffness_ratios"
-        ],
-        "studies.accuracy_cost.locking.steps": config["studies"]["accuracy_cost"]["locking"]["steps"],
-    }
-    for key, steps in ranges.items():
+    return lines + _study_problems(config)
+
+
+def _study_problems(config: Mapping) -> list[str]:
+    """Numbers of figures and studies that do not go together."""
+    lines = []
+    figures, studies = config["figures"], config["studies"]
+    trade, published = studies["accuracy_cost"], studies["published_figure"]
+    for key, steps in (
+        ("figures.fig07_damage_zone.stiffness_ratios", figures["fig07_damage_zone"]["stiffness_ratios"]),
+        ("studies.accuracy_cost.locking.steps", trade["locking"]["steps"]),
+    ):
         if steps["to"] <= steps["from"]:
             lines.append(f"{key}.to: {steps['to']}; allowed: > from = {steps['from']}")
-    lower, upper = config["studies"]["stability"]["between"]
+    lower, upper = studies["stability"]["between"]
     if upper <= lower:
         lines.append(f"studies.stability.between: {[lower, upper]}; allowed: two increasing numbers > 0")
+    presets = [preset["dx"] for preset in config["presets"].values()]
+    largest = 1.0 / max(*trade["dx"], *trade["textbook"]["dx"], *presets)
+    if trade["stress_scale"] > largest:
+        lines.append(
+            f"studies.accuracy_cost.stress_scale: {trade['stress_scale']}; allowed: up to {largest:.4g}, 1 over the"
+            " largest dx there and of the presets"
+        )
+    ratios = [*published["stress"]["damping_ratios"], *published["damping_ratios"]["total"]]
+    least = min(*ratios, *published["damping_ratios"]["elastic"])
+    if published["beta"] > least:
+        lines.append(
+            f"studies.published_figure.beta: {published['beta']}; allowed: up to the smallest of its damping ratios,"
+            f" {least}"
+        )
+    read = {entry["quantity"] for entry in config["published"].values()}
+    times = [time for time in config["measure"]["trailing_times"] if f"trailing_edge_{time:g}" in read]
+    if published["end"] <= max(times, default=0.0):
+        lines.append(
+            f"studies.published_figure.end: {published['end']}; allowed: > {max(times):g}, when the trailing edge is"
+            " last read off"
+        )
     return lines
 
 
@@ -225,6 +259,6 @@ def _reading_problems(key: str, entry: Mapping, config: Mapping) -> list[str]:
     if known[quantity] not in ("fronts", *simulations[entry["simulation"]]["record"]):
         return [
             f"{key}.quantity: {value}; allowed: what simulations.{entry['simulation']} records;"
-            f" this takes record: [{known[quantity]}]"
+            f" this takes record: [fronts, {known[quantity]}]"
         ]
     return []

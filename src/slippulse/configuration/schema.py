@@ -82,7 +82,9 @@ class Measure(Block):
         "under a stress boundary T_trans is when the left front has covered this share of |x_minus|; the arrest"
         " itself never comes in the continuum"
     )
-    front_window: Share = key("a front speed is a straight line through this last share of its path")
+    front_window: number(at_least=0.05, below=1.0) = key(
+        "a front speed is a straight line through this last share of its path"
+    )
     steady_tolerance: Share = key(
         "a largest velocity that changes less than this over the last third is steady"
     )
@@ -93,23 +95,26 @@ class Measure(Block):
 class Sketch(Block):
     """The layer of figure 1."""
 
-    thickness: Positive = key("of the layer in the sketch", LENGTH)
-    strip_width: Positive = key("of the integrated strip in the sketch", LENGTH)
+    thickness: number(at_least=0.01, at_most=100.0) = key("of the layer in the sketch", LENGTH)
+    strip_width: number(at_least=0.01, at_most=2.0) = key("of the integrated strip in the sketch", LENGTH)
+
+
+StiffnessRatio = number(at_least=1e-6, at_most=1e6)
 
 
 class Steps(Block):
     """Numbers in steps of equal ratio."""
 
-    from_: Positive = key("the first", alias="from")
-    to: Positive = key("the last, above the first")
-    count: number(at_least=2, whole=True) = key("how many")
+    from_: StiffnessRatio = key("the first", alias="from")
+    to: StiffnessRatio = key("the last, above the first")
+    count: number(at_least=2, at_most=10_000, whole=True) = key("how many")
 
 
 class DamageZone(Block):
     """The curves of figure 7."""
 
     stiffness_ratios: Steps = key("G/G_r")
-    thickness_ratios: Positives = key("H_r/H, one curve each")
+    thickness_ratios: different(number(at_least=1e-6, at_most=1e6)) = key("H_r/H, one curve each")
 
 
 class Figures(Block):

@@ -84,6 +84,18 @@ class Duration(Block):
     )
 
 
+def _printable(title: str) -> str:
+    if not title.isprintable() or title.isspace():
+        raise PydanticCustomError("unprintable", "not a line")
+    return title
+
+
+def _with_fronts(record: list[str]) -> list[str]:
+    if "fronts" not in record:
+        raise PydanticCustomError("no_fronts", "no fronts")
+    return record
+
+
 def _one_unit(duration: Duration) -> Duration:
     if len(duration.model_fields_set) != 1:
         raise PydanticCustomError("one_unit", "not one unit")
@@ -159,11 +171,12 @@ class Simulation(Block):
     max_step: Positive = key(
         "largest step, within the stability bound", "dx", otherwise="the preset's, cut to the bound"
     )
-    record: different(choice(RECORDS), f"a list of {', '.join(RECORDS)}") = key(
-        "what is kept: release and stick times; slip, velocity and acceleration at the end; samples"
-    )
+    record: Annotated[
+        different(choice(RECORDS), "a list of fronts (always: all is measured from them), fields, samples"),
+        AfterValidator(_with_fronts),
+    ] = key("what is kept: release and stick times; slip, velocity and acceleration at the end; samples")
     samples: Annotated[Recording, Allowed("a mapping of times, positions and extent")] = key(
-        "what `record: [samples]` samples, below", otherwise="none"
+        "what `record: [fronts, samples]` samples, below", otherwise="none"
     )
     chunks: number(at_least=1, at_most=1000, whole=True) = key(
         "how many jobs share the sweep, below; at most the number of runs", otherwise="1"
@@ -175,8 +188,9 @@ class NamedScene(Profile):
 
     title: Annotated[
         str,
-        StringConstraints(min_length=1, max_length=120, pattern=r"^[^\n]*$"),
-        Allowed("one line of at most 120 characters"),
+        StringConstraints(min_length=1, max_length=120),
+        AfterValidator(_printable),
+        Allowed("one line of at most 120 printable characters, not blank"),
     ] = key("one line above figure and page")
     boundary: choice(BOUNDARIES) = key("as under `simulations`", origin="paper")
     gamma: Positive = key("as under `simulations`", "", "paper (near 2/3)", "none")

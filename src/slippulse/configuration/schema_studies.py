@@ -1,45 +1,48 @@
 """Every key of the studies of the solver: each has scenes of its own, see `slippulse.studies`."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from ..model.scene import RELEASES
 from .keys import (
     LENGTH,
     STRESS,
     TIME,
-    Allowed,
     Block,
-    Count,
     NonNegative,
-    NonNegatives,
     Order,
     Positive,
-    Positives,
     Share,
     choice,
     different,
     key,
     number,
+    row,
     rows,
 )
 
-Shares, Orders = different(Share), different(Order)
-Negatives = different(number(below=0.0))
-AtLeast50 = number(at_least=50, whole=True)
-
-
-# Enough for a cubic through them.
-FourOrMore = different(Positive, "a list of different numbers > 0, at least four", least=4)
+# Wide around what is shipped, so that no study runs for ever or ends in an overflow.
+Spacing = number(at_least=1e-4, at_most=1.0)
+Time = number(at_least=0.01, at_most=1e6)
+Length = number(at_least=1e-3, at_most=1e4)
+Level = number(at_least=1e-3, at_most=0.99999)
+Negative = number(at_least=-1e4, at_most=-1e-3)
+Elasticity = number(at_least=1e-10, at_most=1e6)
+Damping = number(at_least=0.0, at_most=1e4)
+Ratio = number(at_least=1e-3, at_most=10.0)
+Step = number(at_least=1e-3, at_most=10.0)
+# Of the textbook scheme without damping or leaf springs, which is stable up to 1.
+LockingStep = number(at_least=1e-3, at_most=1.0)
+Multiple = number(at_least=0.01, at_most=100.0)
+Size = number(at_least=50, at_most=10_000, whole=True)
+SpacingList, StepList, Levels, Negatives, Elasticities, Dampings, Ratios, Orders = (
+    different(kind) for kind in (Spacing, Step, Level, Negative, Elasticity, Damping, Ratio, Order)
+)
 
 
 class Range(Block):
     """Numbers in even steps."""
 
-    from_: Positive = key("the first", "dx", alias="from")
-    to: Positive = key("the last", "dx")
-    count: number(at_least=2, whole=True) = key("how many")
+    from_: LockingStep = key("the first", "dx", alias="from")
+    to: LockingStep = key("the last, above the first, within the stability bound", "dx")
+    count: number(at_least=2, at_most=10_000, whole=True) = key("how many")
 
 
 class Tolerances(Block):
@@ -58,16 +61,16 @@ class Tolerances(Block):
 class LevelNearOne(Block):
     """Pre-stress close to the threshold."""
 
-    levels: Shares = key("tau_0", STRESS)
-    dx: Positive = key("block spacing", LENGTH)
-    duration: Positive = key("of each run", TIME)
+    levels: Levels = key("tau_0", STRESS)
+    dx: Spacing = key("block spacing", LENGTH)
+    duration: Time = key("of each run", TIME)
 
 
 class LevelNearZero(Block):
     """Pre-stress that hardly drives a front."""
 
-    width: Positive = key("of the Gaussian, at least dx", LENGTH)
-    level_dx_duration: rows("tau_0", "dx", "duration", least=1) = key(
+    width: Length = key("of the Gaussian, at least dx", LENGTH)
+    level_dx_duration: rows(least=1, tau_0=Level, dx=Spacing, duration=Time) = key(
         "of each run", f"{STRESS}, {LENGTH}, {TIME}"
     )
 
@@ -75,85 +78,88 @@ class LevelNearZero(Block):
 class Gammas(Block):
     """Stiffness of the leaf springs."""
 
-    small: Positives = key("each on a lattice of 500 blocks to 1/sqrt(gamma)")
-    large: Positives = key("each at dx")
-    dx: Positive = key("block spacing of the large ones", LENGTH)
+    small: Elasticities = key("each on a lattice of 500 blocks to 1/sqrt(gamma)")
+    large: Elasticities = key("each at dx")
+    dx: Spacing = key("block spacing of the large ones", LENGTH)
 
 
 class DampingRatios(Block):
     """Damping under both release rules."""
 
-    total: NonNegatives = key("beta/dx under the rule `total`")
-    elastic: NonNegatives = key("beta/dx under the rule `elastic`")
-    level: Share = key("tau_0", STRESS)
-    dx: Positive = key("block spacing", LENGTH)
-    duration: Positive = key("of each run", TIME)
+    total: Dampings = key("beta/dx under the rule `total`")
+    elastic: Dampings = key("beta/dx under the rule `elastic`")
+    level: Level = key("tau_0", STRESS)
+    dx: Spacing = key("block spacing", LENGTH)
+    duration: Time = key("of each run", TIME)
 
 
 class Spacings(Block):
     """Spacings up to the Burridge-Knopoff model."""
 
-    pulse: Positives = key("block spacings of a pulse", LENGTH)
-    duration: Positive = key("of the pulse", TIME)
-    transition: Positives = key("block spacings of a transition", LENGTH)
+    pulse: SpacingList = key("block spacings of a pulse", LENGTH)
+    duration: Time = key("of the pulse", TIME)
+    transition: SpacingList = key("block spacings of a transition", LENGTH)
 
 
 class Widths(Block):
     """Widths of the Gaussian."""
 
-    blocks: Positives = key("W in blocks", "dx")
-    wide: Positives = key("W in layer thicknesses", LENGTH)
-    dx: Positive = key("block spacing", LENGTH)
-    duration: Positive = key("of each run", TIME)
+    blocks: different(number(at_least=0.01, at_most=1e3)) = key("W in blocks", "dx")
+    wide: different(number(at_least=1.0, at_most=1e3)) = key("W in layer thicknesses", LENGTH)
+    dx: Spacing = key("block spacing", LENGTH)
+    duration: Time = key("of each run", TIME)
 
 
 class NegativeLevel(Block):
     """A crack into negative pre-stress."""
 
     share: Share = key("of the path that is timed")
-    level_dx_friction_ratio_damping: rows("tau_l", "dx", "friction_ratio", "damping_ratio", least=1) = key(
-        "of each run", f"{STRESS}, {LENGTH}"
-    )
+    level_dx_friction_ratio_damping: rows(
+        least=1, tau_l=Negative, dx=Spacing, friction_ratio=NonNegative, damping_ratio=Damping
+    ) = key("of each run", f"{STRESS}, {LENGTH}")
 
 
 class LongRun(Block):
     """A pulse on dx = 1, for long."""
 
-    duration: Positive = key("of the run", TIME)
-    gamma: Positive = key("elasticity ratio")
+    duration: Time = key("of the run", TIME)
+    gamma: Elasticity = key("elasticity ratio")
 
 
 class SinglePrecision(Block):
     """The experiment in single precision."""
 
-    dx: Positive = key("block spacing", LENGTH)
-    gamma: Positives = key("elasticity ratios")
+    dx: Spacing = key("block spacing", LENGTH)
+    gamma: Elasticities = key("elasticity ratios")
 
 
 class Peak(Block):
     """A peak beside the threshold."""
 
-    apart: Positives = key("how far from 1, below and above", STRESS)
-    dx: Positive = key("block spacing", LENGTH)
-    duration: Positive = key("of each run", TIME)
+    apart: different(number(at_least=1e-15, at_most=0.5)) = key("how far from 1, below and above", STRESS)
+    dx: Spacing = key("block spacing", LENGTH)
+    duration: Time = key("of each run", TIME)
 
 
 class TwoNucleations(Block):
     """Two nucleation points."""
 
-    distance: Positive = key("between them", LENGTH)
-    dx: Positive = key("block spacing", LENGTH)
+    distance: Length = key("between them", LENGTH)
+    dx: Spacing = key("block spacing", LENGTH)
+
+
+Depths = different(number(at_least=1e-3, at_most=1e4))
 
 
 class Barrier(Block):
     """A pulse into a barrier of low pre-stress."""
 
-    dx: Positive = key("block spacing", LENGTH)
-    centre: Positive = key("of the barrier", LENGTH)
-    width: Positive = key("of the barrier", LENGTH)
-    deep: Positives = key("depths that must stop the pulse", STRESS)
-    shallow: Positives = key("depths that must not", STRESS)
-    duration: Positive = key("of each run", TIME)
+    dx: Spacing = key("block spacing", LENGTH)
+    centre: Length = key("of the barrier", LENGTH)
+    width: Length = key("of the barrier", LENGTH)
+    deep: Depths = key("depths that must stop the pulse", STRESS)
+    shallow: Depths = key("depths that must not", STRESS)
+    duration: Time = key("of each run", TIME)
 
 
 class Extremes(Block):
@@ -179,72 +185,70 @@ class Extremes(Block):
 class Stability(Block):
     """Where a step blows up."""
 
-    damping_ratios: NonNegatives = key("beta/dx")
-    between: Annotated[list[Positive], Field(min_length=2, max_length=2), Allowed("two numbers > 0")] = key(
-        "the bisection's ends, as shares of the derived bound"
-    )
-    resolution: Positive = key("where the bisection ends")
-    blocks: AtLeast50 = key("size of the chain, or half of it")
-    steps: AtLeast50 = key("how long a mode may grow")
+    damping_ratios: Dampings = key("beta/dx")
+    between: row(lower=Multiple, upper=Multiple) = key("the bisection's ends, as shares of the derived bound")
+    resolution: number(at_least=1e-6, at_most=0.1) = key("where the bisection ends")
+    blocks: Size = key("size of the chain, or half of it")
+    steps: Size = key("how long a mode may grow")
 
 
 class Textbook(Block):
     """The textbook scheme beside the localised one."""
 
-    dx: Positives = key("its block spacings", LENGTH)
-    steps: Positives = key("its steps", "dx")
+    dx: SpacingList = key("its block spacings", LENGTH)
+    steps: StepList = key("its steps", "dx")
 
 
 class Locking(Block):
     """Front speed of the textbook scheme against its step."""
 
-    level: Share = key("tau_0", STRESS)
-    dx: Positive = key("block spacing", LENGTH)
-    duration: Positive = key("of each run", TIME)
+    level: Level = key("tau_0", STRESS)
+    dx: Spacing = key("block spacing", LENGTH)
+    duration: Time = key("of each run", TIME)
     steps: Range = key("steps of the textbook scheme")
-    every: Count = key("the localised scheme at one step in so many")
+    every: number(at_least=1, at_most=10_000, whole=True) = key("the localised scheme at one step in so many")
 
 
 class AccuracyCost(Block):
     """Error against cost."""
 
-    level: Share = key("tau_0 of the pulse", STRESS)
-    gamma: Positive = key("of the pulse")
-    damping_ratios: NonNegatives = key("beta/dx; errors are the largest over them")
-    duration: Positive = key("of the pulse", TIME)
-    dx: Positives = key("block spacings of the localised scheme", LENGTH)
+    level: Level = key("tau_0 of the pulse", STRESS)
+    gamma: Elasticity = key("of the pulse")
+    damping_ratios: Dampings = key("beta/dx; errors are the largest over them")
+    duration: Time = key("of the pulse", TIME)
+    dx: SpacingList = key("block spacings of the localised scheme", LENGTH)
     orders: Orders = key("its orders")
-    steps: Positives = key("its steps, cut where they would not be stable", "dx")
+    steps: StepList = key("its steps, cut where they would not be stable", "dx")
     textbook: Textbook = key("the textbook scheme")
-    negative_level: number(below=0.0) = key("tau_l of the crack under held stress", STRESS)
+    negative_level: Negative = key("tau_l of the crack under held stress", STRESS)
     share: Share = key("of the crack's path that is timed")
-    stress_duration: Positive = key("of the crack, over that time")
-    stress_scale: Positive = key("its spacing over dx")
+    stress_duration: number(at_least=1.0, at_most=100.0) = key("of the crack, over that time")
+    stress_scale: Multiple = key("its spacing over dx, within a spacing of 1")
     locking: Locking = key("front speed of the textbook scheme against its step")
 
 
 class BarrierMap(Block):
     """Where exact depths are mapped."""
 
-    levels: Shares = key("tau_0", STRESS)
+    levels: Levels = key("tau_0", STRESS)
     barriers: Negatives = key("tau_b", STRESS)
 
 
 class Passing(Block):
     """Barriers shorter and longer than the exact depth."""
 
-    shares: Positives = key("length of the barrier over the exact depth")
-    dx: Positive = key("block spacing", LENGTH)
+    shares: different(Multiple) = key("length of the barrier over the exact depth")
+    dx: Spacing = key("block spacing", LENGTH)
 
 
 class Barriers(Block):
     """Pulses sent into negative pre-stress, by exact theory and on lattices."""
 
-    damping_ratios: NonNegatives = key("beta/dx, all for each pair of levels")
-    levels: Shares = key("tau_0, where the pulse is steady", STRESS)
+    damping_ratios: Dampings = key("beta/dx, all for each pair of levels")
+    levels: Levels = key("tau_0, where the pulse is steady", STRESS)
     barriers: Negatives = key("tau_b; every pair with a level", STRESS)
-    gamma: Positives = key("elasticity ratios, one after the other over the pairs")
-    dx: Positives = key("block spacings at which the depth is measured", LENGTH)
+    gamma: Elasticities = key("elasticity ratios, one after the other over the pairs")
+    dx: SpacingList = key("block spacings at which the depth is measured", LENGTH)
     map: BarrierMap = key("the map of exact depths")
     passing: Passing = key("both sides of passing")
 
@@ -252,47 +256,49 @@ class Barriers(Block):
 class Notebook(Block):
     """Settings of the authors' public notebook."""
 
-    damping_ratio: Positive = key("beta/dx", origin="paper")
-    dx: Positive = key("block spacing", LENGTH, "paper")
+    damping_ratio: Ratio = key("beta/dx", origin="paper")
+    dx: Spacing = key("block spacing", LENGTH, "paper")
     release: choice(RELEASES) = key("release rule", origin="paper")
 
 
 class Arrows(Block):
     """Where the arrows of the published space-time figure end."""
 
-    time: Positive = key("T_trans, left panel", TIME, "figure")
-    length: Positive = key("L_trans, left panel", LENGTH, "figure")
-    stress_time: Positive = key("T_trans, right panel", TIME, "figure")
+    time: Time = key("T_trans, left panel", TIME, "figure")
+    length: Length = key("L_trans, left panel", LENGTH, "figure")
+    stress_time: Time = key("T_trans, right panel", TIME, "figure")
 
 
 class RatiosByRule(Block):
-    """Damping ratios under both release rules."""
+    """Damping ratios under both release rules: enough for a cubic through them."""
 
-    total: FourOrMore = key("beta/dx under the rule `total`")
-    elastic: FourOrMore = key("beta/dx under the rule `elastic`")
+    total: different(Ratio, least=4) = key("beta/dx under the rule `total`")
+    elastic: different(Ratio, least=4) = key("beta/dx under the rule `elastic`")
 
 
 class Near(Block):
     """Where the fits begin."""
 
-    tau0: Share = key("pre-stress", STRESS, "figure")
-    gamma: Positive = key("elasticity ratio", origin="figure")
+    tau0: Level = key("pre-stress", STRESS, "figure")
+    gamma: Elasticity = key("elasticity ratio", origin="figure")
 
 
 class RightPanel(Block):
     """The right panel, whose largest velocity is compared."""
 
-    left: number(below=0.0) = key("tau_l", STRESS, "figure")
-    width: Positive = key("W", LENGTH, "figure")
-    damping_ratios: Positives = key("beta/dx at which it is run")
-    duration: Positive = key("in which the largest velocity is met", TIME)
+    left: Negative = key("tau_l", STRESS, "figure")
+    width: number(at_least=1.0, at_most=1e4) = key("W", LENGTH, "figure")
+    damping_ratios: Ratios = key("beta/dx at which it is run")
+    duration: Time = key("in which the largest velocity is met", TIME)
 
 
 class PublishedFigure(Block):
     """What the published space-time figure was made with."""
 
-    beta: Positive = key("damping of the figure", origin="paper")
-    end: Positive = key("of the left panel", TIME, "figure")
+    beta: number(at_least=1e-6, at_most=10.0) = key(
+        "damping of the figure, at most each damping ratio", origin="paper"
+    )
+    end: number(at_least=1.0, at_most=100.0) = key("of the left panel", TIME, "figure")
     near: Near = key("where the fits begin")
     damping_ratios: RatiosByRule = key("at each of which tau_0 and gamma are fitted")
     notebook: Notebook = key("settings of the authors' public notebook, fitted beside it")
@@ -303,11 +309,13 @@ class PublishedFigure(Block):
 class Requirements(Block):
     """Work a sliding block, bytes a block, and how the work grows."""
 
-    level: Share = key("tau_0", STRESS)
-    gamma: Positive = key("elasticity ratio")
-    damping_ratio: NonNegative = key("beta/dx")
-    durations: Positives = key("of the pulse whose work is fitted; the first in the fit over dx", TIME)
-    dx: Positives = key("its block spacings; the first in the fit over durations", LENGTH)
+    level: Level = key("tau_0", STRESS)
+    gamma: Elasticity = key("elasticity ratio")
+    damping_ratio: Damping = key("beta/dx")
+    durations: different(number(at_least=1.0, at_most=1e6), least=2) = key(
+        "of the pulse whose work is fitted; the first in the fit over dx", TIME
+    )
+    dx: different(Spacing, least=2) = key("its block spacings; the first in the fit over durations", LENGTH)
     orders: Orders = key("whose bytes a block are counted")
 
 

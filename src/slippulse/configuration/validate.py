@@ -8,9 +8,17 @@ import numpy as np
 
 from ..model.checks import ConfigError
 from .expand import accuracy_of, check_scheme, expand, resolve
-from .limits import check_chunks, check_cost, check_resolved, check_run_count, first_and_last
+from .limits import (
+    check_affordable,
+    check_chunks,
+    check_cost,
+    check_resolved,
+    check_run_count,
+    first_and_last,
+)
 from .refusals import format_problems, name_problems, removal_problems, schema_problems
 from .scenes import scene_problems, scene_simulation
+from .study_scenes import study_scenes
 
 
 @np.errstate(all="ignore")
@@ -50,8 +58,21 @@ def validate(
         problems += scene_problems(scene, f"scenes.{name}") or _simulation_problems(
             f"scenes.{name}", scene_simulation(scene, config["model"]), config, accuracy
         )
+    if not config.get("allow_large", False):
+        problems += _study_problems(config["studies"])
     if problems:
         raise ConfigError(format_problems(problems))
+
+
+def _study_problems(studies: Mapping) -> list[str]:
+    """Which studies cost too much."""
+    try:
+        check_affordable(
+            {key: (scenes, [None] * len(scenes)) for key, scenes in study_scenes(studies).items()}
+        )
+    except ValueError as error:
+        return str(error).splitlines()
+    return []
 
 
 def _simulation_problems(key: str, simulation: Mapping, config: Mapping, accuracy: Mapping) -> list[str]:
@@ -126,5 +147,5 @@ def _check_together(simulation: Mapping) -> None:
         raise ValueError("samples: missing; allowed: times, positions and extent when record has 'samples'")
     if "samples" in simulation and "samples" not in simulation["record"]:
         raise ValueError(
-            "samples: given, but not recorded; allowed: with record: [samples] (samples: null removes it)"
+            "samples: given, but not recorded; allowed: with samples in record (samples: null removes it)"
         )

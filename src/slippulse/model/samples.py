@@ -18,7 +18,7 @@ class Samples:
 
     Parameters
     ----------
-    times : increasing times >= 0, shape (n_times,)
+    times : increasing times >= 0, up to the duration of the scene, shape (n_times,)
     positions : positions, shape (n_positions,); the nearest block answers
 
     Raises
@@ -37,3 +37,16 @@ class Samples:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")
+
+    def check_within(self, duration: float) -> None:
+        """Refuse samples after the end of a run.
+
+        Raises
+        ------
+        ValueError
+            Naming the last time and the duration.
+        """
+        if np.any(self.times > duration):
+            raise ValueError(
+                f"samples.times: {self.times[-1]:g}; allowed: up to the duration of the scene, {duration:g}"
+            )
