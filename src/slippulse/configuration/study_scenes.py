@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 
 from ..model.balance import prestress_balance_position
 from ..model.prestress import Prestress
@@ -33,24 +34,9 @@ def study_scenes(studies: Mapping) -> dict[str, list[Scene]]:
     """
     parts = {f"studies.extremes.{name}": scenes for name, scenes in _extremes(studies["extremes"]).items()}
     rule = studies["accuracy_cost"]
-    pulse = {key: rule[key] for key in ("level", "gamma", "duration")}
     # One order for all, the dearest.
-    lattices = [(dx, step, "localised") for dx in rule["dx"] for step in rule["steps"]] * len(rule["orders"])
-    lattices += [
-        (dx, step, "fixed_step") for dx in rule["textbook"]["dx"] for step in rule["textbook"]["steps"]
-    ]
-    parts["studies.accuracy_cost"] = [
-        scene
-        for dx, step, scheme in lattices
-        for ratio in rule["damping_ratios"]
-        for scene in (
-            _scene(dx=dx, ratio=ratio, step=step, scheme=scheme, order=8, **pulse),
-            _crack(
-                rule["negative_level"], rule["stress_scale"] * dx, ratio, rule["stress_duration"], step=step,
-                scheme=scheme, order=8,
-            ),
-        )
-    ]  # fmt: skip
+    parts["studies.accuracy_cost"] = _trade(rule, rule, "localised") * len(rule["orders"])
+    parts["studies.accuracy_cost"] += _trade(rule, rule["textbook"], "fixed_step")
     rule, steps = rule["locking"], rule["locking"]["steps"]
     crack = _scene(rule["level"], rule["dx"], rule["duration"], 0.0, 0.0, steps["from"])
     parts["studies.accuracy_cost.locking"] = [crack] * steps["count"]
@@ -71,6 +57,21 @@ def study_scenes(studies: Mapping) -> dict[str, list[Scene]]:
         _scene(rule["level"], *setting, rule["damping_ratio"]) for setting in [*settings, (dx, duration, 0.0)]
     ]
     return parts
+
+
+def _trade(rule: Mapping, lattices: Mapping, scheme: str) -> list[Scene]:
+    """A pulse and a crack on each lattice."""
+    times, more = rule["stress_duration"], {"scheme": scheme, "order": 8}
+    return [
+        scene
+        for dx in lattices["dx"]
+        for step in lattices["steps"]
+        for ratio in rule["damping_ratios"]
+        for scene in (
+            _scene(rule["level"], dx, rule["duration"], rule["gamma"], ratio, step, **more),
+            _crack(rule["negative_level"], rule["stress_scale"] * dx, ratio, times, step=step, **more),
+        )
+    ]
 
 
 def _extremes(rule: Mapping) -> dict[str, list[Scene]]:
@@ -133,8 +134,14 @@ def _scene(
 def _crack(level: float, dx: float, ratio: float, times: float, **more) -> Scene:
     """A crack into a negative level on the left, for so many times the time to cover its way."""
     profile = Prestress(level, 0.0)
-    duration = times * COVERED * abs(prestress_balance_position(profile))
-    return _scene(dx=dx, duration=duration, gamma=0.0, ratio=ratio, profile=profile, **more)
+    return _scene(
+        dx=dx, duration=times * COVERED * _way(profile), gamma=0.0, ratio=ratio, profile=profile, **more
+    )
+
+
+@lru_cache
+def _way(profile: Prestress) -> float:
+    return abs(prestress_balance_position(profile))
 
 
 def _to_barrier(level: float, barrier: float, gamma: float, ratio: float, dx: float) -> Scene:
