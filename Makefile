@@ -11,7 +11,7 @@ ALLOW_LARGE ?=
 AGAINST ?=
 KILLS ?= 24
 # Through the environment, so that no value is read as a command.
-export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE
+export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
 # Without compiled modules each process imports for 3 s instead of 1.
 export PYTHONDONTWRITEBYTECODE :=
 VENV := .venv
@@ -29,8 +29,8 @@ endef
 
 # What Snakemake would stop at late, or never: jobs find no interpreter below a folder with such a name.
 CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
-CHECK_OPTIONS = $(CHECK_PLACE); \
-    case "$$CORES" in ""|*[!0-9]*|0|0[0-9]*) echo "CORES: $$CORES; allowed: a whole number from 1 on, such as CORES=2" >&2; exit 1;; esac; \
+CHECK_COUNT = case "$$$(1)" in ""|*[!0-9]*|0*) echo "$(1): $$$(1); allowed: a whole number from 1 on, such as $(1)=2" >&2; exit 1;; esac
+CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
 .PHONY: help setup slurm lock describe reference replicate rulegraph verify test test-pages test-slow test-all faults slurm-test benchmark check clean distclean
@@ -105,7 +105,8 @@ verify: $(READY)
 	@"$(BIN)/python" -m slippulse.data.verify results $(if $(AGAINST),--against "$$AGAINST")
 
 faults: $(READY)
-	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
+	@$(call CHECK_COUNT,KILLS)
+	@"$(BIN)/python" tests/faults.py --kills "$$KILLS"
 
 test: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist loadfile --no-loadscope-reorder -m "not slow"
@@ -114,8 +115,9 @@ test-pages: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" PAGES=results python -m pytest -m "slow or not slow" tests/browser
 
 test-slow: $(READY)
+	@$(call CHECK_COUNT,KILLS)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" python -m pytest -n "$$CORES" --dist worksteal -m slow --ignore tests/browser
-	@"$(BIN)/python" tests/faults.py --kills $(KILLS)
+	@"$(BIN)/python" tests/faults.py --kills "$$KILLS"
 
 test-all: test test-pages test-slow slurm-test
 

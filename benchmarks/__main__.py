@@ -7,9 +7,10 @@ import sys
 import time
 from pathlib import Path
 
-import yaml
-
+from slippulse.configuration.overlay import read_overlay
+from slippulse.configuration.read import read_config
 from slippulse.data.files import write_whole
+from slippulse.model.checks import ConfigError
 from slippulse.studies import requirements
 
 from . import measure
@@ -17,7 +18,9 @@ from . import measure
 
 def main(config_path: str, folder: str) -> None:
     """Run every measurement and say the ratios."""
-    config = yaml.safe_load(Path(config_path).read_text(encoding="utf-8"))
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    config = read_overlay(config_path)
+    read_config(config, config)
     accuracy, window = config["presets"]["paper"], config["measure"]["front_window"]
     parts = {
         "machine": measure.machine,
@@ -53,4 +56,12 @@ def main(config_path: str, folder: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    if len(sys.argv) != 3:
+        print("usage: python -m benchmarks CONFIGURATION FOLDER", file=sys.stderr)
+        sys.exit(2)
+    try:
+        main(*sys.argv[1:])
+    except ConfigError as error:
+        sys.exit(str(error))
+    except OSError as error:
+        sys.exit(f"{sys.argv[2]}: {error.strerror}; allowed: a folder that can be written")

@@ -23,4 +23,10 @@ def main(folder: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if len(sys.argv) != 2:
+        print("usage: python docs/reference.py FOLDER", file=sys.stderr)
+        sys.exit(2)
+    try:
+        main(sys.argv[1])
+    except OSError as error:
+        sys.exit(f"{sys.argv[1]}: {error.strerror}; allowed: a folder that can be written")

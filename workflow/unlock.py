@@ -33,9 +33,12 @@ def snakemakes_in(folder: Path) -> list[int] | None:
     return found
 
 
-def main(folder: str) -> int:
+def main(folders: list[str]) -> int:
     """Unlock a folder; returns the exit code."""
-    path = Path(folder).resolve()
+    if len(folders) != 1 or not Path(folders[0]).is_dir():
+        print("usage: python workflow/unlock.py FOLDER", file=sys.stderr)
+        return 2
+    path = Path(folders[0]).resolve()
     locks = [lock for lock in (path / ".snakemake/locks").glob("*") if lock.is_file()]
     if not locks:
         return 0
@@ -63,4 +66,4 @@ def main(folder: str) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(sys.argv[1:]))

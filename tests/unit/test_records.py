@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from slippulse.data.files import write_text
+from slippulse.data.provenance import job_times
 from slippulse.data.records import (
     NOTE,
     changed_since_made,
@@ -110,10 +112,58 @@ def test_a_page_that_is_made_anew_is_no_longer_outdated(results):
     assert (results / "index.html").read_text() == PAGE
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", '{"step": 1}'])
-def test_a_record_that_cannot_be_read_is_as_none(results, text):
-    (results / "records/data/a.nc.json").write_text(text)
+ODD = ["", "{", "[]", '{"step": 1}', "[" * 100_000]
+ODD += [
+    json.dumps({"step": "s", "configuration": "", "outputs": {"data/a.nc": "0"}, "inputs": {}} | change)
+    for change in ({"outputs": 5}, {"outputs": ["a"]}, {"inputs": None}, {"used": 5})
+]
+
+
+@pytest.mark.parametrize("text", ODD)
+def test_a_record_that_cannot_be_read_is_as_none_and_stays(results, text):
+    path = results / "records/data/a.nc.json"
+    path.write_text(text)
     assert "data/a.nc" not in [name for record in read_records(results) for name in record.outputs]
+    assert changed_since_made(results) == [] and mark_outdated(results) == {} and path.read_text() == text
+
+
+def test_a_folder_in_place_of_a_record_or_of_an_output_stops_nothing(results):
+    for name in ("records/data/a.nc.json", "measurements/a.csv"):
+        (results / name).unlink()
+        (results / name).mkdir()
+    assert changed_since_made(results, quick=False) == ["measurements/a.csv"]
+    assert remove_changed(results) == [] and (results / "measurements/a.csv").is_dir()
+
+
+@pytest.mark.parametrize("place", ["../mine.txt", "data/../../mine.txt", "{outside}/mine.txt"])
+def test_a_record_that_names_a_file_elsewhere_is_as_none(results, place):
+    mine = results.parent / "mine.txt"
+    mine.write_text("mine")
+    path = results / "records/data/a.nc.json"
+    content = json.loads(path.read_text())
+    content["outputs"] |= {place.format(outside=results.parent): "0"}
+    path.write_text(json.dumps(content))
+    later(mine)
+    assert remove_changed(results) == [] and mine.read_text() == "mine"
+
+
+def test_a_record_of_another_version_is_read(results):
+    path = results / "records/data/a.nc.json"
+    content = json.loads(path.read_text())
+    del content["used"]
+    path.write_text(json.dumps(content | {"host": "new"}))
+    (record,) = (record for record in read_records(results) if "data/a.nc" in record.outputs)
+    assert record.used["seconds"] == 0.0 and job_times(results) == {"some_step": 0.0}
+
+
+def test_an_expected_file_without_a_record_is_removed_and_no_other(results):
+    (results / "records/data/a.nc.json").unlink()
+    (results / "data/mine.nc").write_text("mine")
+    assert remove_changed(results) == []
+    expected = ["data/a.nc", "data/b.nc", "measurements/a.csv"]
+    assert changed_since_made(results, expected=expected) == ["data/a.nc"]
+    assert remove_changed(results, expected) == ["data/a.nc"]
+    assert not (results / "data/a.nc").exists() and (results / "data/mine.nc").exists()
 
 
 def test_the_digest_does_not_depend_on_the_order_of_keys():

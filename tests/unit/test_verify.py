@@ -158,3 +158,45 @@ def test_a_tree_without_numbers_is_refused(tmp_path, capsys):
     shutil.rmtree(here / "measurements")
     assert main([str(here), "--against", str(here)]) == 1
     assert "allowed: a finished tree of results" in capsys.readouterr().out
+
+
+def test_verify_removes_no_record(tmp_path, results, capsys):
+    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
+    for folder in (results, here, there):
+        write_text("{", folder / "records/data/odd.nc.json")
+    assert main([str(results)]) == main([str(here), "--against", str(there)]) == 0
+    for folder in (results, here, there):
+        assert (folder / "records/data/odd.nc.json").read_text() == "{"
+
+
+TABLE, STUDY = "measurements/sweep.csv", "uncertainties/sweep.csv"
+ODD = {
+    "other columns": (TABLE, "a,b\n1,2\n", "no column boundary"),
+    "other columns in a study": (STUDY, "a,b\n1,2\n", "no column point"),
+    "text for a width": (TABLE, ",".join(RUN) + "\n" + ",".join(["x"] * len(RUN)) + "\n", "text in column left"),
+    "text for a value": (STUDY, "point,quantity,value,uncertainty\n0,speed,1x0,0.1\n", "text in column value"),
+    "a folder for a table": (TABLE, None, "Is a directory"),
+    "a folder for a study": (STUDY, None, "Is a directory"),
+    "a folder for the provenance": ("provenance.json", None, "Is a directory"),
+    "no configuration": ("provenance.json", "{}", "no 'config'"),
+    "a list for the provenance": ("provenance.json", "[]", ""),
+    "too deep": ("provenance.json", "[" * 100_000, ""),
+    "claims without a name": ("claims.json", "[{}]", "no 'id'"),
+    "a number for the claims": ("claims.json", "5", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("which", ["here", "there"])
+@pytest.mark.parametrize("case", ODD)
+def test_an_odd_tree_is_refused_in_one_line(tmp_path, capsys, case, which):
+    name, text, said = ODD[case]
+    trees = {side: tree(tmp_path / side) for side in ("here", "there")}
+    path = trees[which] / name
+    path.unlink()
+    if text is None:
+        path.mkdir()
+    else:
+        path.write_text(text)
+    assert main([str(trees["here"]), "--against", str(trees["there"])]) == 1
+    printed = capsys.readouterr().out
+    assert printed.startswith(f"{path}: cannot be read (") and said in printed and printed.count("\n") == 1

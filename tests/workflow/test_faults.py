@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import resource
 import shutil
@@ -90,23 +92,56 @@ def test_a_harmed_data_file_is_made_anew_to_the_same_bytes(finished, harm):
     os.utime(data, ns=(moment, moment))
     result = snakemake(finished, "--", DATA, SCENE, overlay="overlay.yaml")
     assert result.returncode == 0, result.stderr
-    assert f"{DATA} was changed since it was made: it is made anew" in result.stderr
+    assert f"{DATA} was changed since it was made" in result.stderr
     assert data.read_bytes() == whole and table.read_bytes() == before
 
 
 @pytest.mark.slow
-def test_a_harmed_data_file_without_a_record_is_named_with_the_remedy(finished, tmp_path):
+def test_a_data_file_without_a_record_is_made_anew(finished, tmp_path):
     """As of a job of another program, or of a folder that was put together by hand."""
     folder = tmp_path / "copy"
     shutil.copytree(finished, folder, symlinks=True)
     (folder / f"results/records/{Path(DATA).relative_to('results')}.json").unlink()
     (folder / SCENE).unlink()
-    (folder / DATA).write_bytes((folder / DATA).read_bytes()[:600])
-    result = snakemake(folder, "--rerun-triggers", "mtime", "--", SCENE, overlay="overlay.yaml")
+    (folder / DATA).write_bytes(b"of another job")
+    result = snakemake(folder, "--", SCENE, overlay="overlay.yaml")
+    assert result.returncode == 0, result.stderr
+    assert f"{DATA} was changed since it was made, or has no record: it is removed" in result.stderr
+    assert digests(folder) == digests(finished)
+
+
+@pytest.mark.slow
+def test_only_a_run_removes_what_was_changed(finished, tmp_path):
+    folder = tmp_path / "copy"
+    shutil.copytree(finished, folder, symlinks=True)
+    (folder / f"results/records/{Path(DATA).relative_to('results')}.json").unlink()
+    for option in ("--dry-run", "--summary", "--rulegraph"):
+        result = snakemake(folder, option, "--", SCENE, overlay="overlay.yaml")
+        assert "it would be removed, and made anew where it is needed" in result.stderr, option
+        assert (folder / DATA).exists(), option
+    (folder / ".snakemake/locks/0.input.lock").write_text(str(folder / SCENE))
+    snakemake(folder, "--", SCENE, overlay="overlay.yaml")
+    assert (folder / DATA).exists()
+
+
+def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
+    """As `make replicate` runs it, whose logger prints the logs of jobs that fail."""
+    folder = tmp_path / "copy"
+    shutil.copytree(finished, folder, symlinks=True)
+    (folder / SCENE).unlink()
+    (folder / DATA).write_bytes(b"no data")
+    record = folder / f"results/records/{Path(DATA).relative_to('results')}.json"
+    content = json.loads(record.read_text())
+    content["outputs"] = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
+    record.write_text(json.dumps(content))
+    command = [sys.executable, "-m", "snakemake", "--cores", "1", "--configfile", "overlay.yaml", "--", SCENE]
+    environment = os.environ | {"PYTHONPATH": str((folder / "src").resolve())}
+    result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
     said = result.stdout + result.stderr
-    assert result.returncode != 0
-    assert "one.nc: cannot be read" in said and "delete it and run again" in said
+    assert result.returncode != 0 and "one.nc: cannot be read" in said
+    assert "delete it and run again" in said and "(details: results/logs/measure/one.traceback)" in said
     assert "Traceback" not in said and not (folder / SCENE).exists()
+    assert "Traceback" in (folder / "results/logs/measure/one.traceback").read_text()
 
 
 def test_an_unreadable_table_is_named(finished):
@@ -118,13 +153,27 @@ def test_an_unreadable_table_is_named(finished):
         load_table(path)
 
 
-def test_results_that_are_no_folder_fail_in_one_line(tmp_path):
+# A file where a folder goes, or a folder where a file goes.
+PLACES = {
+    "results": "file", "results/data": "file", "results/logs": "file", "results/logs/simulate": "file",
+    ".snakemake": "file", "results/kernels.txt": "folder", "results/measurements/arrest.csv": "folder",
+    "results/records/data/arrest.nc.json": "folder",
+}  # fmt: skip
+QUICK = ("results", "results/kernels.txt")
+
+
+@pytest.mark.parametrize(
+    "place", [pytest.param(place, marks=() if place in QUICK else pytest.mark.slow) for place in PLACES]
+)
+def test_a_place_that_is_taken_fails_in_one_line(tmp_path, place):
     folder = copy_project(Path(__file__).resolve().parents[2], tmp_path / "copy", link=True)
-    (folder / "results").write_text("mine")
+    path, kind = folder / place, PLACES[place]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.mkdir() if kind == "folder" else path.write_text("mine")
     result = snakemake(folder, "--", FIGURE)
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "Traceback" not in said
-    assert "results" in said and (folder / "results").read_text() == "mine"
+    assert f"{place} is a {kind}; remove or rename it" in said and path.exists()
 
 
 @pytest.mark.parametrize("kind", ["table", "dataset"])
@@ -149,7 +198,7 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
     assert result.returncode == 1
     assert "make room and run again" in result.stderr and result.stderr.count("\n") == 1
     assert path.read_text() == "what was there\n"
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(["log", kind])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(["log", "log.traceback", kind])
 
 
 def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
@@ -169,8 +218,10 @@ def test_a_job_that_fails_has_said_why(tmp_path, capfd):
     with pytest.raises(JobFailed, match="exit code 1"):
         Jobs().run("no_such_step", "a job", {}, {}, {}, tmp_path / "logs/one.log")
     said = capfd.readouterr().err
-    assert said.count("\n") == 1 and "No module named" in said and "one.log" in said
-    assert "Traceback" in (tmp_path / "logs/one.log").read_text()
+    assert said.count("\n") == 1 and "No module named" in said and "one.traceback" in said
+    assert "Traceback" in (tmp_path / "logs/one.traceback").read_text()
+    # The logger prints the log.
+    assert (tmp_path / "logs/one.log").read_text() == ""
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import math
 import re
 import resource
@@ -13,9 +14,11 @@ from typing import get_args, get_origin
 
 import numpy as np
 import pytest
+import xarray as xr
 from pydantic import BaseModel
 
 import slippulse as sp
+from slippulse import theory
 from slippulse.configuration.keys import Allowed
 from slippulse.configuration.overlay import read_overlay
 from slippulse.configuration.read import read_config
@@ -216,6 +219,11 @@ def test_null_removes_an_optional_key_and_no_other(small):
 PLAIN = sp.Prestress(0.5, 0.5)
 GOOD = {"boundary": "stress", "prestress": PLAIN, "duration": 0.2, "dx": 0.1}
 TINY = sp.Scene(**GOOD)
+SWEEP = sp.run_sweep([TINY, TINY])
+RUPTURE = theory.Rupture(PLAIN, 0.65, duration=4.0)
+FRONTS = theory.Fronts(PLAIN, 0.1, "total", 3.0)
+CRACK = theory.ArrestingCrack(sp.Prestress(-0.5, 0.0))
+LAYER = theory.Layer(100.0, 2500.0, 1e10, 1e10, 0.7, 0.6, 1e7)
 # A call and arguments that are good; each is replaced in turn by what it may not be.
 CALLS = {
     "Prestress": (sp.Prestress, {
@@ -237,13 +245,98 @@ CALLS = {
     "steady_pulse": (sp.theory.steady_pulse, {"tau0": 0.5, "gamma": 0.5, "beta": 0.01, "speed": 1.2}),
     "paper_pulse": (sp.theory.paper_pulse, {"tau0": 0.5, "gamma": 0.5}),
     "paper_transition_displacement": (sp.theory.paper_transition_displacement, {"tau0": 0.5, "gamma": 0.5}),
+    "run_sweep with progress": (sp.run_sweep, {"scenes": [TINY], "progress": lambda done, total: None}),
+    "simulate strictly": (sp.simulate, {"scene": TINY, "strict": False}),
+    "point": (sp.point, {"sweep": SWEEP, "index": 0}),
+    "front_speed_undamped": (theory.front_speed_undamped, {"tau0": 0.5}),
+    "front_speed": (theory.front_speed, {"tau0": 0.5, "damping_ratio": 0.1, "release": "total"}),
+    "prestress_for_speed": (theory.prestress_for_speed, {"speed": 1.2, "damping_ratio": 0.1, "release": "total"}),
+    "continuum_front_speed": (theory.continuum_front_speed, {"tau0": 0.5, "gamma": 0.5, "beta": 0.1}),
+    "steady_front": (theory.steady_front, {
+        "speed": 1.2, "damping_ratio": 0.1, "springs": 0.5, "release": "total", "blocks": 20,
+    }),
+    "admissibility_table": (theory.admissibility_table, {
+        "speeds": [1.2], "ratios": [0.1], "springs": [0.5], "release": "total",
+    }),
+    "barrier_depth": (theory.barrier_depth, {
+        "tau0": 0.5, "tau_barrier": -0.5, "gamma": 0.5, "damping_ratio": 0.1, "release": "total",
+    }),
+    "barrier_depth_estimate": (theory.barrier_depth_estimate, {"tau0": 0.5, "tau_barrier": -0.5, "gamma": 0.5}),
+    "uniform_transition_time": (theory.uniform_transition_time, {
+        "tau0": 0.5, "gamma": 0.5, "damping_ratio": 0.1, "release": "total",
+    }),
+    "exact_transition_displacement": (theory.exact_transition_displacement, {
+        "prestress": PLAIN, "gamma": 0.5, "damping_ratio": 0.1, "release": "total",
+    }),
+    "paper_transition_stress": (theory.paper_transition_stress, {"prestress": sp.Prestress(-0.5, 0.0)}),
+    "prestress_balance_position": (theory.prestress_balance_position, {"prestress": sp.Prestress(-0.5, 0.0)}),
+    "ArrestingCrack": (theory.ArrestingCrack, {
+        "prestress": sp.Prestress(-0.5, 0.0), "damping_ratio": 0.1, "release": "total",
+    }),
+    "Fronts": (theory.Fronts, {
+        "prestress": PLAIN, "damping_ratio": 0.1, "release": "total", "reach": 3.0, "gamma": 0.5,
+    }),
+    "Rupture": (theory.Rupture, {
+        "prestress": PLAIN, "gamma": 0.5, "damping_ratio": 0.1, "release": "total", "duration": 4.0, "refinement": 1,
+    }),
+    "slip_velocity": (theory.slip_velocity, {"fronts": FRONTS, "gamma": 0.5, "y": 0.0, "time": 1.0}),
+    "damage_zone_stress_drop": (theory.damage_zone_stress_drop, {
+        "slip": 1.0, "shear_modulus": 1e9, "rock_shear_modulus": 3e10, "thickness": 100.0, "rock_thickness": 1e3,
+    }),
+    "integral": (PLAIN.integral, {"lower": 0.0, "upper": 1.0}),
+    "profile": (theory.paper_pulse(0.5, 0.65).profile, {"xi": -0.5}),
+    "Layer.prestress": (LAYER.prestress, {"shear_stress": 1e6}),
+    "Layer.pulse_width": (LAYER.pulse_width, {"tau0": 0.5, "front_speed": 1.2}),
+    "Layer.transition_length": (LAYER.transition_length, {"front_speed": 1.2}),
+    "arrival": (FRONTS.arrival, {"x": 1.0}),
+    "reached": (FRONTS.reached, {"time": 1.0, "sign": 1.0}),
+    "time_at": (CRACK.time_at, {"position": -2.0}),
+    "entry_for": (CRACK.entry_for, {"position": -2.0}),
+    "share_time": (CRACK.share_time, {"share": 0.5}),
+    "far_pulse": (CRACK.far_pulse, {"count": 10}),
+    "release_time": (RUPTURE.release_time, {"x": 1.0}),
+    "stick_time": (RUPTURE.stick_time, {"x": 1.0}),
+    "final_slip": (RUPTURE.final_slip, {"x": 1.0}),
+    "horizon": (RUPTURE.horizon, {"x": 1.0}),
+    "fronts_at": (RUPTURE.fronts_at, {"time": 1.0, "x": 0.0}),
+    "pulse_width": (RUPTURE.pulse_width, {"time": 1.0, "side": "left"}),
+    "slip": (RUPTURE.slip, {"x": 1.0, "time": 1.0}),
+    "strain": (RUPTURE.strain, {"x": 1.0, "time": 1.0}),
+    "map": (RUPTURE.map, {"times": [1.0], "positions": [0.0], "fields": ("slip",)}),
 }  # fmt: skip
 VALUES = (
-    None, "text", "", True, [], {}, (), object(), 1j, math.nan, math.inf, -math.inf, -1.0, 0.0, -0.0, 5e-324, 1e-300,
+    None, "text", "0.5", "",
+    True, np.True_, 2.5, [], {}, (), object(), 1j, math.nan, math.inf, -math.inf, -1.0, 0.0, -0.0, 5e-324, 1e-300,
     1e200, 1e308, -1e308, 10**400,
     [1.0, "a"], [None], [[1.0], [2.0, 3.0]], np.array([]), np.array([math.nan]), b"bytes",
     ("x",), ("samples",), ({},), 2**70,
 )  # fmt: skip
+# Of these, what comes back (but for a rest that never comes) is finite.
+NUMBERS = {
+    "tau0", "gamma", "beta", "speed", "damping_ratio", "springs", "blocks", "tau_barrier", "slip", "shear_modulus",
+    "rock_shear_modulus", "thickness", "rock_thickness", "speeds", "ratios", "shear_stress", "front_speed", "position",
+}  # fmt: skip
+
+
+def numbers_of(found) -> list[float]:
+    """The numbers in what a function returns, as far as it returns them as such."""
+    if isinstance(found, list):
+        found = [value for row in found for name, value in row.items() if name != "rest"]
+    elif dataclasses.is_dataclass(found):
+        found = [getattr(found, field.name) for field in dataclasses.fields(found)]
+    return [value for value in np.atleast_1d(np.array(found, dtype=object)) if isinstance(value, float)]
+
+
+ATTRIBUTES = TINY.attributes()
+FAR = sp.Prestress(0.5, 0.5, bumps=((1e9, 0.5, 1.0),))
+
+
+def exact_scene(**changes):
+    """A run of the exact solution."""
+    scene = GOOD | {"boundary": "displacement", "gamma": 0.65, "scheme": "continuum"} | changes
+    return sp.simulate(sp.Scene(**scene))
+
+
 # Large numbers of these make the quadratures of the front law long.
 LARGE_IS_SLOW = {("settings_for", "gamma")}
 
@@ -268,7 +361,7 @@ def test_every_argument_of_the_library(name):
                     continue
                 try:
                     with limited():
-                        call(**good | {key: value})
+                        found = call(**good | {key: value})
                 except (ValueError, TypeError) as error:
                     if not re.search(r"^[^\n]{1,300}$", str(error)) or "; allowed: " not in str(error):
                         wrong.append((key, short_repr(value), str(error)))
@@ -277,8 +370,12 @@ def test_every_argument_of_the_library(name):
                 else:
                     accepted = value is None or isinstance(value, bool | str | bytes | dict | complex)
                     nonsense = accepted and not (key in ("samples", "progress") and value is None)
-                    if nonsense and not (key in ("half_lattice", "progress") and value is True):
+                    if nonsense and not (key in ("half_lattice", "progress", "strict") and value is True):
                         wrong.append((key, value, "accepted"))
+                    if isinstance(value, float) and math.isnan(value):
+                        wrong.append((key, value, "accepted"))
+                    if key in NUMBERS and not np.all(np.isfinite(numbers_of(found))):
+                        wrong.append((key, value, f"gives {found!r}"))
     assert not wrong, "\n".join(str(case)[:300] for case in wrong)
     assert 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - memory) < MOST_BYTES
 
@@ -288,12 +385,43 @@ def test_every_argument_of_the_library(name):
     [
         (lambda: sp.simulate(None), "scene: None; allowed: a Scene"),
         (lambda: sp.simulate({"boundary": "stress"}), "scene: {'boundary': 'stress'}; allowed: a Scene"),
-        (lambda: sp.theory.front_speed("x", 0.1), "tau0: 'x'; allowed: a number, or an array of them"),
-        (lambda: sp.theory.prestress_for_speed(1.2, {}), "damping_ratio: {}; allowed: a number, or an array of them"),
+        (lambda: sp.theory.front_speed("x", 0.1), "tau0: 'x'; allowed: finite numbers"),
+        (lambda: sp.theory.prestress_for_speed(1.2, {}), "damping_ratio: {}; allowed: finite numbers"),
         (lambda: sp.run_sweep([]), "scenes: []; allowed: a list of Scenes, at least one"),
         (lambda: sp.run_sweep([TINY], record=("samples",)), "record: 'samples' without samples; allowed: Samples"),
         (lambda: sp.run_sweep([TINY], record=("x",)), "record: ('x',); allowed: a list of fronts, fields, samples"),
         (lambda: sp.Scene(**GOOD | {"boundary": "displacement", "gamma": 1e200}), "gamma: 1e+200"),
+        (lambda: sp.point(SWEEP, -1), "index: -1; allowed: a whole number and >= 0 and <= 1"),
+        (lambda: sp.point(SWEEP, 2), "index: 2; allowed: a whole number and >= 0 and <= 1"),
+        (lambda: sp.point(sp.simulate(TINY), 0), "allowed: a Dataset that run_sweep returned"),
+        (lambda: sp.point(xr.Dataset(), 0), "allowed: a Dataset that run_sweep returned"),
+        (lambda: sp.point("x.nc", 0), "sweep: 'x.nc'; allowed: a Dataset"),
+        (lambda: sp.point(SWEEP.assign(row_size=SWEEP["row_size"] + 1), 0), "allowed: numbers of blocks whose sum"),
+        (lambda: sp.point(SWEEP.drop_vars("x"), 0), "allowed: numbers of blocks whose sum"),
+        (lambda: sp.plot(SWEEP), "run: Dataset; allowed: a Dataset that simulate returned"),
+        (lambda: sp.Scene.from_attributes(ATTRIBUTES | {"order": 4.7}), "order: 4.7; allowed: a whole number"),
+        (lambda: sp.Scene.from_attributes(ATTRIBUTES | {"half_lattice": "no"}), "half_lattice: 'no'; allowed"),
+        (lambda: sp.Scene.from_attributes(ATTRIBUTES | {"dx": "0.1"}), "dx: '0.1'; allowed: a finite number"),
+        (lambda: sp.Scene.from_attributes(ATTRIBUTES | {"steps_and_bumps": "{"}), "steps_and_bumps: '{'; allowed"),
+        (lambda: sp.Scene.from_attributes(3), "attributes: 3; allowed: a mapping"),
+        (lambda: theory.front_speed([0.1, 0.2], [0.1, 0.2, 0.3]), "shapes (2,) and (3,); allowed"),
+        (lambda: theory.slip_velocity(FRONTS, 0.65, 0.0, math.nan), "time: nan; allowed"),
+        (lambda: theory.slip_velocity(FRONTS, -1, 0.0, 1.0), "gamma: -1; allowed"),
+        (lambda: CRACK.time_at(-100), "position: -100; allowed"),
+        (lambda: FRONTS.reached(math.nan, 1), "time: nan; allowed"),
+        (lambda: RUPTURE.map([math.nan], [0.0]), "times: nan; allowed: a finite number"),
+        (lambda: sp.settings_for(1e-2, boundary="displacement", prestress=PLAIN, gamma=1e308), "gamma = 1e+308"),
+        (lambda: exact_scene(beta=1e300), "damping_ratio: "),
+        (lambda: exact_scene(duration=1e-300), "duration: 1e-300; allowed"),
+        (lambda: exact_scene(dx=1e-9), "dx: 1e-09; allowed"),
+        (lambda: exact_scene(prestress=FAR), "prestress.bumps reach: 1000000004.0; allowed"),
+        (lambda: theory.barrier_depth(0.5, -1e-5, 0.65), "tau_barrier: -1e-05; allowed"),
+        (lambda: theory.barrier_depth(1 - 1e-9, -0.5, 0.65), "front speed at tau0 = 0.999999999"),
+        (lambda: theory.Rupture(PLAIN, 0.65, 1e200), "damping_ratio: 1e+200; allowed"),
+        (lambda: theory.Rupture(PLAIN, 0.65, refinement=1000), "refinement: 1000; allowed: a whole number and >= 1"),
+        (lambda: theory.Rupture(sp.Prestress(-1e308, 0.0), 0.65), "lowest prestress: -1e+308; allowed"),
+        (lambda: theory.exact_transition_displacement(PLAIN, 1e-20, 0.1), "allowed: fronts that stay within 20000"),
+        (lambda: CRACK.far_pulse(10**7), "count: 10000000; allowed: a whole number"),
     ],
 )  # fmt: skip
 def test_arguments_that_once_went_through(call, named):

@@ -28,12 +28,13 @@ COMMANDS = {
         ["simulations.scaling_stress.cost", "hours on one core", "allow_large=true"],
     ),
     "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
+    "rule for many files": ("preset: draft\n", ["simulate"], ["target: 'simulate'", "results/data/{simulation}.nc"]),
     "unknown scene": ("preset: draft\n", ["results/scenes/bariere.html"], ["did you mean 'results/scenes/barrier"]),
 }  # fmt: skip
 
 
 # The others go the same way, and the text of each refusal is tested without the command.
-QUICK = ("misspelt key", "cost", "unknown figure")
+QUICK = ("misspelt key", "cost", "unknown figure", "rule for many files")
 
 
 @pytest.mark.workflow
@@ -74,12 +75,11 @@ def test_what_costs_too_much_goes_on_where_that_is_allowed(project, tmp_path):
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-@pytest.mark.workflow
-@pytest.mark.skipif(shutil.which("make") is None, reason="no make on this machine")
-def test_make_checks_an_overlay_before_snakemake_reads_it(project, tmp_path):
-    (tmp_path / "mine.yaml").write_text(
-        "__use_yte__: true\npreset: ?open('written', 'w')\n", encoding="utf-8"
-    )
+@pytest.fixture
+def make(project, tmp_path):
+    """A function that runs make in a folder with the sources and an environment."""
+    if shutil.which("make") is None:
+        pytest.skip("no make on this machine")
     for part in ("Snakefile", "workflow", "config", "src", "requirements.lock", "Makefile", "pyproject.toml"):
         (tmp_path / part).symlink_to(project / part)
     (tmp_path / "requirements-build.lock").symlink_to(project / "requirements-build.lock")
@@ -87,10 +87,60 @@ def test_make_checks_an_overlay_before_snakemake_reads_it(project, tmp_path):
     (tmp_path / ".venv/bin/python").symlink_to(sys.executable)
     (tmp_path / ".venv/.ready").touch()
     environment = os.environ | {"PYTHONPATH": str(project / "src")}
-    result = subprocess.run(
-        ["make", "replicate", "OVERLAY=mine.yaml"],
-        cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60, check=False,
-    )  # fmt: skip
-    assert result.returncode != 0
-    assert "template key '__use_yte__'" in result.stderr
+
+    def run(*arguments: str) -> str:
+        result = subprocess.run(
+            ["make", *arguments],
+            cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        assert result.returncode == 2
+        return result.stdout + result.stderr
+
+    return run
+
+
+@pytest.mark.workflow
+def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path):
+    (tmp_path / "mine.yaml").write_text(
+        "__use_yte__: true\npreset: ?open('written', 'w')\n", encoding="utf-8"
+    )
+    assert "template key '__use_yte__'" in make("replicate", "OVERLAY=mine.yaml")
     assert not Path(tmp_path / "written").exists() and not Path(tmp_path / "results").exists()
+
+
+@pytest.mark.workflow
+def test_an_overlay_that_is_a_pipe_is_not_waited_for(make, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    assert "pipe: not a regular file" in make("replicate", "OVERLAY=pipe")
+
+
+@pytest.mark.workflow
+@pytest.mark.parametrize("kills", ["", "0", "-1", "1.5", "1; touch written"])
+def test_make_checks_how_many_kills(make, tmp_path, kills):
+    said = make("faults", f"KILLS={kills}")
+    assert f"KILLS: {kills}; allowed: a whole number from 1 on" in said
+    assert not (tmp_path / "written").exists()
+
+
+# Commands with too few or wrong arguments, the exit code, and what is said.
+USES = {
+    "overlay": ("-m slippulse.configuration.overlay", 2, "usage: "),
+    "benchmarks": ("-m benchmarks", 2, "usage: "),
+    "benchmarks without a configuration": ("-m benchmarks {project}/Makefile {folder}", 1, "Makefile: "),
+    "benchmarks into a file": ("-m benchmarks {project}/config/config.yaml {folder}/file", 1, "file: "),
+    "reference": ("{project}/docs/reference.py", 2, "usage: "),
+    "reference into a file": ("{project}/docs/reference.py {folder}/file", 1, "file: "),
+    "unlock": ("{project}/workflow/unlock.py", 2, "usage: "),
+    "unlock nothing": ("{project}/workflow/unlock.py {folder}/nothing", 2, "usage: "),
+}
+
+
+@pytest.mark.parametrize("case", USES)
+def test_a_command_says_in_one_line_how_it_is_used(project, tmp_path, case):
+    command, code, said = USES[case]
+    (tmp_path / "file").touch()
+    result = subprocess.run(
+        [sys.executable, *command.format(project=project, folder=tmp_path).split()],
+        cwd=project, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert result.returncode == code and said in result.stderr and result.stderr.count("\n") == 1

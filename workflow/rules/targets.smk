@@ -1,21 +1,49 @@
 # Included last: what is asked for on the command line is something that a rule makes, and affordable.
 
+from snakemake.io import strip_wildcard_constraints
+
 from slippulse.configuration.expand import expand as expand_sweep
 from slippulse.configuration.limits import check_affordable
-from slippulse.configuration.targets import check_folder, check_targets
+from slippulse.configuration.refusals import format_problems
+from slippulse.configuration.targets import check_places, check_targets
 from slippulse.data.records import changed_since_made, mark_outdated, remove_changed
+
+# With these Snakemake only looks.
+LOOKING = "-n --dry-run --dryrun -t --touch -S --summary -D --detailed-summary --rulegraph --dag --filegraph --lint --unlock"
+OUTPUTS = [strip_wildcard_constraints(file) for rule in workflow.rules for file in rule.output]
+# Everything that jobs of this configuration write.
+MADE = sorted(
+    set(
+        expand(
+            OUTPUTS,
+            simulation=[*SIMULATIONS, *(chunk for chunks in CHUNKS.values() for chunk in chunks)],
+            scene=SCENES,
+            sweep=OWN_SIMULATIONS,
+        )
+    )
+)
+
+
+def refuse_places():
+    """Where a folder or a file goes there is nothing of the other kind, and it may be written."""
+    if not workflow.is_main_process:
+        return
+    records = [f"results/records/{file.removeprefix('results/')}.json" for file in MADE]
+    logs = [file for rule in workflow.rules for file in rule.log]
+    folders = {parent for file in [*MADE, *records, *logs] for parent in Path(file).parents[:-1]}
+    check_places(Path("results"), [Path(".snakemake"), *sorted(folders)], map(Path, [*MADE, *records]))
 
 
 def refuse_unknown_targets():
     """A misspelt target is refused with the nearest one that there is."""
-    known = [str(file) for rule in workflow.rules for file in rule.output if not file.contains_wildcard()]
-    known += [f"results/scenes/{name}.{ending}" for name in SCENES for ending in ("png", "html", "gif")]
-    check_folder(Path("results"))
-    names = {rule.name for rule in workflow.rules}
+    open_rules = [rule for rule in workflow.rules if rule.has_wildcards()]
+    patterns = {rule.name: strip_wildcard_constraints(rule.output[0]) for rule in open_rules}
+    names = [rule.name for rule in workflow.rules]
     check_targets(
         sys.argv[1:],
         lambda target: target in names or any(rule.is_producer(target) for rule in workflow.rules),
-        [*names, *known],
+        [*names, *MADE],
+        patterns,
     )
 
 
@@ -46,12 +74,22 @@ def refuse_dear_targets():
 
 
 def refuse_changed_files():
-    """Nothing is built on a file that was changed since its job wrote it: it is made anew, with a word."""
+    """Nothing is built on a file that was changed since its job wrote it, or that none wrote: it goes, with a word."""
     if not workflow.is_main_process or not Path("results").is_dir():
         return
-    dry = any(argument in ("-n", "--dry-run", "--dryrun") for argument in sys.argv)
-    for name in changed_since_made("results") if dry else remove_changed("results"):
-        print(f"results/{name} was changed since it was made: it is made anew", file=sys.stderr)
+    # Jobs of another run that is at work here may not have noted yet what they wrote.
+    looking = any(argument in LOOKING.split() for argument in sys.argv) or any(
+        Path(".snakemake/locks").glob("*")
+    )
+    changed = (changed_since_made if looking else remove_changed)(
+        "results", expected=[file.removeprefix("results/") for file in MADE]
+    )
+    if changed:
+        fate = f"it {'would be' if looking else 'is'} removed, and made anew where it is needed"
+        lines = [
+            f"results/{name} was changed since it was made, or has no record: {fate}" for name in changed
+        ]
+        print(format_problems(lines), file=sys.stderr)
 
 
 def report_outdated():
@@ -66,6 +104,7 @@ def report_outdated():
 
 
 try:
+    refuse_places()
     refuse_unknown_targets()
     refuse_dear_targets()
     refuse_changed_files()

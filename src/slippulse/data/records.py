@@ -9,7 +9,7 @@ import hashlib
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -84,39 +84,63 @@ class Record:
 
 
 def read_records(results: str | Path) -> list[Record]:
-    """Every record of a tree of results, without those whose outputs are all gone."""
+    """Every record of a tree of results that can be read, without those whose outputs are all gone."""
     results = Path(results)
     found = []
     for path in sorted((results / FOLDER).rglob("*.json")):
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
-            record = Record(path, **content)
-        except (OSError, ValueError, KeyError, TypeError):
-            path.unlink(missing_ok=True)
+            # Another version may have written more, or less.
+            record = Record(
+                path,
+                str(content["step"]),
+                str(content["configuration"]),
+                dict(content["outputs"]),
+                dict(content["inputs"]),
+                {"seconds": 0.0, "processor_seconds": 0.0, "memory_MB": 0} | content.get("used", {}),
+            )
+            if _inside(*record.outputs) and any((results / name).exists() for name in record.outputs):
+                found.append(record)
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
             continue
-        if any((results / name).exists() for name in record.outputs):
-            found.append(record)
     return found
 
 
-def changed_since_made(results: str | Path, quick: bool = True) -> list[str]:
+def _inside(*names: str) -> bool:
+    """Whether paths stay below the folder that they are relative to."""
+    return not any(Path(name).is_absolute() or ".." in Path(name).parts for name in names)
+
+
+def changed_since_made(results: str | Path, quick: bool = True, expected: Collection[str] = ()) -> list[str]:
     """Outputs, below results/, that are no longer what their job wrote.
 
     Parameters
     ----------
     results : folder
     quick : trust a file that is not newer than its record
+    expected : outputs that a job is known to write: without a record they are nobody's
     """
     results = Path(results)
-    changed = []
-    for record in read_records(results):
+    records = read_records(results)
+    noted = {name for record in records for name in record.outputs}
+    changed = [name for name in expected if name not in noted and (results / name).exists()]
+    for record in records:
         written = record.path.stat().st_mtime_ns
         for name, digest in record.outputs.items():
             path = results / name
-            if not path.exists() or (quick and path.stat().st_mtime_ns <= written):
+            if not path.exists() or (quick and path.is_file() and path.stat().st_mtime_ns <= written):
                 continue
-            if file_digest(path) != digest:
+            if not path.is_file() or file_digest(path) != digest:
                 changed.append(name)
+    return changed
+
+
+def remove_changed(results: str | Path, expected: Collection[str] = ()) -> list[str]:
+    """Remove what `changed_since_made` finds, so that it is made anew where it is needed; returns the names."""
+    found = changed_since_made(results, expected=expected)
+    changed = [name for name in dict.fromkeys(found) if (Path(results) / name).is_file()]
+    for name in changed:
+        (Path(results) / name).unlink()
     return changed
 
 
@@ -142,14 +166,6 @@ def outdated(results: str | Path) -> dict[str, str]:
     return stale
 
 
-def remove_changed(results: str | Path) -> list[str]:
-    """Remove outputs that are no longer what their job wrote, so that they are made anew; returns their names."""
-    changed = changed_since_made(results)
-    for name in changed:
-        (Path(results) / name).unlink()
-    return changed
-
-
 # What an outdated page says at its top.
 NOTE = (
     '<p role="alert" style="background:#ffd54f;color:#000;padding:.75rem;margin:0">Out of date: parts of these results'
@@ -169,7 +185,7 @@ def mark_outdated(results: str | Path) -> dict[str, str]:
     for record in read_records(results):
         for name in record.outputs:
             path = results / name
-            if name not in stale or not path.exists():
+            if name not in stale or not path.is_file():
                 continue
             if path.suffix == ".html":
                 _mark(path, record)

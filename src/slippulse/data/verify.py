@@ -10,7 +10,8 @@ import argparse
 import json
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +20,8 @@ import pandas as pd
 
 from .alterations import changes
 from .records import changed_since_made, file_digest, outdated
-from .store import load_table
+from .store import UnreadableFile, load_table
+from .variables import VARIABLES
 
 # What makes a run the same run in another tree, whatever its lattice.
 SAME = ("boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release")
@@ -97,7 +99,7 @@ def compare(here: str | Path, there: str | Path) -> Comparison:
     Raises
     ------
     ValueError
-        If one has no measured tables.
+        If one has no measured tables, or a file that cannot be read.
     """
     trees = [Path(here), Path(there)]
     names = []
@@ -143,18 +145,47 @@ def compare(here: str | Path, there: str | Path) -> Comparison:
 
 def _numbers(tree: Path, name: str) -> pd.DataFrame:
     """Every measured number of a table: point, what names the run, quantity, value, uncertainty (NaN: not known)."""
-    measured = load_table(tree / "measurements" / name)
-    measured = measured.assign(point=np.arange(len(measured)))
+    with _readable(tree / "measurements" / name) as path:
+        measured = load_table(path)
+        measured = measured.assign(point=np.arange(len(measured)))
+        _check_columns(measured, SAME)
     quantities = [column for column in measured if measured[column].dtype.kind == "f" and column not in SAME]
     values = measured.melt(["point", *SAME], quantities, "quantity", "value")
-    try:
-        study = load_table(tree / "uncertainties" / name)[["point", "quantity", "value", "uncertainty"]]
-    except FileNotFoundError:
+    if not (tree / "uncertainties" / name).exists():
         return values.assign(uncertainty=np.nan)
+    with _readable(tree / "uncertainties" / name) as path:
+        study = load_table(path)
+        columns = ["point", "quantity", "value", "uncertainty"]
+        _check_columns(study, columns)
+        study = study[columns]
     found = values.merge(study, on=["point", "quantity"], how="left", suffixes=("", "_studied"))
     # A study of other values tells nothing of these.
     stale = (found["value"] - found["value_studied"]).abs() > DIGITS * found["value"].abs()
     return found.assign(uncertainty=found["uncertainty"].mask(stale)).drop(columns="value_studied")
+
+
+def _check_columns(table: pd.DataFrame, needed: Iterable[str]) -> None:
+    """Refuse a table without these columns, or with text in a column of numbers."""
+    for column in needed:
+        if column not in table:
+            raise ValueError(f"no column {column}")
+    for column in table:
+        if table[column].dtype.kind not in "biuf" and VARIABLES.get(column, ("text",))[0] != "text":
+            raise ValueError(f"text in column {column}")
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[Path]:
+    """Name the file that cannot be read, or does not hold what a run writes."""
+    try:
+        yield path
+    except UnreadableFile:
+        raise
+    except (OSError, ValueError, LookupError, TypeError, RecursionError) as error:
+        reason = (
+            f"no {error}" if isinstance(error, LookupError) else getattr(error, "strerror", None) or error
+        )
+        raise UnreadableFile(path, reason) from None
 
 
 def _configurations(here: Path, there: Path) -> list[str]:
@@ -164,7 +195,8 @@ def _configurations(here: Path, there: Path) -> list[str]:
         path = tree / "provenance.json"
         if not path.exists():
             return [f"{path}: missing; configurations not compared"]
-        found.append(json.loads(path.read_text(encoding="utf-8"))["config"])
+        with _readable(path):
+            found.append(dict(json.loads(path.read_text(encoding="utf-8"))["config"]))
     return [
         f"configuration: {change['key']}: {change['here']!r} against {change['shipped']!r}"
         for change in changes(found[1], found[0])
@@ -178,8 +210,9 @@ def _verdicts(here: Path, there: Path) -> list[str]:
         path = tree / "claims.json"
         if not path.exists():
             return [f"{path}: missing; verdicts not compared"]
-        claims = json.loads(path.read_text(encoding="utf-8"))
-        found.append({claim["id"]: claim["verdict"] for claim in claims})
+        with _readable(path):
+            claims = json.loads(path.read_text(encoding="utf-8"))
+            found.append({str(claim["id"]): claim["verdict"] for claim in claims})
     one, two = found
     return [
         f"{name}: {one.get(name, 'no such claim')!r} against {two.get(name, 'no such claim')!r}"

@@ -98,10 +98,13 @@ def used(seconds: float) -> dict[str, float]:
 
 @contextlib.contextmanager
 def logged(path: str | Path) -> Iterator[None]:
-    """Send what a job says to its log; a failure is one line on the terminal and a traceback in the log."""
+    """Send what a job says to its log; a failure is one line on the terminal and a traceback beside the log."""
     terminal = sys.stderr
+    # Not in the log itself, which Snakemake prints.
+    details = Path(path).with_suffix(".traceback")
     try:
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        details.parent.mkdir(parents=True, exist_ok=True)
+        details.unlink(missing_ok=True)
         log = open(path, "w", encoding="utf-8")  # noqa: SIM115
     except OSError as error:
         terminal.write(f"{path}: {error.strerror}; allowed: a results folder that can be written\n")
@@ -116,8 +119,8 @@ def logged(path: str | Path) -> Iterator[None]:
     except Exception as error:
         # A disk that is full has no room for the log either.
         with contextlib.suppress(OSError):
-            log.write(traceback.format_exc())
-        terminal.write(f"{_reason(error)} (details: {path})\n")
+            details.write_text(traceback.format_exc(), encoding="utf-8")
+        terminal.write(f"{_reason(error)} (details: {details})\n")
         raise SystemExit(1) from None
     finally:
         sys.stderr = terminal
