@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 from pathlib import Path
 
@@ -71,14 +72,17 @@ CONFIG = {"preset": "paper", "model": {"release": "total"}}
 
 
 def tree(
-    folder, run=None, speed=1.0, studied=None, uncertainty=0.01, verdict="reproduced", config=None
+    folder, run=None, speed=1.0, studied=None, uncertainty=0.01, verdict="reproduced", config=None, **more
 ) -> Path:
-    """Results with one measured number, and a grid study of it, or of another value."""
+    """Results with one measured number, and a grid study of it, or of another value, and more columns."""
     run = RUN | (run or {})
     folder = folder / "results"
     for name in ("measurements", "uncertainties"):
         (folder / name).mkdir(parents=True)
-    pd.DataFrame([run | {"speed": speed}]).to_csv(folder / "measurements/sweep.csv", index=False)
+    lattice = {"scheme": "localised", "dx": 0.01, "order": 8, "max_step": 1.0}
+    pd.DataFrame([run | lattice | {"speed": speed} | more]).to_csv(
+        folder / "measurements/sweep.csv", index=False
+    )
     study = {"quantity": "speed", "value": speed if studied is None else studied, "uncertainty": uncertainty}
     pd.DataFrame([{"point": 0} | run | study]).to_csv(folder / "uncertainties/sweep.csv", index=False)
     (folder / "claims.json").write_text(json.dumps([{"id": "speed", "verdict": verdict}]))
@@ -147,10 +151,36 @@ def test_a_tree_without_provenance_is_not_taken_for_one_of_the_same_configuratio
     assert "configurations not compared" in capsys.readouterr().out
 
 
-def test_a_number_without_uncertainty_is_counted_as_such(tmp_path):
+def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
     here = tree(tmp_path / "here", uncertainty=float("nan"))
-    result = compare(here, tree(tmp_path / "there", speed=2.0, uncertainty=float("nan")))
+    there = tree(tmp_path / "there", speed=2.0, uncertainty=float("nan"), dx=0.02)
+    result = compare(here, there)
     assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, ())
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "said"),
+    [
+        ({"uncertainty": math.nan}, {"speed": 1.5, "uncertainty": math.nan}, "speed: 1 against 1.5"),
+        ({}, {"speed": math.nan, "studied": 1.0}, "speed: 1 against nan"),
+        ({"pulse_state": "steady"}, {"pulse_state": "unsteady"}, "pulse_state: 'steady' against 'unsteady'"),
+        ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
+        ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
+        ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
+    ],
+    ids=["no uncertainty", "an empty number", "text", "empty text", "a whole number", "a column less"],
+)
+def test_runs_on_one_lattice_agree_in_everything(tmp_path, capsys, one, two, said):
+    here, there = tree(tmp_path / "here", **one), tree(tmp_path / "there", **two)
+    assert main([str(here), "--against", str(there)]) == 1
+    assert said in capsys.readouterr().out
+
+
+def test_a_study_in_one_tree_only_is_said(tmp_path, capsys):
+    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
+    (there / "uncertainties/sweep.csv").unlink()
+    assert main([str(here), "--against", str(there)]) == 1
+    assert "sweep.csv: uncertainties in one tree only" in capsys.readouterr().out
 
 
 def test_a_tree_without_numbers_is_refused(tmp_path, capsys):

@@ -25,8 +25,11 @@ from .variables import VARIABLES
 
 # What makes a run the same run in another tree, whatever its lattice.
 SAME = ("boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release")
-# Numbers that agree to this need no uncertainty: tables have nine digits.
-DIGITS = 1e-8
+# What a number without uncertainty depends on besides.
+LATTICE = ("scheme", "dx", "order", "max_step")
+# Numbers that agree to this need no uncertainty: tables have nine digits. On one lattice those without agree to so much
+# of themselves, or of 1.
+DIGITS, ROUNDING = 1e-8, 1e-6
 SHOWN = 10
 
 
@@ -79,8 +82,8 @@ class Comparison:
     Attributes
     ----------
     compared, agree : how many measured numbers both have, and how many differ by no more than both uncertainties
-    unknown : how many differ, and have no uncertainty on either side
-    apart : one line for each number that differs by more
+    unknown : how many differ, are of two lattices, and have no uncertainty on either side
+    apart : one line for each number or text that differs otherwise
     verdicts : one line for each claim with another verdict
     other : what is not comparable: other configurations, other runs, tables in one tree only, outdated files
     """
@@ -108,49 +111,73 @@ def compare(here: str | Path, there: str | Path) -> Comparison:
         if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     other = [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])] + _configurations(*trees)
-    for tree in trees:
-        other += [f"{tree / name}: older than {cause}" for name, cause in outdated(tree).items()]
     compared = agree = unknown = 0
     apart: list[str] = []
     for name in sorted(names[0] & names[1]):
-        one, two = (_numbers(tree, name) for tree in trees)
-        runs = [
-            table.drop_duplicates("point")[["point", *SAME]].reset_index(drop=True) for table in (one, two)
-        ]
-        if not runs[0].equals(runs[1]):
+        one, two = (_table(tree, name) for tree in trees)
+        if not one[list(SAME)].equals(two[list(SAME)]):
             other.append(f"{name}: other runs")
             continue
-        both = one.merge(
-            two[["point", "quantity", "value", "uncertainty"]],
-            on=["point", "quantity"],
-            suffixes=("", "_there"),
+        if missing := sorted(set(one) ^ set(two)):
+            other.append(f"{name}: columns in one tree only: {', '.join(missing)}")
+        if len({(tree / "uncertainties" / name).exists() for tree in trees}) > 1:
+            other.append(f"{name}: uncertainties in one tree only")
+        lattice = [column for column in LATTICE if column in one and column in two]
+        alike = (one[lattice] == two[lattice]).all(axis=1)
+        both = _numbers(trees[0], name, one).merge(
+            _numbers(trees[1], name, two), on=["point", "quantity"], suffixes=("", "_there")
         )
-        both = both[np.isfinite(both["value"]) & np.isfinite(both["value_there"])]
-        allowed = both["uncertainty"].fillna(0.0) + both["uncertainty_there"].fillna(0.0)
-        within = (both["value"] - both["value_there"]).abs() <= allowed + DIGITS * both["value"].abs()
-        uncertain = ~within & both["uncertainty"].isna() & both["uncertainty_there"].isna()
-        compared, agree, unknown = (
-            compared + len(both),
-            agree + int(within.sum()),
-            unknown + int(uncertain.sum()),
+        value, there = both["value"], both["value_there"]
+        same = alike.to_numpy()[both["point"]]
+        counted = (value.notna() & there.notna()) | (same & (value.notna() | there.notna()))
+        allowed = (
+            both["uncertainty"].fillna(0.0) + both["uncertainty_there"].fillna(0.0) + DIGITS * value.abs()
         )
-        for index in np.flatnonzero(~within & ~uncertain):
+        known = both["uncertainty"].notna() | both["uncertainty_there"].notna()
+        exact = same & ~known
+        allowed = allowed.mask(exact, ROUNDING * np.maximum(value.abs(), 1.0))
+        within = (value - there).abs() <= allowed
+        uncertain = counted & ~within & ~known & ~same
+        compared += int(counted.sum())
+        agree += int((counted & within).sum())
+        unknown += int(uncertain.sum())
+        for index in np.flatnonzero(counted & ~within & ~uncertain):
             row = both.iloc[index]
             apart.append(
                 f"{name}: point {row['point']}, {row['quantity']}: {row['value']:.6g} against"
                 f" {row['value_there']:.6g}; allowed: a difference of {allowed.iloc[index]:.2g}"
             )
+        texts = [
+            column
+            for column in one
+            if column in two
+            and column not in SAME
+            and "O" in (one[column].dtype.kind, two[column].dtype.kind)
+        ]
+        ours, theirs = (table[texts].astype(object).fillna("") for table in (one, two))
+        apart += [
+            f"{name}: point {point}, {column}: {ours[column][point]!r} against {theirs[column][point]!r}"
+            for column in texts
+            for point in np.flatnonzero(alike & (ours[column] != theirs[column]))
+        ]
+    for tree in trees:
+        other += [f"{tree / name}: older than {cause}" for name, cause in outdated(tree).items()]
     return Comparison(compared, agree, unknown, tuple(apart), tuple(_verdicts(*trees)), tuple(other))
 
 
-def _numbers(tree: Path, name: str) -> pd.DataFrame:
-    """Every measured number of a table: point, what names the run, quantity, value, uncertainty (NaN: not known)."""
+def _table(tree: Path, name: str) -> pd.DataFrame:
+    """A measured table."""
     with _readable(tree / "measurements" / name) as path:
-        measured = load_table(path)
-        measured = measured.assign(point=np.arange(len(measured)))
-        _check_columns(measured, SAME)
-    quantities = [column for column in measured if measured[column].dtype.kind == "f" and column not in SAME]
-    values = measured.melt(["point", *SAME], quantities, "quantity", "value")
+        table = load_table(path)
+        _check_columns(table, SAME)
+    return table
+
+
+def _numbers(tree: Path, name: str, measured: pd.DataFrame) -> pd.DataFrame:
+    """Every number of a measured table: point, quantity, value, uncertainty (NaN: not known)."""
+    quantities = [c for c in measured if measured[c].dtype.kind in "biuf" and c not in (*SAME, *LATTICE)]
+    values = measured[quantities].astype(float).assign(point=np.arange(len(measured)))
+    values = values.melt(["point"], quantities, "quantity", "value")
     if not (tree / "uncertainties" / name).exists():
         return values.assign(uncertainty=np.nan)
     with _readable(tree / "uncertainties" / name) as path:
