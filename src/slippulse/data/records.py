@@ -111,13 +111,12 @@ def _inside(*names: str) -> bool:
     return not any(Path(name).is_absolute() or ".." in Path(name).parts for name in names)
 
 
-def changed_since_made(results: str | Path, quick: bool = True, expected: Collection[str] = ()) -> list[str]:
-    """Outputs, below results/, that are no longer what their job wrote.
+def changed_since_made(results: str | Path, expected: Collection[str] = ()) -> list[str]:
+    """Outputs, below results/, that are no longer what their job wrote, whatever their times.
 
     Parameters
     ----------
     results : folder
-    quick : trust a file that is not newer than its record
     expected : outputs that a job is known to write: without a record they are nobody's
     """
     results = Path(results)
@@ -125,12 +124,9 @@ def changed_since_made(results: str | Path, quick: bool = True, expected: Collec
     noted = {name for record in records for name in record.outputs}
     changed = [name for name in expected if name not in noted and (results / name).exists()]
     for record in records:
-        written = record.path.stat().st_mtime_ns
         for name, digest in record.outputs.items():
             path = results / name
-            if not path.exists() or (quick and path.is_file() and path.stat().st_mtime_ns <= written):
-                continue
-            if not path.is_file() or file_digest(path) != digest:
+            if path.exists() and not (path.is_file() and file_digest(path) == digest):
                 changed.append(name)
     return changed
 

@@ -44,7 +44,7 @@ def problems_of(results: str | Path) -> list[str]:
     results = Path(results)
     problems = [*_unlike_checksums(results)]
     listed = {line.split(": ")[0] for line in problems}
-    for name in changed_since_made(results, quick=False):
+    for name in changed_since_made(results):
         if str(results / name) not in listed:
             problems.append(f"{results / name}: not what its job wrote")
     problems += [
