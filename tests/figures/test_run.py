@@ -35,6 +35,8 @@ def test_fronts_trailing_edge_and_slip_are_drawn(samples):
 def test_what_is_no_run_is_refused():
     with pytest.raises(TypeError, match=r"^run: dict; allowed: a Dataset that simulate returned$"):
         sp.plot({})
+    with pytest.raises(TypeError, match=r"^run: Dataset; allowed: a Dataset that simulate returned$"):
+        sp.plot(sp.run_sweep([PLAIN]))
     run = sp.simulate(PLAIN)
     run["release_time"][:] = np.nan
     with pytest.raises(ValueError, match=r"^run: nothing slipped"):

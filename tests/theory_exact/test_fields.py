@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from scipy.special import j0
+from scipy.special import j0, jn_zeros
 
 import slippulse as sp
 from slippulse.theory import (
@@ -139,6 +139,12 @@ def test_the_pulse_is_steady_exactly_beyond_its_memory(ratio, level, then):
     slip, velocity, _ = pulse.profile(xi)
     assert rupture.slip(x[1], times) == pytest.approx(slip, abs=1e-9)
     assert rupture.slip_velocity(x[1], times) == pytest.approx(velocity, abs=1e-9)
+
+
+@pytest.mark.parametrize("tau0", [1e-320, 1e-5, 3e-3, 1e-2])
+def test_transition_behind_a_front_that_hardly_outruns_the_waves(tau0):
+    """At v = 1 the integral is J1(2q), and 2q = sqrt(gamma) t."""
+    assert uniform_transition_time(tau0, 1.0) == pytest.approx(jn_zeros(1, 1)[0], rel=tau0**2 + 1e-12)
 
 
 @pytest.mark.parametrize(("tau0", "known"), [(0.1, 1.219), (0.4, 1.206), (0.9, 1.112)])

@@ -143,6 +143,8 @@ def test_a_barrier_is_passed_if_and_only_if_it_is_shorter_than_the_depth(share, 
         ({"prestress": sp.Prestress(0.5, 0.5, peak=0.9)}, "prestress"),
         ({"prestress": "flat"}, "prestress"),
         ({"refinement": 0}, "refinement"),
+        ({"refinement": 2.7}, "refinement"),
+        ({"damping_ratio": 1e9}, "damping_ratio"),
     ],
 )
 def test_what_is_outside_the_domain_is_refused_in_one_line(keys, word):

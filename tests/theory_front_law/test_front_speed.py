@@ -16,6 +16,7 @@ from slippulse.theory import (
     lattice_front_speed,
     prestress_for_speed,
 )
+from slippulse.theory.front_law import _nearly_free
 
 LEVELS = np.concatenate([np.geomspace(0.01, 0.5, 10), 1.0 - np.geomspace(0.4, 1e-4, 10)])
 # In tau_0, relative: rounding of some 200 terms.
@@ -157,6 +158,28 @@ def test_springs_of_no_strength(ratio, release):
         assert lattice_front_speed(0.5, gamma, 1.0, ratio, release) == pytest.approx(
             front_speed(0.5, ratio, release), rel=1e-10
         )
+
+
+@pytest.mark.parametrize("release", ["total", "elastic"])
+@pytest.mark.parametrize("ratio", [0.01, 0.1, 10.0])
+def test_springs_next_to_one(ratio, release):
+    """Fast fronts outrun what leaf springs do, and nothing jumps where the series takes over from the quadrature."""
+    for rest in (1e-10, 1e-12, 1e-14):
+        free = front_speed(1.0 - rest, ratio, release)
+        assert lattice_front_speed(1.0 - rest, 0.65, 0.01, ratio, release) == pytest.approx(free, rel=1e-10)
+    quadrature = lattice_front_speed(1.0 - 1.001e-7, 1.0, 1.0, ratio, release)
+    series = lattice_front_speed(1.0 - 0.999e-7, 1.0, 1.0, ratio, release)
+    free = front_speed(1.0 - 0.999e-7, ratio, release) / front_speed(1.0 - 1.001e-7, ratio, release)
+    assert series / quadrature == pytest.approx(free, rel=1e-6)
+
+
+def test_springs_on_fast_fronts():
+    """The first order in g/v^2, where the quadrature still sees it."""
+    for ratio, release in ((0.1, "total"), (10.0, "total"), (0.1, "elastic")):
+        free, tau = front_speed(1.0 - 1e-4, ratio, release), 1.0 - 1e-4
+        full = lattice_front_speed(tau, 1.0, 1.0, ratio, release)
+        series = _nearly_free(free, 1.0, ratio if release == "total" else 0.0)
+        assert 1.0 - full / free == pytest.approx(1.0 - series / free, rel=0.05, abs=1e-10)
 
 
 def test_the_continuum_is_the_limit_of_the_lattice():

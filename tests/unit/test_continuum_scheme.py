@@ -84,3 +84,15 @@ def test_a_sweep_may_be_exact():
     scenes = [sp.Scene(dx=0.1, beta=0.0, scheme="continuum", **SCENES["displacement"])] * 2
     sweep = sp.run_sweep(scenes, record=("fronts", "fields"))
     assert sweep.sizes["point"] == 2 and np.isfinite(sweep["first_stick_time"]).all()
+
+
+def test_a_scene_that_releases_nothing_is_an_empty_run():
+    scene = {"dx": 0.1, "beta": 0.01, **SCENES["displacement"], "prestress": sp.Prestress(0.5, 0.5, peak=0.9)}
+    samples = sp.Samples([0.0, 1.0], [0.0, 1.0])
+    lattice, exact = (
+        sp.simulate(sp.Scene(scheme=name, **scene), samples) for name in ("localised", "continuum")
+    )
+    assert exact.equals(lattice)
+    for name in ("releases", "sticks", "stopped_because", "run_flags", "pulse_blocks"):
+        assert exact.attrs[name] == lattice.attrs[name]
+    assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene["duration"]

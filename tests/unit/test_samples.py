@@ -70,6 +70,12 @@ def test_the_time_after_everything_stuck_is_the_final_state():
     assert (run["sample_slip"].values == float(run["slip"].sel(x=0.0))).all()
 
 
-def test_times_beyond_the_duration_have_no_sample():
-    run = sp.simulate(dataclasses.replace(SCENE, duration=1.0), sp.Samples([0.5, 1.0, 50.0], [0.0]))
-    assert np.isnan(run["sample_slip"].values[2]).all()
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+def test_samples_after_the_end_are_refused(scheme):
+    scene = dataclasses.replace(SCENE, duration=1.0, scheme=scheme)
+    samples = sp.Samples([0.5, 1.0, 3.5], [0.0])
+    refusal = r"^samples\.times: 3\.5; allowed: up to the duration of the scene, 1$"
+    with pytest.raises(ValueError, match=refusal):
+        sp.simulate(scene, samples)
+    with pytest.raises(ValueError, match=refusal):
+        sp.run_sweep([scene], [samples])

@@ -428,3 +428,7 @@ def test_arguments_that_once_went_through(call, named):
     with pytest.raises((ValueError, TypeError)) as refusal:
         call()
     assert named in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+def test_a_rigid_rock_is_allowed():
+    assert theory.damage_zone_stress_drop(2.0, 3.0, math.inf, 4.0, 5.0) == 1.5

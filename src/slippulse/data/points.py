@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from ..model.checks import check_number, short_repr
 from .variables import VARIABLES
 
 FRONTS = ("release_time", "stick_time")
@@ -27,7 +28,19 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     ----------
     sweep : data of a sweep, such as ``xarray.open_dataset("results/data/arrest.nc")``
     index : number of the run, from 0
+
+    Raises
+    ------
+    TypeError
+        If it is not a sweep.
+    ValueError
+        If it has no such run, or its blocks are not those of its runs.
     """
+    if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
+        raise TypeError(
+            f"sweep: {short_repr(sweep)}; allowed: a Dataset that run_sweep returned, or of results/data"
+        )
+    check_number("index", index, whole=True, at_least=0, at_most=sweep.sizes["point"] - 1)
     values = {name: variable.values for name, variable in sweep.variables.items()}
     scalars = [
         name
@@ -36,6 +49,11 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     ]
     fields, coordinates = {}, {}
     if "row_size" in values:
+        size = values["row_size"]
+        if "x" not in values or np.any(size < 0) or np.sum(size) != values["x"].size:
+            raise ValueError(
+                f"row_size: {short_repr(size.tolist())}; allowed: numbers of blocks whose sum is the length of x"
+            )
         end = int(np.sum(values["row_size"][: index + 1]))
         rows = slice(end - int(values["row_size"][index]), end)
         names = [name for name in ("x", "prestress", *FRONTS, *FIELDS) if name in values]

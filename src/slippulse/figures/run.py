@@ -37,7 +37,7 @@ def plot(run: xr.Dataset) -> Picture:
     ValueError
         If nothing slipped.
     """
-    if not isinstance(run, xr.Dataset) or "release_time" not in run:
+    if not isinstance(run, xr.Dataset) or not _is_run(run):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
     if not np.isfinite(run["release_time"]).any():
         raise ValueError("run: nothing slipped; allowed: a run with a release")
@@ -64,3 +64,9 @@ def plot(run: xr.Dataset) -> Picture:
         slip.set_xlabel(r"slip $u$")
         profile.set_ylabel(r"position $x$")
     return figure
+
+
+def _is_run(data: xr.Dataset) -> bool:
+    """Whether it has what is drawn: of a sweep, `slippulse.point` takes a run."""
+    drawn = ("prestress", "release_time", "stick_time", "slip")
+    return "end_time" in data.attrs and all(name in data and data[name].dims == ("x",) for name in drawn)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .checks import check_kind
 from .prestress import Prestress
 from .roots import root_between
 
@@ -18,12 +19,13 @@ def prestress_balance_position(prestress: Prestress) -> float:
     Raises
     ------
     ValueError
-        If the levels are otherwise: the integral then has no finite value, or never returns to 0.
+        If it is no Prestress, or the levels are otherwise: the integral has no finite value, or never returns to 0.
     ArithmeticError
         If numbers are too large to compute with.
 
     Source: equation (11) of the paper, section III C.
     """
+    check_kind("prestress", prestress, Prestress)
     far = _far(prestress)
     right, left = float(prestress.level(np.asarray(far))), float(prestress.level(np.asarray(-far)))
     if right != 0.0:

@@ -6,7 +6,7 @@ import difflib
 import math
 import re
 from collections.abc import Iterable
-from numbers import Real
+from numbers import Integral, Real
 
 import numpy as np
 
@@ -37,8 +37,9 @@ def check_number(
     at_least: float | None = None,
     at_most: float | None = None,
     below: float | None = None,
+    whole: bool = False,
 ) -> None:
-    """Refuse anything but a finite number in the stated range.
+    """Refuse anything but a finite number in the stated range, or a whole one.
 
     Raises
     ------
@@ -48,6 +49,7 @@ def check_number(
     number = type(value) is float or (isinstance(value, Real) and not isinstance(value, (bool, np.bool_)))
     if (
         number
+        and (not whole or isinstance(value, Integral))
         and _finite(value)
         and (above is None or value > above)
         and (at_least is None or value >= at_least)
@@ -57,7 +59,10 @@ def check_number(
         return
     signs = ((">", above), (">=", at_least), ("<=", at_most), ("<", below))
     allowed = " and ".join(
-        ["a finite number", *(f"{sign} {bound:g}" for sign, bound in signs if bound is not None)]
+        [
+            "a whole number" if whole else "a finite number",
+            *(f"{sign} {bound:.10g}" for sign, bound in signs if bound is not None),
+        ]
     )
     raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
 
@@ -69,24 +74,56 @@ def _finite(value: Real) -> bool:
         return False
 
 
-def as_numbers(key: str, value: object) -> np.ndarray:
-    """An array of finite numbers.
+def as_numbers(key: str, value: object, **bounds: float) -> np.ndarray:
+    """An array of finite numbers within the bounds of `check_number`.
 
     Raises
     ------
     ValueError
         Naming the key, the value and what is allowed.
     """
+    if isinstance(value, Real):
+        check_number(key, value, **bounds)
+        return np.asarray(float(value))
     try:
         array = np.asarray(value)
-        if array.dtype.kind not in "iuf":
-            raise TypeError
-        numbers = np.asarray(value, dtype=float)
     except (TypeError, ValueError, OverflowError):
-        numbers = None
-    if numbers is None or not np.isfinite(numbers).all():
+        array = np.asarray(None)
+    if array.dtype.kind not in "iuf":
         raise ValueError(f"{key}: {short_repr(value)}; allowed: finite numbers")
+    numbers = array.astype(float, copy=False)
+    if numbers.size:
+        # They stand for all; one that is not a number is both.
+        for extreme in (numbers.min(), numbers.max()):
+            check_number(key, float(extreme), **bounds)
     return numbers
+
+
+def of_one_shape(**arrays: np.ndarray) -> list[np.ndarray]:
+    """Arrays broadcast to each other.
+
+    Raises
+    ------
+    ValueError
+        Naming the arrays and their shapes.
+    """
+    try:
+        return np.broadcast_arrays(*arrays.values())
+    except ValueError:
+        shapes = " and ".join(str(array.shape) for array in arrays.values())
+        raise ValueError(f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast") from None
+
+
+def check_kind(key: str, value: object, kind: type) -> None:
+    """Refuse anything that is not of a class.
+
+    Raises
+    ------
+    ValueError
+        Naming the key, the value and the class.
+    """
+    if not isinstance(value, kind):
+        raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind.__name__}")
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
@@ -97,5 +134,5 @@ def check_choice(key: str, value: object, choices: tuple) -> None:
     ValueError
         Naming the key, the value and the choices.
     """
-    if not isinstance(value, str | int) or value not in choices:
+    if not isinstance(value, str | int | float) or isinstance(value, bool) or value not in choices:
         raise ValueError(f"{key}: {short_repr(value)}; allowed: {', '.join(map(str, choices))}")

@@ -117,7 +117,15 @@ class Prestress:
         return float(np.max(self(np.concatenate([near.ravel(), places]))))
 
     def integral(self, lower: float, upper: float) -> float:
-        """Integral of tau from ``lower`` to ``upper`` (finite), in closed form between the steps."""
+        """Integral of tau from ``lower`` to ``upper``, in closed form between the steps.
+
+        Raises
+        ------
+        ValueError
+            If an end is not a finite number.
+        """
+        check_number("lower", lower)
+        check_number("upper", upper)
         inside = sorted({0.0, *(position for position, _ in self.steps)} | {lower, upper})
         edges = [x for x in inside if min(lower, upper) <= x <= max(lower, upper)]
         total = 0.0

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from html import escape
 from numbers import Real
 
-from .checks import check_choice, check_number, short_repr
+from .checks import check_choice, check_kind, check_number, short_repr
 from .prestress import Prestress
 from .stability import largest_step
 
@@ -23,6 +23,8 @@ ORDERS = (3, 4, 5, 6, 7, 8)
 # A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width
 # carries an error of about one block in this many.
 RESOLVED_BLOCKS = 8
+# A lattice holds every bump from the start, at 200 bytes a block.
+FARTHEST_BUMP = 10**6
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,7 @@ class Scene:
     duration : float
         Time to simulate (units of H / wave speed), > 0.
     dx : float
-        Block spacing (units of H), > 0; dx = 1 is the Burridge-Knopoff model.
+        Block spacing (units of H), >= 1e-100; dx = 1 is the Burridge-Knopoff model.
     gamma : float
         Elasticity ratio 2G/(lambda + 2G); > 0 under "displacement", left at 0 under "stress".
     beta : float
@@ -99,10 +101,10 @@ class Scene:
         ):
             if type(getattr(self, name)) is not kind:
                 raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
-        if not isinstance(self.prestress, Prestress):
-            raise ValueError(f"prestress: {short_repr(self.prestress)}; allowed: a Prestress")
+        check_kind("prestress", self.prestress, Prestress)
         check_number("duration", self.duration, above=0.0)
-        check_number("dx", self.dx, above=0.0)
+        # Its square must be one.
+        check_number("dx", self.dx, above=0.0, at_least=1e-100)
         check_number("beta", self.beta, at_least=0.0)
         check_number("friction_ratio", self.friction_ratio, at_least=0.0)
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
@@ -113,6 +115,8 @@ class Scene:
                 )
         else:
             check_number("gamma", self.gamma, above=0.0)
+        for centre, _, width in self.prestress.bumps:
+            check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=FARTHEST_BUMP * self.dx)
         if self.prestress.width < self.dx:
             raise ValueError(
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
@@ -207,26 +211,50 @@ class Scene:
         Raises
         ------
         ValueError
-            If a parameter is missing.
+            If a parameter is missing or is none that `attributes` writes.
         """
+        if not hasattr(attributes, "keys"):
+            raise ValueError(f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values")
         try:
+            # As whole numbers of a data file, which are not Python's.
+            whole = {name: attributes[name] for name in ("half_lattice", "order", "resolved_blocks")}
+            for name, value in whole.items():
+                check_number(
+                    name, value, whole=True, at_least=0, at_most=1 if name == "half_lattice" else None
+                )
             return cls(
                 prestress=prestress_from(attributes),
-                half_lattice=bool(attributes["half_lattice"]),
-                order=int(attributes["order"]),
-                resolved_blocks=int(attributes["resolved_blocks"]),
-                **{name: attributes[name] for name in ("boundary", "release", "scheme")},
+                half_lattice=bool(whole["half_lattice"]),
+                order=int(whole["order"]),
+                resolved_blocks=int(whole["resolved_blocks"]),
                 **{
-                    name: float(attributes[name])
-                    for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio")
+                    name: attributes[name]
+                    for name in (
+                        "boundary", "release", "scheme", "duration", "dx", "gamma", "beta", "max_step",
+                        "friction_ratio",
+                    )
                 },
-            )
+            )  # fmt: skip
         except KeyError as error:
             raise ValueError(f"{error.args[0]}: missing; allowed: every attribute of a run") from None
 
 
 def prestress_from(attributes: Mapping) -> Prestress:
-    """The pre-stress of a run, from the attributes of its Dataset or its row of a measured table."""
-    more = json.loads(attributes["steps_and_bumps"])
-    left, right, width, peak = (float(attributes[name]) for name in ("left", "right", "width", "peak"))
-    return Prestress(left, right, width, peak, more["steps"], more["bumps"])
+    """The pre-stress of a run, from the attributes of its Dataset or its row of a measured table.
+
+    Raises
+    ------
+    ValueError
+        If a value is none that `Scene.attributes` writes.
+    KeyError
+        If one is missing.
+    """
+    text = attributes["steps_and_bumps"]
+    try:
+        more = json.loads(text)
+        rows = more["steps"], more["bumps"]
+    except (TypeError, ValueError, LookupError):
+        raise ValueError(
+            f"steps_and_bumps: {short_repr(text)}; allowed: a JSON object of steps and bumps"
+        ) from None
+    return Prestress(*(attributes[name] for name in ("left", "right", "width", "peak")), *rows)

@@ -7,14 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..theory.rupture import Rupture
+from ..theory.profile import nucleations
+from ..theory.rupture import Limit, Rupture
 
 # Positions at rest that are kept beyond the outermost released one, as on the lattice.
 MARGIN = 16
 # The acceleration at the end is the slope of slip velocity over this share of the duration.
 SHORTLY = 1e-5
+# Positions, at some 300 bytes each.
+MOST_POSITIONS = 10**6
 
 
 @dataclass
@@ -43,7 +47,14 @@ def solve_scene(scene: Scene, samples: Samples | None = None) -> ContinuumRun:
 
     Where the construction ends before the scene does, what it cannot tell is NaN and the numbers say where and why
     (``limit_position``, ``limit_time``, ``limit_reason``).
+
+    Raises
+    ------
+    ValueError
+        If `Rupture` refuses the scene, or dx is too small for its fronts.
     """
+    if not nucleations(scene.prestress):
+        return _at_rest(scene, samples)
     gamma = scene.gamma if scene.boundary == "displacement" else 0.0
     rupture = Rupture(scene.prestress, gamma, scene.damping_ratio, scene.release, scene.duration)
     x = _positions(rupture, scene)
@@ -54,14 +65,35 @@ def solve_scene(scene: Scene, samples: Samples | None = None) -> ContinuumRun:
     acceleration = np.where(velocity > 0.0, (velocity - before) / shortly, 0.0)
     sampled = {"slip": None, "slip_velocity": None}
     if samples is not None:
-        late = samples.times > scene.duration
-        times = np.minimum(samples.times, scene.duration)
-        sampled = rupture.map(times, samples.positions, tuple(sampled))
-        for values in sampled.values():
-            values[late] = np.nan
-    first = rupture.first_stick or (math.nan, math.nan)
-    limit = rupture.limit
-    numbers = {
+        sampled = rupture.map(samples.times, samples.positions, tuple(sampled))
+    numbers = _numbers(scene, release, stick, velocity, rupture.first_stick, rupture.limit)
+    return ContinuumRun(
+        x, scene.prestress(x), release, stick, slip, velocity, acceleration, sampled["slip"],
+        sampled["slip_velocity"], numbers,
+    )  # fmt: skip
+
+
+def _at_rest(scene: Scene, samples: Samples | None) -> ContinuumRun:
+    """The run of a scene that releases nothing."""
+    x = np.arange(-MARGIN, MARGIN + 1) * scene.dx
+    never, none = np.full((2, x.size), np.nan), np.zeros((3, x.size))
+    sampled = (None, None)
+    if samples is not None:
+        sampled = np.zeros((2, samples.times.size, samples.positions.size))
+    numbers = _numbers(scene, *never, none[0], None, None)
+    return ContinuumRun(x, scene.prestress(x), *never, *none, *sampled, numbers)
+
+
+def _numbers(
+    scene: Scene,
+    release: np.ndarray,
+    stick: np.ndarray,
+    velocity: np.ndarray,
+    first_stick: tuple[float, float] | None,
+    limit: Limit | None,
+) -> dict:
+    first = first_stick or (math.nan, math.nan)
+    return {
         "end_time": scene.duration,
         "stopped_because": "everything is stuck" if not np.any(velocity > 0.0) else "duration reached",
         "steps": 0,
@@ -82,15 +114,12 @@ def solve_scene(scene: Scene, samples: Samples | None = None) -> ContinuumRun:
         "limit_time": limit.time if limit else math.nan,
         "limit_reason": limit.reason if limit else "",
     }
-    return ContinuumRun(
-        x, scene.prestress(x), release, stick, slip, velocity, acceleration, sampled["slip"],
-        sampled["slip_velocity"], numbers,
-    )  # fmt: skip
 
 
 def _positions(rupture: Rupture, scene: Scene) -> np.ndarray:
     """Multiples of dx over all that is released until the end, and a margin."""
     ends = [end.x for pair in rupture.front_ends for end in pair]
-    first = math.floor(min(ends, default=0.0) / scene.dx) - MARGIN
-    last = math.ceil(max(ends, default=0.0) / scene.dx) + MARGIN
+    check_number("dx", scene.dx, at_least=(max(ends) - min(ends)) / MOST_POSITIONS)
+    first = math.floor(min(ends) / scene.dx) - MARGIN
+    last = math.ceil(max(ends) / scene.dx) + MARGIN
     return np.arange(first, last + 1) * scene.dx

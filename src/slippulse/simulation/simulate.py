@@ -53,6 +53,8 @@ def simulate(
     ------
     TypeError
         When an argument is of another type, in one line.
+    ValueError
+        When a sample is after the end, in one line.
     UnstableRun
         When slip velocity is not finite or beyond anything the pre-stress can drive.
     UnresolvedRun
@@ -62,10 +64,14 @@ def simulate(
         raise TypeError(f"scene: {short_repr(scene)}; allowed: a Scene")
     if samples is not None and not isinstance(samples, Samples):
         raise TypeError(f"samples: {short_repr(samples)}; allowed: Samples, or None")
+    if samples is not None:
+        samples.check_within(scene.duration)
     if not isinstance(progress, bool) and progress is not None and not callable(progress):
         raise TypeError(
             f"progress: {short_repr(progress)}; allowed: a function of the share done, True, or None"
         )
+    if not isinstance(strict, bool):
+        raise TypeError(f"strict: {short_repr(strict)}; allowed: true or false")
     if isinstance(progress, bool):
         progress = bar() if progress else None
     exact = scene.scheme == "continuum"

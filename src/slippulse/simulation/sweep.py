@@ -51,7 +51,7 @@ def run_sweep(
         One line naming the argument and what is allowed.
     """
     samples = [None] * len(scenes) if samples is None and isinstance(scenes, Sequence) else samples
-    _check_arguments(scenes, samples, record, threads)
+    _check_arguments(scenes, samples, record, threads, progress)
     results: list[xr.Dataset | None] = [None] * len(scenes)
     order = sorted(range(len(scenes)), key=lambda i: -expected_seconds(scenes[i]))
 
@@ -83,7 +83,9 @@ def run_sweep(
     return combine([result for result in results if result is not None], record)
 
 
-def _check_arguments(scenes: object, samples: object, record: object, threads: object) -> None:
+def _check_arguments(
+    scenes: object, samples: object, record: object, threads: object, progress: object
+) -> None:
     """Refuse what is not a list of scenes with what each records.
 
     Raises
@@ -102,6 +104,9 @@ def _check_arguments(scenes: object, samples: object, record: object, threads: o
         raise ValueError(f"samples: {short_repr(samples)}; allowed: a list of Samples, or None")
     if len(samples) != len(scenes):
         raise ValueError(f"samples: {len(samples)} for {len(scenes)} scenes; allowed: one a scene, or None")
+    for scene, of_scene in zip(scenes, samples, strict=True):
+        if of_scene is not None:
+            of_scene.check_within(scene.duration)
     words = record if isinstance(record, Sequence) and not isinstance(record, str) else ()
     if not words or not all(isinstance(word, str) and word in RECORDS for word in words):
         raise ValueError(f"record: {short_repr(record)}; allowed: a list of {', '.join(RECORDS)}")
@@ -115,4 +120,6 @@ def _check_arguments(scenes: object, samples: object, record: object, threads: o
             raise ValueError(
                 f"samples: {len(shapes)} shapes; allowed: as many times and positions for each scene"
             )
-    check_number("threads", threads, at_least=1, at_most=1024)
+    check_number("threads", threads, whole=True, at_least=1, at_most=1024)
+    if progress is not None and not callable(progress):
+        raise ValueError(f"progress: {short_repr(progress)}; allowed: a function of (done, all), or None")

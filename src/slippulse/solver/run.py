@@ -98,15 +98,12 @@ def numbers_of(lattice: Lattice, status: int) -> dict:
 
 
 def take_last_samples(lattice: Lattice) -> None:
-    """Fill the samples that a run that stopped early did not take: all is at rest; NaN beyond the duration."""
+    """Fill the samples that a run that stopped early did not take: all is at rest."""
     recorder, w = lattice.recorder, lattice.motion.w
     inside = recorder.blocks >= 0
     for n in range(lattice.tally.samples_taken, recorder.times.size):
-        if recorder.times[n] > lattice.scene.duration:
-            recorder.slip[n] = recorder.velocity[n] = np.nan
-        else:
-            recorder.slip[n, inside] = w[0, recorder.blocks[inside]]
-            recorder.velocity[n, inside] = w[1, recorder.blocks[inside]]
+        recorder.slip[n, inside] = w[0, recorder.blocks[inside]]
+        recorder.velocity[n, inside] = w[1, recorder.blocks[inside]]
 
 
 def kept_blocks(lattice: Lattice) -> np.ndarray:

@@ -25,13 +25,13 @@ class ArrestingCrack:
     Parameters
     ----------
     prestress : a profile, tau(0) = 1, level 0 far to the right and negative far to the left
-    damping_ratio : beta/dx, >= 0
+    damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
     Raises
     ------
     ValueError
-        If the levels are otherwise.
+        Outside these ranges, or if the levels are otherwise; of every method: outside the ranges that it states.
     """
 
     def __init__(self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total") -> None:
@@ -44,14 +44,20 @@ class ArrestingCrack:
 
     def entry_for(self, position: float) -> float:
         """Entry point e of the characteristic that ends on the slow left front at a position between x_minus and x*."""
-        return float(
-            root_between(
-                lambda e: self.prestress.integral(position, e), self.zero, 4.0 * self.far - 1e-9, xtol=1e-13
+        check_number("position", position, above=self.balance_position, at_most=self.zero)
+        last = 4.0 * self.far - 1e-9
+        if self.prestress.integral(position, last) <= 0.0:
+            raise ValueError(
+                f"position: {position!r}; allowed: farther from x_minus = {self.balance_position:.10g}, where"
+                f" characteristics that entered before {last:g} end"
             )
+        return float(
+            root_between(lambda e: self.prestress.integral(position, e), self.zero, last, xtol=1e-13)
         )
 
     def time_at(self, position: float) -> float:
         """When the left front reaches a position in (x_minus, 0]."""
+        check_number("position", position, above=self.balance_position, at_most=0.0)
         if position >= self.zero:
             return float(self.fronts.arrival(position))
         entry = self.entry_for(position)
@@ -75,7 +81,13 @@ class ArrestingCrack:
         return 0.5 * self.prestress.integral(self.zero, 4.0 * self.far)
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
-        """The pulse far to the right: x - t of each characteristic and du/dt on it, from the front backwards."""
+        """The pulse far to the right: x - t of each characteristic and du/dt on it, from the front backwards.
+
+        Parameters
+        ----------
+        count : characteristics from each of three parts, 2 to 10000
+        """
+        check_number("count", count, whole=True, at_least=2, at_most=10_000)
         right = np.linspace(4.0 * self.far * 0.5, 0.0, count)
         left = np.linspace(0.0, self.zero, count)[1:]
         entries = np.concatenate([right, left])

@@ -10,7 +10,7 @@ import numpy as np
 from ..model.checks import check_number
 from ..model.prestress import Prestress
 from .curve import Curve
-from .front_law import front_speed
+from .front_law import LARGEST_RATIO, front_speed
 from .fronts import straight_panel
 from .pulse import steady_pulse
 from .slow_front import advance
@@ -18,6 +18,11 @@ from .slow_front import advance
 # Panels behind the barrier, each so long in units of 1/sqrt(gamma), as far as the barrier remembers.
 LONGEST = 2.0
 MEMORY = 1.5
+# Below it the estimate may be beyond floating point.
+SMALLEST = 1e-100
+# Levels, in units of the pre-stress before them the weakest, on which slow fronts were found to be resolved, and the
+# fastest front before them, whose pulse takes 12000 panels.
+SLOWEST, WEAKEST, STRONGEST, FASTEST = 1e-4, 0.005, 1e6, 5e3
 
 
 def barrier_depth(
@@ -27,10 +32,10 @@ def barrier_depth(
 
     Parameters
     ----------
-    tau0 : pre-stress in which the pulse is steady, in (0, 1)
-    tau_barrier : pre-stress of the barrier, < 0
+    tau0 : pre-stress in which the pulse is steady, from 1e-4 to 1, with a front no faster than 5000
+    tau_barrier : pre-stress of the barrier, from -1e6 to -tau0/200
     gamma : elasticity ratio, > 0
-    damping_ratio : beta/dx, >= 0
+    damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
     Raises
@@ -40,10 +45,12 @@ def barrier_depth(
 
     Source: the free boundary (`slow_front`) behind a front at constant speed, in the continuum limit.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
-    check_number("tau_barrier", tau_barrier, below=0.0)
+    check_number("tau0", tau0, at_least=SLOWEST, below=1.0)
+    check_number("tau_barrier", tau_barrier, at_least=-STRONGEST, at_most=-WEAKEST * tau0)
     check_number("gamma", gamma, above=0.0)
+    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
     speed = float(front_speed(tau0, damping_ratio, release))
+    check_number(f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST)
     # The depth scales like 1/sqrt(gamma). Its characteristics entered no further back than the pulse remembers.
     memory = MEMORY * steady_pulse(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
@@ -58,8 +65,9 @@ def barrier_depth(
             panels.append(step.panel)
         stop = step.stop
     if stop != "dead":
-        raise ArithmeticError(
-            f"the front in the barrier is {stop} at tau0 = {tau0!r}, tau_barrier = {tau_barrier!r}"
+        raise ValueError(
+            f"tau_barrier: {tau_barrier!r}, where the front is {stop} at tau0 = {tau0!r}, damping_ratio ="
+            f" {damping_ratio!r}; allowed: levels on which it is resolved"
         )
     return panels[-1].x_ends[1] / math.sqrt(gamma)
 
@@ -69,9 +77,9 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
 
     Parameters
     ----------
-    tau0 : pre-stress before the barrier, > 0
-    tau_barrier : pre-stress of the barrier, < 0
-    gamma : elasticity ratio, > 0
+    tau0 : pre-stress before the barrier, in (0, 1)
+    tau_barrier : pre-stress of the barrier, <= -1e-100
+    gamma : elasticity ratio, >= 1e-100
 
     Raises
     ------
@@ -80,9 +88,9 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
 
     Source: the authors' public code of later work.
     """
-    check_number("tau0", tau0, above=0.0)
-    check_number("tau_barrier", tau_barrier, below=0.0)
-    check_number("gamma", gamma, above=0.0)
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_number("tau_barrier", tau_barrier, at_most=-SMALLEST)
+    check_number("gamma", gamma, at_least=SMALLEST)
     return 2.0 / gamma * math.log((tau_barrier - tau0) / tau_barrier)
 
 

@@ -6,7 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import as_numbers, check_choice, check_number, of_one_shape
+
+# So that no product overflows.
+LARGEST = 1e100
+POSITIVE = {"at_least": 1.0 / LARGEST, "at_most": LARGEST}
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,8 @@ class Layer:
     Raises
     ------
     ValueError
-        Outside these ranges, naming the key and the value.
+        Outside these ranges, naming the key and the value; its methods too, at a number that is not finite, a speed
+        outside 1e-100 to 1e100 or a pre-stress outside (0, 1).
 
     Source: sections II and IV A and appendix B of the paper.
     """
@@ -82,6 +87,7 @@ class Layer:
 
     def prestress(self, shear_stress: float) -> float:
         """Non-dimensional pre-stress (tau/sigma_n - mu_k)/(mu_s - mu_k) of a shear stress (Pa)."""
+        check_number("shear_stress", shear_stress)
         return (shear_stress / self.normal_stress - self.kinetic_friction) / (
             self.static_friction - self.kinetic_friction
         )
@@ -99,10 +105,13 @@ class Layer:
 
     def transition_length(self, front_speed: float) -> float:
         """L_trans (m) for a front speed in wave speeds: 2 pi H sqrt((lambda + 2G)/2G) v_c/v_s (section IV A)."""
+        check_number("front_speed", front_speed, **POSITIVE)
         return 2.0 * np.pi * self.thickness / float(np.sqrt(self.gamma)) * front_speed
 
     def pulse_width(self, tau0: float, front_speed: float) -> float:
         """Width (m) of the paper's pulse: pi tau_0 H sqrt((lambda + 2G)/2G) v_c/v_s (section IV A)."""
+        check_number("tau0", tau0, above=0.0, below=1.0)
+        check_number("front_speed", front_speed, **POSITIVE)
         return np.pi * tau0 * self.thickness / float(np.sqrt(self.gamma)) * front_speed
 
 
@@ -111,19 +120,32 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
 
     Parameters
     ----------
-    slip : delta (m)
+    slip : delta (m), a number or an array of them, as the others; up to 1e100, as they, which are 1e-100 at least
     shear_modulus : G of the damage zone (Pa)
-    rock_shear_modulus : G_r of the host rock (Pa)
+    rock_shear_modulus : G_r of the host rock (Pa); infinite for a rigid one
     thickness : H of the damage zone (m)
-    rock_thickness : H_r of the host rock, between the zone and the imposed displacement (m)
+    rock_thickness : H_r of the host rock, between the zone and the imposed displacement (m), 0 too
 
     Returns
     -------
     float or array
         G delta / (H + (G/G_r) H_r) in Pa; G delta / H when G << G_r.
 
+    Raises
+    ------
+    ValueError
+        Outside these ranges, naming the value and the range.
+
     Source: section IV C 2 of the paper.
     """
-    slip = np.asarray(slip, dtype=float)
-    ratio = np.asarray(shear_modulus, dtype=float) / np.asarray(rock_shear_modulus, dtype=float)
-    return shear_modulus * slip / (thickness + ratio * rock_thickness)
+    if isinstance(rock_shear_modulus, float | np.ndarray):
+        # To rounding the same.
+        rock_shear_modulus = np.where(rock_shear_modulus == np.inf, LARGEST, rock_shear_modulus)
+    slip, zone, rock, thickness, beyond = of_one_shape(
+        slip=as_numbers("slip", slip, at_least=-LARGEST, at_most=LARGEST),
+        shear_modulus=as_numbers("shear_modulus", shear_modulus, **POSITIVE),
+        rock_shear_modulus=as_numbers("rock_shear_modulus", rock_shear_modulus, **POSITIVE),
+        thickness=as_numbers("thickness", thickness, **POSITIVE),
+        rock_thickness=as_numbers("rock_thickness", rock_thickness, at_least=0.0, at_most=LARGEST),
+    )
+    return zone * slip / (thickness + zone / rock * beyond)

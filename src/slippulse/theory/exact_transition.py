@@ -7,16 +7,18 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import as_numbers, check_choice, check_kind, check_number
 from ..model.prestress import Prestress
 from ..model.roots import root_between
-from ..model.scene import RELEASES
 from .curve import Curve
-from .front_law import front_speed
-from .fronts import FrontLaw, straight_panel
+from .front_law import LARGEST_RATIO, front_speed
+from .fronts import NARROWEST, FrontLaw, straight_panel
 from .profile import nucleations
 from .riemann import Cones
 from .trailing import TrailingEdge
+
+# Half the panels behind a uniform front that hardly outruns the waves.
+FARTHEST = 10_000
 
 
 class Fronts:
@@ -25,10 +27,10 @@ class Fronts:
     Parameters
     ----------
     prestress : a profile with tau(0) = 1 and one nucleation point
-    damping_ratio : beta/dx, >= 0
+    damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
-    reach : how far from x = 0 times are wanted (units of H)
-    gamma : elasticity ratio whose waves the panels resolve, which are then no shorter than that asks for
+    reach : how far from x = 0 times are wanted (units of H), >= 1e-9
+    gamma : elasticity ratio, >= 0, whose waves the panels resolve, which are then no shorter than that asks for
 
     Attributes
     ----------
@@ -37,39 +39,54 @@ class Fronts:
     Raises
     ------
     ValueError
-        If the profile does not nucleate at x = 0, or nucleates elsewhere too.
+        Outside these ranges; if the profile does not nucleate at x = 0, or nucleates elsewhere too; or if a side needs
+        more than 20000 panels.
     """
 
     def __init__(
         self, prestress: Prestress, damping_ratio: float, release: str, reach: float, gamma: float = 0.0
     ) -> None:
-        check_number("damping_ratio", damping_ratio, at_least=0.0)
-        check_choice("release", release, RELEASES)
-        check_number("reach", reach, above=0.0)
+        law = FrontLaw(prestress, gamma, damping_ratio, release)
+        check_number("reach", reach, at_least=NARROWEST)
         check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
         places = nucleations(prestress)
         if len(places) > 1 or places[0][0] != places[0][1]:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
         self.prestress = prestress
-        law = FrontLaw(prestress, gamma, damping_ratio, release)
+        reach = float(reach)
         right, end, _ = law.rightwards(0.0, 0.0, reach, np.inf)
         left, start, _ = law.mirrored().rightwards(0.0, 0.0, reach, np.inf)
         self.ends = {-1.0: start if start < reach else np.inf, 1.0: end if end < reach else np.inf}
         self.curve = Curve([panel.mirrored() for panel in left[::-1]] + right)
 
     def arrival(self, x) -> np.ndarray:
-        """T(x): when the front reaches x; NaN beyond where it outruns the waves."""
-        return self.curve.arrival(x)
+        """T(x): when the front reaches x; NaN beyond where it outruns the waves.
+
+        Raises
+        ------
+        ValueError
+            If x is not a finite number or an array of them.
+        """
+        return self.curve.arrival(as_numbers("x", x))
 
     def reached(self, time: float, sign: float) -> float:
-        """How far from x = 0 the front on one side (+1 right, -1 left) is at a time."""
+        """How far from x = 0 the front on one side (+1 right, -1 left) is at a time.
+
+        Raises
+        ------
+        ValueError
+            If the time is negative or not before the fronts have gone as far as was asked for, or the side is none.
+        """
+        check_choice("sign", sign, (-1, 1))
         last = 0 if sign < 0.0 else -1
-        if time >= self.curve.edge_times[last]:
-            raise ValueError(
-                f"time: {time!r}; allowed: < {self.curve.edge_times[last]:g}, when the fronts were asked for"
-            )
+        check_number("time", time, at_least=0.0, below=float(self.curve.edge_times[last]))
+        # Where the front starts rounding leaves a time.
+        if time <= float(self.curve.arrival(0.0)):
+            return 0.0
         distance = abs(float(self.curve.edges[last]))
-        return float(root_between(lambda x: float(self.arrival(sign * x)) - time, 0.0, distance, xtol=1e-13))
+        return float(
+            root_between(lambda x: float(self.curve.arrival(sign * x)) - time, 0.0, distance, xtol=1e-13)
+        )
 
 
 def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
@@ -78,22 +95,29 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     Parameters
     ----------
     fronts : the fronts of the scene
-    gamma : elasticity ratio; 0 under a stress boundary
-    y, time : the point; 0 where no front has been
+    gamma : elasticity ratio, >= 0, whose waves the panels of the fronts must resolve; 0 under a stress boundary
+    y, time : the point, finite; 0 where no front has been
 
     Raises
     ------
     ValueError
-        If the point's past leaves the part of the fronts that outruns the waves.
+        Outside these ranges, or if the point's past leaves the part of the fronts that outruns the waves.
 
     Source: Riemann's solution (`riemann`).
     """
-    if not float(fronts.arrival(y)) < time:
+    check_kind("fronts", fronts, Fronts)
+    check_number("gamma", gamma, at_least=0.0)
+    check_number("y", y)
+    check_number("time", time)
+    if not float(fronts.curve.arrival(y)) < time:
         return 0.0
-    cones = Cones(fronts.curve, gamma, np.array([float(y)]), np.array([float(time)]))
+    cones = Cones(fronts.curve, float(gamma), np.array([float(y)]), np.array([float(time)]))
     if not (cones.left.known[0] and cones.right.known[0]):
         raise ValueError(f"time: {time!r}; allowed: earlier, the cone leaves the part that outruns the waves")
-    return float(cones.slip_velocity()[0])
+    velocity = float(cones.slip_velocity()[0])
+    if not np.isfinite(velocity):
+        raise ValueError(f"gamma: {gamma!r}; allowed: numbers whose waves the panels of the fronts resolve")
+    return velocity
 
 
 @dataclass(frozen=True)
@@ -113,20 +137,22 @@ def exact_transition_displacement(
     ----------
     prestress : a symmetric profile, tau(0) = 1, positive everywhere
     gamma : elasticity ratio, > 0
-    damping_ratio : beta/dx, >= 0
+    damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
     Raises
     ------
     ValueError
-        If the profile is not symmetric and positive, or nucleates elsewhere too.
+        Outside these ranges; if the profile is not symmetric and positive, or nucleates elsewhere too; or if a front
+        needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
 
     Source: the first zero of du/dt at x = 0; symmetric scenes stick there first. For others, `Rupture`.
     """
+    check_kind("prestress", prestress, Prestress)
     check_number("gamma", gamma, above=0.0)
     if not prestress.symmetric or float(prestress.level(np.asarray(1e300))) <= 0.0:
         raise ValueError("prestress: not symmetric and positive; allowed: equal levels > 0 on both sides")
-    return _first_stick_at_centre(prestress, gamma, damping_ratio, release)
+    return _first_stick_at_centre(prestress, float(gamma), damping_ratio, release)
 
 
 def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTransition:
@@ -160,7 +186,7 @@ def uniform_transition_time(
     ----------
     tau0 : pre-stress, in (0, 1)
     gamma : elasticity ratio, > 0
-    damping_ratio : beta/dx, >= 0
+    damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
     Raises
@@ -173,9 +199,13 @@ def uniform_transition_time(
     """
     check_number("tau0", tau0, above=0.0, below=1.0)
     check_number("gamma", gamma, above=0.0)
+    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
     rate = 1.0 / float(front_speed(tau0, damping_ratio, release))
-    reach = 12.0 / (1.0 - rate**2)
+    # What is 0 in the velocity, a factor of it does not change.
+    tau = max(tau0, 1e-9)
+    # Beyond where its waves come from, a slow front need not be known.
+    reach = 12.0 / max(1.0 - rate**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
-    curve = Curve([straight_panel(a, b, rate, tau0) for a, b in pairwise(edges.tolist())])
+    curve = Curve([straight_panel(a, b, rate, tau) for a, b in pairwise(edges.tolist())])
     edge = TrailingEdge(curve, 1.0, 10.0, np.array([0.0]), one_side=True)
-    return float(edge.stick_time(np.array([0.0]))[0]) / float(np.sqrt(gamma))
+    return float(edge.stick_time(np.array([0.0]))[0]) / float(np.sqrt(float(gamma)))

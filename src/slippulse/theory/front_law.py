@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number, short_repr
+from ..model.checks import as_numbers, check_choice, check_number, of_one_shape
 from ..model.scene import RELEASES
 from .speed_solver import SLOWEST, fastest, first_guess, in_chunks, log_excess, root
 from .wiener_hopf import log_prestress
@@ -19,13 +19,25 @@ from .wiener_hopf import log_prestress
 LARGEST_RATIO = 1e100
 # So near 1, in 1 - tau_0, rounding of the quadrature is felt and the first terms in 1/v are better.
 NEARLY_ONE = {"total": 1e-10, "elastic": 1e-13}
+# With leaf springs, where no reference takes the rounding out of 1 - M_+(0), it is felt from here on.
+NEARLY_ONE_WITH_SPRINGS = 1e-7
 # Where the pre-stress is looked at for its least, and how often the place is narrowed.
 SCAN, NARROWINGS = 64, 6
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper)."""
-    return 1.0 / np.sqrt(1.0 - np.asarray(tau0, dtype=float) ** 2)
+    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
+
+    Parameters
+    ----------
+    tau0 : float or array, in [0, 1)
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, naming the value and the range.
+    """
+    return _undamped(as_numbers("tau0", tau0, at_least=0.0, below=1.0))
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
@@ -54,10 +66,9 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
     """
     check_choice("release", release, RELEASES)
-    tau, ratio = np.broadcast_arrays(_numbers("tau0", tau0), _numbers("damping_ratio", damping_ratio))
-    _check("tau0", tau, above=0.0, below=1.0)
-    _check("damping_ratio", ratio, at_least=0.0, at_most=LARGEST_RATIO)
-    out = np.array(front_speed_undamped(tau))
+    tau = as_numbers("tau0", tau0, above=0.0, below=1.0)
+    tau, ratio = of_one_shape(tau0=tau, damping_ratio=_ratios(damping_ratio))
+    out = np.array(_undamped(tau))
     damped = ratio > 0.0
     near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
     out[near] = fastest(tau[near], ratio[near], release)
@@ -82,9 +93,8 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
         Outside the domain, naming the value and the range.
     """
     check_choice("release", release, RELEASES)
-    speeds, ratio = np.broadcast_arrays(_numbers("speed", speed), _numbers("damping_ratio", damping_ratio))
-    _check("speed", speeds, above=1.0, at_most=1e100)
-    _check("damping_ratio", ratio, at_least=0.0, at_most=LARGEST_RATIO)
+    speeds = as_numbers("speed", speed, above=1.0, at_most=1e100)
+    speeds, ratio = of_one_shape(speed=speeds, damping_ratio=_ratios(damping_ratio))
     excess = speeds - 1.0
     out = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
     damped = ratio > 0.0
@@ -115,7 +125,8 @@ def lattice_front_speed(
         with tau_0.
 
     Source: the lattice symbol with leaf springs (`wiener_hopf`); without damping it has a closed form, and as
-    gamma dx^2 -> 0 it tends to `front_speed`. Sticking behind the front is left out (module docstring).
+    gamma dx^2 -> 0 it tends to `front_speed`. Sticking behind the front is left out (module docstring). Relative error
+    below 1e-6 next to tau_0 = 1 for gamma dx^2 (1 + beta/dx) up to 10.
     """
     check_number("tau0", tau0, above=0.0, below=1.0)
     check_number("gamma", gamma, above=0.0)
@@ -128,6 +139,10 @@ def lattice_front_speed(
         return float(front_speed(tau0, damping_ratio, release))
     if springs > 1e30:
         raise _no_front(tau0, 1.0, gamma, dx, damping_ratio)
+    if 1.0 - tau0 < NEARLY_ONE_WITH_SPRINGS and damping_ratio > 0.0:
+        speed = front_speed(tau0, damping_ratio, release)
+        if springs * (1.0 + damping_ratio) < 1e-5 * speed**2:
+            return _nearly_free(speed, springs, damping_ratio if release == "total" else 0.0)
     ratio = np.array([float(damping_ratio)])
     low, least = _least_prestress(ratio[0], springs, release)
     if tau0 <= least:
@@ -162,7 +177,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     check_number("tau0", tau0, above=0.0, below=1.0)
     check_number("gamma", gamma, at_least=0.0)
     check_number("beta", beta, above=0.0)
-    springs = (np.sqrt(gamma) * beta * (1.0 - tau0) / tau0) ** 2
+    springs = (np.sqrt(float(gamma)) * beta * (1.0 - tau0) / tau0) ** 2
     # v > 1 as it stands: 1/(1 - tau) > 1 + springs.
     if not springs < tau0 / (1.0 - tau0):
         raise ValueError(
@@ -190,6 +205,15 @@ def _least_prestress(ratio: float, springs: float, release: str) -> tuple[float,
     return first, float(np.exp(levels[at]))
 
 
+def _nearly_free(speed: float, springs: float, damping: float) -> float:
+    """A fast front's speed with leaf springs, from that without, to first order in g/v^2.
+
+    The factor of g/v^2 is 1/24 without damping, from the closed form, and 1/6 for b v >> 1, found by quadrature.
+    """
+    share = damping * speed
+    return speed * (1.0 - springs / speed**2 * (share / 6.0 + 1.0 / 24.0) / (share + 1.0))
+
+
 def _no_front(tau0: float, least: float, gamma: float, dx: float, ratio: float) -> ValueError:
     return ValueError(
         f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
@@ -197,18 +221,9 @@ def _no_front(tau0: float, least: float, gamma: float, dx: float, ratio: float) 
     )
 
 
-def _numbers(key: str, values) -> np.ndarray:
-    """An array of numbers, or one line that names what is none."""
-    try:
-        return np.asarray(values, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"{key}: {short_repr(values)}; allowed: a number, or an array of them") from None
+def _undamped(tau: np.ndarray) -> np.ndarray:
+    return 1.0 / np.sqrt(1.0 - tau**2)
 
 
-def _check(key: str, values: np.ndarray, **bounds: float) -> None:
-    """`check_number` on the extremes of an array, which stand for all of it."""
-    if values.size == 0:
-        return
-    bad = values[~np.isfinite(values)]
-    for value in (bad.flat[0],) if bad.size else (values.min(), values.max()):
-        check_number(key, float(value), **bounds)
+def _ratios(damping_ratio) -> np.ndarray:
+    return as_numbers("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)

@@ -8,13 +8,12 @@ until the release, and no block behind it comes to rest before the next is relea
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import as_numbers, check_choice, check_number
 from ..model.scene import RELEASES
 
 # Substeps of a period at which velocity and stress are looked at.
@@ -53,7 +52,6 @@ class SteadyFront:
         return bool(np.all(self.ahead[:-1] < 1.0) and self.first_rest > 1.0)
 
 
-@lru_cache(maxsize=64)
 def steady_front(
     speed: float, damping_ratio: float, springs: float = 0.0, release: str = "total", blocks: int = BLOCKS
 ) -> SteadyFront:
@@ -61,11 +59,11 @@ def steady_front(
 
     Parameters
     ----------
-    speed : in wave speeds, > 1
+    speed : in wave speeds, > 1 and <= 1e100
     damping_ratio : beta/dx, 0 to 100
-    springs : gamma dx^2, >= 0
+    springs : gamma dx^2, 0 to 100
     release : "total" or "elastic"
-    blocks : kept behind the front, >= 10; many more than b v/(v^2 - 1), the layer through which damping looks ahead
+    blocks : kept behind the front, 10 to 500; many more than b v/(v^2 - 1), the layer through which damping looks ahead
 
     Raises
     ------
@@ -74,15 +72,21 @@ def steady_front(
 
     Source: module docstring.
     """
-    check_number("speed", speed, above=1.0)
+    check_number("speed", speed, above=1.0, at_most=1e100)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=100.0)
-    check_number("springs", springs, at_least=0.0)
+    check_number("springs", springs, at_least=0.0, at_most=100.0)
     check_choice("release", release, RELEASES)
-    check_number("blocks", blocks, at_least=10)
+    check_number("blocks", blocks, whole=True, at_least=10, at_most=500)
+    return _steady_front(float(speed), float(damping_ratio), float(springs), release, int(blocks))
+
+
+@lru_cache(maxsize=64)
+def _steady_front(
+    speed: float, damping_ratio: float, springs: float, release: str, count: int
+) -> SteadyFront:
     # Slow to load, and needed here only.
     from scipy.linalg import expm
 
-    count = int(blocks)
     # Block 0 has just been released; the one ahead of it is stuck, and behind the last slip has no curvature.
     bend = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
     bend[-1, -3:] = bend[-2, -3:]
@@ -116,19 +120,26 @@ def steady_front(
     )
 
 
-def admissibility_table(
-    speeds: Iterable[float], ratios: Iterable[float], springs: Iterable[float], release: str = "total"
-) -> list[dict]:
+def admissibility_table(speeds, ratios, springs, release: str = "total") -> list[dict]:
     """One row for each speed, ratio and gamma dx^2: the pre-stress, the largest stress ahead before the release, the
     first rest behind the front in blocks, and whether the front is admissible.
 
     Parameters
     ----------
-    speeds, ratios, springs : values of v, beta/dx and gamma dx^2, as in `steady_front`
+    speeds, ratios, springs : values of v, beta/dx and gamma dx^2, as in `steady_front`; arrays or lists
     release : "total" or "elastic"
+
+    Raises
+    ------
+    ValueError
+        Outside their ranges, naming the key and the value.
     """
     rows = []
-    for g in springs:
+    speeds, ratios = (
+        as_numbers("speeds", speeds).ravel().tolist(),
+        as_numbers("ratios", ratios).ravel().tolist(),
+    )
+    for g in as_numbers("springs", springs).ravel().tolist():
         for b in ratios:
             for v in speeds:
                 front = steady_front(v, b, g, release)

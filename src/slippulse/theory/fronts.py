@@ -7,10 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from ..model.checks import check_kind, check_number
 from ..model.prestress import Prestress
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel
 from .profile import Piece, edges_of_features, mirrored, pieces, smooth
-from .slowness import slowness
+from .slowness import check_law, slowness
 
 # Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
 RESOLVED = 1e-10
@@ -20,6 +21,10 @@ LONGEST = 2.0
 LONGEST_AT_REST = 4.0
 LONGEST_WITHOUT_SPRINGS = 8.0
 MOST_PANELS = 20_000
+# Slow fronts into less are not followed.
+LOWEST = -1e20
+# How many times as many panels, positions and times may be asked for.
+FINEST = 10
 
 
 @lru_cache(maxsize=256)
@@ -30,15 +35,28 @@ def _slowness(tau: bytes, shape: tuple[int, ...], damping_ratio: float, release:
 
 
 class FrontLaw:
-    """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma."""
+    """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma.
+
+    Raises
+    ------
+    ValueError
+        If a value is outside its domain (`Rupture`), or panels would be too many.
+    """
 
     def __init__(
         self, prestress: Prestress, gamma: float, damping_ratio: float, release: str, refinement: int = 1
     ) -> None:
-        self.prestress, self.gamma = prestress, gamma
-        self.damping_ratio, self.release, self.refinement = damping_ratio, release, refinement
-        self.pieces = pieces(prestress)
+        check_kind("prestress", prestress, Prestress)
+        check_number("gamma", gamma, at_least=0.0)
+        check_law(damping_ratio, release)
+        check_number("refinement", refinement, whole=True, at_least=1, at_most=FINEST)
+        self.prestress, self.gamma = prestress, float(gamma)
+        self.damping_ratio, self.release, self.refinement = float(damping_ratio), release, int(refinement)
         self.features = edges_of_features(prestress)
+        levels = (prestress.left, prestress.right, *(level for _, level in prestress.steps))
+        lowest = float(np.min(prestress(self.features), initial=min(levels)))
+        check_number("lowest prestress", lowest, at_least=LOWEST)
+        self.pieces = pieces(prestress)
 
     def mirrored(self) -> FrontLaw:
         """The same at -x."""
@@ -78,11 +96,6 @@ class FrontLaw:
             if np.isinf(end) and start >= far:
                 # Uniform from here on.
                 rate = float(self.slowness(np.array(piece.level)))
-                if (until - time) > MOST_PANELS * rate * self.longest(piece.level):
-                    raise ValueError(
-                        f"prestress: level {piece.level!r}; allowed: fronts that stay within"
-                        f" {MOST_PANELS} panels until {until:g}"
-                    )
                 end = start + (until - time) / rate * (1.0 + 1e-9) + 1e-9
             elif np.isinf(end):
                 end = max(far, np.nextafter(start, np.inf))
@@ -94,6 +107,8 @@ class FrontLaw:
         """Panels of a front that goes right over part of one piece, from a time on."""
         inner = self.features[(self.features > start) & (self.features < end)]
         longest = self.longest(level)
+        if (end - start) * self.refinement > MOST_PANELS * longest:
+            raise self._too_many(level, start, end)
         rough = np.concatenate([[start], inner, [end]])
         edges = np.unique(
             np.concatenate(
@@ -116,6 +131,8 @@ class FrontLaw:
             split = (tails * size > RESOLVED) & (size > NARROWEST)
             if not split.any():
                 break
+            if edges.size > MOST_PANELS:
+                raise self._too_many(level, start, end)
             edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
         starts = time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (rate @ WEIGHTS))])
         within = (half * rate) @ CUMULATIVE.T
@@ -129,6 +146,13 @@ class FrontLaw:
             )
             for k in range(len(x))
         ]
+
+    def _too_many(self, level: float, start: float, end: float) -> ValueError:
+        return ValueError(
+            f"prestress: level {level!r} over a distance of {end - start:g} at gamma = {self.gamma:g}, damping_ratio ="
+            f" {self.damping_ratio:g}; allowed: fronts that stay within {MOST_PANELS} panels, of"
+            f" {self.longest(level):.3g} at most"
+        )
 
 
 def straight_panel(left: float, right: float, rate: float, tau: float) -> Panel:

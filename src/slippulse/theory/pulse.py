@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.checks import check_number
+from ..model.checks import as_numbers, check_number
 from .front_law import front_speed_undamped
 
 
@@ -41,8 +42,14 @@ class SteadyPulse:
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slip, slip velocity and slip acceleration at xi: at rest ahead of the front, stuck behind the pulse."""
-        xi = np.asarray(xi, dtype=float)
+        """Slip, slip velocity and slip acceleration at xi: at rest ahead of the front, stuck behind the pulse.
+
+        Raises
+        ------
+        ValueError
+            If xi is not a finite number or an array of them.
+        """
+        xi = as_numbers("xi", xi)
         p, q, v = self.growth, self.wavenumber, self.speed
         inside = (xi <= 0.0) & (xi >= -self.width)
         y = np.where(inside, xi, 0.0)
@@ -102,6 +109,9 @@ def _pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
     slip = tau0 / gamma * (1.0 + np.exp(-p * width))
     modulus = np.hypot(p, q)
     peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
+    # Floats of Python overflow without a word.
+    if not (0.0 < width < math.inf and 0.0 < slip < math.inf and 0.0 < peak < math.inf):
+        raise ArithmeticError
     return SteadyPulse(
         tau0=float(tau0),
         gamma=float(gamma),
@@ -118,6 +128,16 @@ def _pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     """The paper's pulse: no damping and v = 1/sqrt(1 - tau_0^2), so that the peak velocity is 1/sqrt(gamma).
+
+    Parameters
+    ----------
+    tau0 : pre-stress, in (0, 1)
+    gamma : elasticity ratio, > 0
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, naming the value and the range.
 
     Source: section III A and appendix C of the paper.
     """

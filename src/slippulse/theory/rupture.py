@@ -7,20 +7,22 @@ the fronts the undamped equation has Riemann's solution (`riemann`), up to the t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number
+from ..model.checks import as_numbers, check_choice, check_number, of_one_shape, short_repr
 from ..model.prestress import Prestress
 from ..model.roots import root_between
-from ..model.scene import RELEASES
-from .fronts import FrontLaw
+from .fronts import NARROWEST, FrontLaw
 from .part import Part
 from .spreading import spread
 
 FIELDS = ("slip_velocity", "slip", "strain")
+# Of a map, which takes 100 bytes each.
+MOST_POINTS = 10**7
 
 
 @dataclass(frozen=True)
@@ -51,17 +53,18 @@ class Rupture:
     gamma : float
         Elasticity ratio, > 0; or 0 for the stress boundary.
     damping_ratio : float
-        beta/dx, >= 0, at which dx -> 0.
+        beta/dx, from 0 to 1e6, at which dx -> 0.
     release : "total" or "elastic"
     duration : float
-        Time up to which the rupture is wanted, > 0.
+        Time up to which the rupture is wanted, >= 1e-9.
     refinement : int
-        Panels are cut into so many more, to see what the result owes to them.
+        Panels are cut into so many more, to see what the result owes to them; 1 to 10.
 
     Raises
     ------
     ValueError
-        If a value is outside its domain, or the pre-stress nowhere reaches 1.
+        If a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than 20000 panels.
+        Of every method: if a position or a time is not a finite number (where arrays are taken, an array of them).
 
     Source: derived for this project; verified against the lattice, which tends to it at first order in dx.
     """
@@ -70,17 +73,11 @@ class Rupture:
         self, prestress: Prestress, gamma: float, damping_ratio: float = 0.0, release: str = "total",
         duration: float = 10.0, refinement: int = 1,
     ) -> None:  # fmt: skip
-        if not isinstance(prestress, Prestress):
-            raise ValueError(f"prestress: {prestress!r}; allowed: a Prestress")
-        check_number("gamma", gamma, at_least=0.0)
-        check_number("damping_ratio", damping_ratio, at_least=0.0)
-        check_choice("release", release, RELEASES)
-        check_number("duration", duration, above=0.0)
-        check_number("refinement", refinement, at_least=1)
-        self.prestress, self.gamma = prestress, float(gamma)
-        self.damping_ratio, self.release, self.duration = float(damping_ratio), release, float(duration)
-        self.refinement = int(refinement)
-        self.law = FrontLaw(prestress, self.gamma, self.damping_ratio, release, self.refinement)
+        check_number("duration", duration, at_least=NARROWEST)
+        self.law = FrontLaw(prestress, gamma, damping_ratio, release, refinement)
+        self.prestress, self.gamma = prestress, self.law.gamma
+        self.damping_ratio, self.release, self.duration = self.law.damping_ratio, release, float(duration)
+        self.refinement = self.law.refinement
         self.stretches, stopped = spread(self.law, self.duration)
         self._stopped = [Limit(*point) for point in stopped]
         self._parts = [Part(self.law, stretch, self.duration) for stretch in self.stretches if stretch.panels]
@@ -103,7 +100,7 @@ class Rupture:
 
     def release_time(self, x) -> np.ndarray:
         """T(x): when the first front reaches x; NaN where none does until ``duration``."""
-        x = np.asarray(x, dtype=float)
+        x = as_numbers("x", x)
         out = np.full(x.shape, np.nan)
         for part in self._parts:
             time = part.curve.arrival(x)
@@ -119,6 +116,7 @@ class Rupture:
             If the time is outside (0, duration], or x has not slipped by then.
         """
         check_number("time", time, above=0.0, at_most=self.duration)
+        check_number("x", x)
         part = self._part_at(x)
         if part is None or not float(part.curve.arrival(np.array(x))) <= time:
             raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
@@ -128,7 +126,7 @@ class Rupture:
 
     def stick_time(self, x) -> np.ndarray:
         """When x sticks; NaN where it does not until ``duration``, or where the construction ends before."""
-        x = np.asarray(x, dtype=float)
+        x = as_numbers("x", x)
         places, back = np.unique(self._side(x), return_inverse=True)
         out = np.full(places.shape, np.nan)
         for part in self._parts:
@@ -142,7 +140,7 @@ class Rupture:
 
         Final as long as `limit` is None: in the future of that point blocks may slip again.
         """
-        x = np.asarray(x, dtype=float)
+        x = as_numbers("x", x)
         stick = self.stick_time(x)
         slid = np.isfinite(self.release_time(x))
         known = np.where(np.isfinite(stick), stick, self.duration)
@@ -212,14 +210,19 @@ class Rupture:
         return self._points(("strain",), x, time)["strain"]
 
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-        """Fields on a grid of times and positions: arrays [time, position]."""
+        """Fields on a grid of times and positions, at most 1e7 points: arrays [time, position]."""
+        if not isinstance(fields, Sequence) or isinstance(fields, str):
+            raise ValueError(f"fields: {short_repr(fields)}; allowed: a list of {', '.join(FIELDS)}")
         for name in fields:
             check_choice("fields", name, FIELDS)
-        x, time = np.asarray(positions, dtype=float), np.asarray(times, dtype=float)
+        x, time = as_numbers("positions", positions), as_numbers("times", times)
+        if x.ndim != 1 or time.ndim != 1:
+            raise ValueError("times, positions: not one-dimensional; allowed: one-dimensional arrays")
+        check_number("times and positions", x.size * time.size, at_most=MOST_POINTS)
         return self._points(tuple(fields), x[None, :], time[:, None])
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
-        x, time = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(time, dtype=float))
+        x, time = of_one_shape(x=as_numbers("x", x), time=as_numbers("time", time))
         if np.any(time > self.duration):
             raise ValueError(f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}")
         side = self._side(x)
@@ -273,7 +276,7 @@ class Rupture:
 
     def horizon(self, x) -> np.ndarray:
         """From when on the construction says nothing at x: everything then is NaN."""
-        x = np.asarray(x, dtype=float)
+        x = as_numbers("x", x)
         out = np.full(x.shape, np.inf)
         if self._ends:
             ends = np.array([(end.x, end.time) for end in self._ends])
