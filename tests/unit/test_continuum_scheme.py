@@ -92,7 +92,7 @@ def test_a_scene_that_releases_nothing_is_an_empty_run():
     lattice, exact = (
         sp.simulate(sp.Scene(scheme=name, **scene), samples) for name in ("localised", "continuum")
     )
-    assert exact.equals(lattice)
+    assert exact.equals(lattice) and lattice.attrs["run_flags"] == "nothing_released"
     for name in ("releases", "sticks", "stopped_because", "run_flags", "pulse_blocks"):
         assert exact.attrs[name] == lattice.attrs[name]
     assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene["duration"]

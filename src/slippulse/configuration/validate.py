@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -59,20 +61,20 @@ def validate(
             f"scenes.{name}", scene_simulation(scene, config["model"]), config, accuracy
         )
     if not config.get("allow_large", False):
-        problems += _study_problems(config["studies"])
+        problems += _study_problems(json.dumps(config["studies"]))
     if problems:
         raise ConfigError(format_problems(problems))
 
 
-def _study_problems(studies: Mapping) -> list[str]:
-    """Which studies cost too much."""
+@lru_cache(maxsize=4)
+def _study_problems(studies: str) -> tuple[str, ...]:
+    """Which studies cost too much; they are given as JSON."""
     try:
-        check_affordable(
-            {key: (scenes, [None] * len(scenes)) for key, scenes in study_scenes(studies).items()}
-        )
+        parts = study_scenes(json.loads(studies))
+        check_affordable({key: (scenes, [None] * len(scenes)) for key, scenes in parts.items()})
     except ValueError as error:
-        return str(error).splitlines()
-    return []
+        return tuple(str(error).splitlines())
+    return ()
 
 
 def _simulation_problems(key: str, simulation: Mapping, config: Mapping, accuracy: Mapping) -> list[str]:

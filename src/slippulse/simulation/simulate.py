@@ -99,6 +99,8 @@ def simulate(
 def judge(scene: Scene, run: LatticeRun | ContinuumRun) -> dict:
     """Flags of a finished run: what would make its numbers something else than the model's."""
     pulse_blocks = narrowest_pulse(scene, run)
+    if run.numbers["releases"] == 0:
+        return {"pulse_blocks": pulse_blocks, "run_flags": "nothing_released"}
     if scene.scheme == "continuum":
         return {
             "pulse_blocks": pulse_blocks,

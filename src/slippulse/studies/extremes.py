@@ -273,7 +273,9 @@ def peak(settings: Mapping, window: float, tolerances: Mapping) -> Iterator[Edge
 
     def released(value: float) -> Measured:
         run = simulate(scene(even(LEVEL, peak=value), GAMMA, RATIO, rule["dx"], rule["duration"]))
-        return Measured(0.0, float(run.attrs["releases"]), run.attrs["run_flags"], run.attrs["block_updates"])
+        # That nothing is released is flagged, and right here.
+        flags = run.attrs["run_flags"].replace("nothing_released", "")
+        return Measured(0.0, float(run.attrs["releases"]), flags, run.attrs["block_updates"])
 
     for below in rule["apart"]:
         yield Edge("peak", f"1 - {below:g}", "releases", "right", 0.0, partial(released, 1.0 - below))
