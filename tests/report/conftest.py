@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 from slippulse.claims.rules import within
 from slippulse.configuration.expand import expand, resolve
+from slippulse.data.origin import configured_by
 from slippulse.data.store import save_table
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.report.build import build_report
@@ -179,7 +180,13 @@ def make_inputs(project, shipped, pictures, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def build(tmp_path_factory):
+def digest() -> str:
+    """Of the configuration behind a report."""
+    return "0123456789abcdef"
+
+
+@pytest.fixture(scope="session")
+def build(tmp_path_factory, digest):
     """A function that builds a report and returns its files' paths and its ledger."""
 
     def made(inputs: Inputs) -> SimpleNamespace:
@@ -189,7 +196,8 @@ def build(tmp_path_factory):
             "pdf": folder / "replication.pdf",
             "verdicts": folder / "verdicts.yaml",
         }
-        build_report(inputs, outputs)
+        with configured_by(digest):
+            build_report(inputs, outputs)
         return SimpleNamespace(
             **outputs, inputs=inputs, claims={claim["id"]: claim for claim in inputs.claims}
         )

@@ -68,6 +68,11 @@ def test_the_html_is_a_page_with_one_title_and_a_way_back(html):
     assert html.index('href="#content"') < html.index('href="../index.html"') < html.index('id="TOC"')
 
 
+def test_both_carry_the_digest_of_their_configuration(html, report, digest):
+    assert f'<meta name="configuration" content="{digest}">' in html
+    assert PdfReader(report.pdf).metadata["/Keywords"] == f"configuration {digest}"
+
+
 def test_its_figures_have_anchors_and_enlarge(html, report):
     names = re.findall(r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img [^>]*></a>', html)
     assert sorted(names) == sorted((name, name) for name in report.inputs.figures)

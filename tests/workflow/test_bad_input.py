@@ -128,7 +128,17 @@ CASES = {
     "peak below 1 everywhere": (
         OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: 0.5, right: 0.5, peak: 0.9}]")
         + "duration: {time: 1.0}}}",
-        ["mine.profiles.peak: 0.9", "at most 0.9", "reaches 1 somewhere"],
+        ["mine.profiles.peak: 0.9", "at most 0.9 ", "reaches 1 somewhere"],
+    ),
+    "a dent that reaches the peak": (
+        OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: -0.2, right: 0.0, bumps: [[-3.0, -0.8, 0.7]]}]")
+        + "duration: {time: 1.0}}}",
+        ["mine.profiles.peak: 1", "at most 0.9999178", "reaches 1 somewhere"],
+    ),
+    "a bump between two blocks": (
+        OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: 0, right: 0, peak: 0, bumps: [[0.003, 1, 1.0e-4]]}]")
+        + "duration: {time: 1.0}}}",
+        ["mine.profiles.peak: 0,", "reaches 1 somewhere"],
     ),
     "balance distances of positive levels": (
         STEADY + "{duration: {time: null, balance_distances: 2.0}}}",

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..model.checks import ConfigError
+from ..model.scene import Scene
 from .expand import accuracy_of, check_scheme, expand, resolve
 from .limits import (
     check_affordable,
@@ -105,13 +106,13 @@ def _simulation_problems(key: str, simulation: Mapping, config: Mapping, accurac
     return []
 
 
-def _check_nucleation(scenes: Sequence) -> None:
-    """Refuse a profile that reaches the threshold nowhere, so that nothing ever moves."""
-    for profile in dict.fromkeys(scene.prestress for scene in scenes):
-        if profile.peak < 1.0 and not profile.largest() >= 1.0:
+def _check_nucleation(scenes: Sequence[Scene]) -> None:
+    """Refuse a profile that reaches the threshold at no block, so that nothing ever moves."""
+    for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
+        if (profile.bumps or profile.peak < 1.0) and not (largest := profile.largest(dx)) >= 1.0:
             raise ValueError(
-                f"profiles.peak: {profile.peak:g}, and the pre-stress is at most {profile.largest():.4g}; allowed: a"
-                " pre-stress that reaches 1 somewhere, or nothing moves"
+                f"profiles.peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
+                f" (dx = {dx:g}); allowed: a pre-stress that reaches 1 somewhere, or nothing moves"
             )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from pathlib import Path
 
 import yaml
@@ -36,7 +37,7 @@ def build_report(inputs: Inputs, outputs: Mapping[str, str | Path]) -> None:
     with ThreadPoolExecutor() as pool:
         # Both wait for processes of their own, so they overlap.
         renderings = [
-            pool.submit(render, text, inputs.manuscript, outputs[kind])
+            pool.submit(copy_context().run, render, text, inputs.manuscript, outputs[kind])
             for kind, render in (("html", render_html), ("pdf", render_pdf))
         ]
     for rendering in renderings:

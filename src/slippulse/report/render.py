@@ -13,6 +13,7 @@ import matplotlib
 import typst
 
 from ..data.files import write_whole
+from ..data.origin import configuration
 from ..texts.pandoc import pandoc
 from .page import as_page
 
@@ -96,6 +97,7 @@ def _pandoc(text: str, manuscript: Path, options: list[str]) -> str:
         "--citeproc",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",
+        f"--variable=configuration:{configuration()}",
     ]
     return pandoc(text, common + options)
 
