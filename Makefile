@@ -28,7 +28,7 @@ fi
 endef
 
 # What Snakemake would stop at late, or never: jobs find no interpreter below a folder with such a name.
-CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
+CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$\`]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
 CHECK_COUNT = case "$$$(1)" in ""|*[!0-9]*|0*) echo "$(1): $$$(1); allowed: a whole number from 1 on, such as $(1)=2" >&2; exit 1;; esac
 CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac

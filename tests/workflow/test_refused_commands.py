@@ -115,11 +115,28 @@ def test_an_overlay_that_is_a_pipe_is_not_waited_for(make, tmp_path):
 
 
 @pytest.mark.workflow
-@pytest.mark.parametrize("kills", ["", "0", "-1", "1.5", "1; touch written"])
-def test_make_checks_how_many_kills(make, tmp_path, kills):
-    said = make("faults", f"KILLS={kills}")
-    assert f"KILLS: {kills}; allowed: a whole number from 1 on" in said
-    assert not (tmp_path / "written").exists()
+@pytest.mark.parametrize(
+    ("command", "name", "value", "allowed"),
+    [
+        *(("faults", "KILLS", value, "a whole number") for value in ("", "0", "-1", "1.5", "1; touch written")),
+        *(("replicate", "CORES", value, "a whole number") for value in ("0", "-1", "08", "all")),
+        *(("replicate", "ALLOW_LARGE", value, "true or false") for value in ("NO", "maybe")),
+    ],
+)  # fmt: skip
+def test_make_checks_its_options(make, tmp_path, command, name, value, allowed):
+    assert f"{name}: {value}; allowed: {allowed}" in make(command, f"{name}={value}")
+    assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
+
+
+@pytest.mark.workflow
+@pytest.mark.parametrize("name", ["a b", "a'b", 'a"b', "a$b", "a`b", "a\\b"])
+def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
+    folder = tmp_path / name
+    folder.mkdir()
+    for part in ("Makefile", "requirements.lock", "requirements-build.lock", "pyproject.toml"):
+        (folder / part).symlink_to((tmp_path / part).resolve())
+    assert "path has a space or a quote" in make("-C", str(folder), "setup")
+    assert not (folder / ".venv").exists()
 
 
 # Commands with too few or wrong arguments, the exit code, and what is said.
