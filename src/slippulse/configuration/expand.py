@@ -198,7 +198,9 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
         try:
             return float(value * abs(prestress_balance_position(profile)))
         except ValueError as error:
-            raise ValueError(f"duration.balance_distances: {value} times |x_minus|, but {error}") from None
+            # In the words of the configuration, whose keys are levels or profiles.
+            reason = str(error).removeprefix("prestress.")
+            raise ValueError(f"duration.balance_distances: {value} times |x_minus|, but {reason}") from None
     return float(value)
 
 
