@@ -197,7 +197,7 @@ CASES = {
     ),
     "balance that does not exist": (
         OWN_STRESS + "right: [0.2], duration: {balance_distances: 2.0}}}",
-        ["prestress.right: 0.2", "allowed: 0"],
+        ["but right: 0.2", "allowed: 0"],
     ),
     # the lattice
     "peak narrower than the spacing": (
