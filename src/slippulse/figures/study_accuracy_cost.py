@@ -103,8 +103,10 @@ def draw_marks(axes, rows: pd.DataFrame, across: str, name: str) -> None:
         axes.annotate(
             preset.preset,
             (getattr(preset, across), getattr(preset, name)),
-            xytext=(4, 6),
+            # On the side that is empty.
+            xytext=(-4, 6) if name == "seconds" else (4, 6),
             textcoords="offset points",
+            ha="right" if name == "seconds" else "left",
             fontsize=7,
         )
     axes.set_xscale("log")
