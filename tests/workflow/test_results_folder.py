@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -130,6 +131,19 @@ def test_an_edited_measurement_is_made_anew_with_a_word_before_anything_is_built
         record for record in read_records(folder / "results") if "uncertainties/mine.csv" in record.outputs
     )
     assert study.inputs["measurements/mine.csv"] == hashlib.sha256(before).hexdigest()
+
+
+def test_a_page_that_a_killed_run_has_left_behind_is_marked_by_the_next(folder):
+    """Its data were made anew, and the run ended before the page and before it could say so."""
+    data, record = folder / "results/data/one.nc", folder / "results/records/data/one.nc.json"
+    times = data.stat().st_mtime_ns
+    data.write_bytes(data.read_bytes() + b"other")
+    os.utime(data, ns=(times, times))
+    content = json.loads(record.read_text(encoding="utf-8"))
+    content["outputs"]["data/one.nc"] = hashlib.sha256(data.read_bytes()).hexdigest()
+    record.write_text(json.dumps(content), encoding="utf-8")
+    run(folder, "--", NUMBERS)
+    assert "Out of date" in (folder / PAGE).read_text(encoding="utf-8")
 
 
 def test_another_configuration_of_one_target_marks_the_page_it_leaves_behind(folder):

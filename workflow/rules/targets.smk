@@ -74,7 +74,10 @@ def refuse_dear_targets():
 
 
 def refuse_changed_files():
-    """Nothing is built on a file that was changed since its job wrote it, or that none wrote: it goes, with a word."""
+    """Nothing is built on a file that was changed since its job wrote it, or that none wrote: it goes, with a word.
+
+    Pages that a killed run has left behind are marked.
+    """
     if not workflow.is_main_process or not Path("results").is_dir():
         return
     # Jobs of another run that is at work here may not have noted yet what they wrote.
@@ -90,6 +93,8 @@ def refuse_changed_files():
             f"results/{name} was changed since it was made, or has no record: {fate}" for name in changed
         ]
         print(format_problems(lines), file=sys.stderr)
+    if not looking:
+        mark_outdated("results")
 
 
 def report_outdated():
@@ -98,7 +103,7 @@ def report_outdated():
     if stale:
         print(
             f"{len(stale)} results are older than what they are made from, as {next(iter(stale))};"
-            " pages among them are marked. Renew all: make replicate TARGET=everything",
+            " pages among them are marked, the report's PDF is removed. Renew all: make replicate TARGET=everything",
             file=sys.stderr,
         )
 
