@@ -15,7 +15,7 @@ from .front_paths import STOPPED, FrontPaths, front_paths, sliding_times, viscou
 
 # Seconds on one core of the reference machine: the start of a scene; a step; a sliding block in a step, by order; an
 # event, by order; a block of the lattice, to be laid, and one that slips, to be written.
-START, STEP, UPDATE, EVENT, LAID, WRITTEN = 0.8e-3, 1.8e-7, 0.8e-9, (0.35e-6, 0.1e-6), 2e-8, 7e-8
+START, STEP, UPDATE, EVENT, LAID, WRITTEN = 0.8e-3, 1.8e-7, 0.8e-9, (0.35e-6, 0.1e-6), 6e-8, 7e-8
 # A step of the textbook scheme: a block of the lattice, a sliding one on top.
 LOOK, SLIDE = 3.2e-9, 2.2e-9
 # The exact solution: its start, and with slow fronts times the root of time; a place that sticks, one that slides on
@@ -136,7 +136,7 @@ def _scene_cost(scene: Scene) -> tuple[float, float]:
     # One block creeps for ever where it is damped beyond its oscillation between stuck neighbours; the last of many
     # where it is so far beyond, unless a strong pre-stress drives it back (measured).
     alone = float(np.sum(weight[paths.release < scene.duration])) < 2.0 * fold
-    beyond = 1.0 if alone else 5.0 if profile.symmetric else 3.0
+    beyond = 1.0 if alone else 5.0 if profile.symmetric else 2.0
     creeps = scene.damping_ratio**2 > beyond * (2.0 + scene.gamma * scene.dx**2)
     creeps &= scene.scheme != "continuum"
     creeps &= viscous(scene, paths) or max(profile.left, profile.right) > -1.0

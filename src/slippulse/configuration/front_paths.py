@@ -138,7 +138,10 @@ def _cells(
     begins = np.isfinite(start)
     if np.any(level < 0.0) and begins.any() and not springs:
         middle = 0.0 if begins[np.searchsorted(x, 0.0)] else float(np.mean(x[begins]))
-        later, spent = momentum_limits(x - middle, np.cumsum(size * level), 4.0 * profile.width)
+        # That which drives the start is the Gaussian, or the bumps that reach the threshold.
+        bumps = [width for centre, _, width in profile.bumps if float(profile(centre)) >= 1.0]
+        widest = max(bumps, default=profile.width) if middle else profile.width
+        later, spent = momentum_limits(x - middle, np.cumsum(size * level), 4.0 * widest)
     return FrontPaths(size, level, speed, x, start, later, spent).with_stops(-math.inf, math.inf)
 
 
