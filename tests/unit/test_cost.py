@@ -115,6 +115,13 @@ def test_fronts_that_leaf_springs_fade_stop_about_there(level):
     assert reached == pytest.approx(float(run.x[np.isfinite(run.release_time)].max()), rel=0.4)
 
 
+def test_strong_damping_delays_no_front_before_it_begins():
+    """At a bump, away from the Gaussian."""
+    bump = sp.Prestress(-0.1, 0.0, 2.6, 0.8, (), ((5.0, 1.2, 1.8),))
+    scene = sp.Scene("stress", bump, 6.0, 1e-3, beta=80.0, release="elastic", max_step=8e-6, order=4)
+    assert expected_seconds(scene) > 60.0
+
+
 def test_the_quick_bound_is_a_bound():
     chance = random.Random(5)
     for scene in (wide_scene(chance) for _ in range(300)):

@@ -110,7 +110,10 @@ def front_paths(scene: Scene) -> FrontPaths:
         never = ~(comes < cells.spent) & (cells.start > 0.0)
         cells = replace(cells, release=np.where(never, np.maximum(cells.release, STOPPED), comes))
     if release == "elastic" and ratio > 1.0 and scene.scheme != "continuum":
-        return replace(cells, release=np.maximum(cells.release, _viscous_delay(cells, scene)))
+        delay, begins = _viscous_delay(cells, scene), np.isfinite(cells.start)
+        # From where the run begins, which is released at once.
+        delay = np.where(begins, 0.0, delay - np.min(delay[begins], initial=np.max(delay)))
+        return replace(cells, release=np.maximum(cells.release, delay))
     return cells
 
 
