@@ -40,7 +40,7 @@ def test_it_finds_the_parameters_of_a_lattice_run(settings, panel):
         settings["published"][name]["value"] = float(value)
     settings["damping_ratios"] = {"total": [0.08, 0.1, 0.13, 0.17], "elastic": [0.1, 0.15, 0.22, 0.3]}
     settings["stress"]["damping_ratios"] = [0.1]
-    found = inference(study_module.table(settings))
+    found = inference(study_module.table({}, {}, settings))
     best = found["best"]
     assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)

@@ -49,12 +49,18 @@ def run_step(rule, wildcards, input, output, params, threads, log):
     JOBS.run(settings.pop("step"), name, dict(input.items()), dict(output.items()), settings, log[0])
 
 
-# Each figure by name; what it draws stands in its module.
+# Each figure and study by name; what it is made from stands in its module: simulations by kind of file, studies, and
+# dotted keys of the configuration.
 FIGURES, STUDIES = (
     sorted(path.stem for path in (PACKAGE / "figures").glob(pattern)) for pattern in ("fig*.py", "study_*.py")
 )
 NEEDS = {name: declared(f"figures.{name}", "NEEDS") for name in FIGURES + STUDIES}
-SOLVER_STUDIES = sorted(config["studies"])
+STUDY_NEEDS = {
+    path.stem: needs
+    for path in sorted((PACKAGE / "studies").glob("*.py"))
+    if (needs := declared(f"studies.{path.stem}", "NEEDS")) is not None
+}
+ALL_STUDIES = sorted(STUDY_NEEDS)
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 EXPLORER_SIMULATIONS = declared("steps.write_explorer", "SIMULATIONS")
 REPORT_SIMULATIONS = declared("steps.write_report", "SIMULATIONS")
@@ -148,15 +154,38 @@ def scene_files(names):
     return [f"results/scenes/{name}.{ending}" for name in names for ending in ("html", "png", "pdf", "csv")]
 
 
+# Where the files of each kind of need are.
+NEEDED = {
+    "data": "results/data/{}.nc",
+    "measured": "results/measurements/{}.csv",
+    "predicted": "results/predictions/{}.csv",
+    "uncertainties": "results/uncertainties/{}.csv",
+    "coarser": "results/uncertainties/coarser/{}.csv",
+    "studies": "results/studies/{}.csv",
+}
+
+
+def inputs_of(needs):
+    """Files that a figure or a study is made from, by kind."""
+    return {kind: [path.format(name) for name in needs.get(kind, [])] for kind, path in NEEDED.items()}
+
+
+def simulations_in(needs):
+    """Simulations that a figure or a study is made from, through other studies too."""
+    found = {name for kind in NEEDED if kind != "studies" for name in needs.get(kind, [])}
+    found |= set(needs.get("sweeps", []))
+    for study in needs.get("studies", []):
+        found |= simulations_in(STUDY_NEEDS[study])
+    return found
+
+
 def simulations_of(names):
     """Simulations that figures are drawn from."""
-    return sorted(
-        {name for figure in names for kind in ("data", "measured") for name in NEEDS[figure].get(kind, [])}
-    )
+    return sorted(set().union(*(simulations_in(NEEDS[name]) for name in names)))
 
 
 def tables(kind, names):
-    """Tables of simulations: measurements, uncertainties or uncertainties/coarser."""
+    """Tables of simulations: measurements, predictions, uncertainties or uncertainties/coarser."""
     return [f"results/{kind}/{name}.csv" for name in names]
 
 
@@ -192,14 +221,23 @@ def settings_of_figure(name):
 
 
 def settings_of_study(name):
-    """What a study of the solver reads of the configuration."""
-    return selected(declared(f"studies.{name}", "SETTINGS"), config["studies"][name])
+    """What a study reads of the configuration; under `sweeps` the resolved simulations that it names."""
+    needs = STUDY_NEEDS[name]
+    found = selected(needs.get("settings", ()), config["studies"].get(name, {}))
+    sweeps = {sweep: sweep_of(sweep) for sweep in needs.get("sweeps", [])}
+    return found | ({"sweeps": sweeps} if sweeps else {})
+
+
+def configuration_of(needs, values):
+    """Digest of all that a figure or a study comes from."""
+    studies = {study: settings_of_study(study) for study in needs.get("studies", [])}
+    names = sorted(simulations_in(needs))
+    return configuration(names, values=values, studies=studies, measure=measure_of(names) if names else {})
 
 
 def configuration_of_figure(name):
-    """Digest of all that a figure comes from."""
-    studies = {study: settings_of_study(study) for study in NEEDS[name].get("studies", [])}
-    measure = measure_of(NEEDS[name]["measured"]) if "measured" in NEEDS[name] else {}
-    return configuration(
-        simulations_of([name]), values=settings_of_figure(name), studies=studies, measure=measure
-    )
+    return configuration_of(NEEDS[name], settings_of_figure(name))
+
+
+def configuration_of_study(name):
+    return configuration_of(STUDY_NEEDS[name], settings_of_study(name))

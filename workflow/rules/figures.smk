@@ -7,10 +7,7 @@ for figure, needs in NEEDS.items():
             figure
         input:
             sources("steps.draw_figure", f"figures.{figure}"),
-            data=[f"results/data/{name}.nc" for name in needs.get("data", [])],
-            measured=tables("measurements", needs.get("measured", []))
-            + [f"results/studies/{name}.csv" for name in needs.get("studies", [])],
-            coarser=tables("uncertainties/coarser", needs.get("coarser", [])),
+            **inputs_of(needs),
         output:
             png=report(
                 f"results/figures/{figure}.png",

@@ -70,6 +70,25 @@ rule measure:
         run_step(rule, wildcards, input, output, params, threads, log)
 
 
+rule predict:
+    input:
+        sources("steps.predict"),
+        LOCK,
+    output:
+        predicted="results/predictions/{simulation}.csv",
+    log:
+        "results/logs/predict/{simulation}.log",
+    params:
+        step="predict",
+        sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
+        share=config["measure"]["share"],
+        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
+    message:
+        "Predicting {wildcards.simulation}"
+    run:
+        run_step(rule, wildcards, input, output, params, threads, log)
+
+
 rule study_grid:
     input:
         sources("steps.study_grid"),

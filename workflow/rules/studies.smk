@@ -1,6 +1,6 @@
-# Studies of the solver itself: one table each, from runs of their own.
+# Studies: one table each, of runs of their own, or of exact theory beside simulations.
 
-for study in SOLVER_STUDIES:
+for study in ALL_STUDIES:
 
     rule:
         name:
@@ -8,6 +8,7 @@ for study in SOLVER_STUDIES:
         input:
             sources("steps.run_study", f"studies.{study}"),
             LOCK,
+            **inputs_of(STUDY_NEEDS[study]),
             kernels="results/kernels.txt",
         output:
             table=f"results/studies/{study}.csv",
@@ -17,9 +18,9 @@ for study in SOLVER_STUDIES:
             runtime=20,
         params:
             step="run_study",
-            module=f"studies.{study}",
+            study=study,
             values=settings_of_study(study),
-            configuration=configuration(study=settings_of_study(study)),
+            configuration=configuration_of_study(study),
         message:
             f"Studying {study}"
         run:

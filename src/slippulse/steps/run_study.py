@@ -1,4 +1,4 @@
-"""Run one study of the solver and write its table."""
+"""Make the table of one study."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from importlib import import_module
 
 from ..data.store import save_table
+from .inputs import given
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Outputs: table. Settings: module (of the study), values (what it takes from the configuration)."""
-    study = import_module(f"slippulse.{settings['module']}")
-    save_table(study.table(settings["values"]), outputs["table"])
+    """Files: as `given` takes them. Outputs: table. Settings: study (its module), values (of the configuration)."""
+    study = import_module(f"slippulse.studies.{settings['study']}")
+    save_table(study.table(*given(files), settings["values"]), outputs["table"])

@@ -25,8 +25,8 @@ from ..theory.front_law import front_speed as exact_speed
 from ..theory.front_law import front_speed_undamped
 from ..theory.pulse import steady_pulse
 
-# Keys of the configuration that it reads besides studies.accuracy_cost.
-SETTINGS = ("measure.front_window", "presets")
+# What it is made from besides its own section of `studies`.
+NEEDS = {"settings": ["measure.front_window", "presets"]}
 
 # Errors of the scenes, relative to exact theory, the largest over the damping ratios.
 QUANTITIES = (
@@ -40,7 +40,7 @@ JUDGED = ("front_speed", "peak_velocity", "width", "final_slip", "transition_tim
 EQUAL, NEGLIGIBLE = 1.1, 1e-5
 
 
-def table(settings: Mapping) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Run the scenes at every setting, and the textbook scheme against its step.
 
     Parameters

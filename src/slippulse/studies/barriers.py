@@ -17,8 +17,8 @@ from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse
 
-# Keys of the configuration that it reads besides studies.barriers.
-SETTINGS = ()
+# What it is made from besides its own section of `studies`.
+NEEDS = {}
 
 # Widths of the Gaussian after which the pre-stress is its level, and a width small enough for every pulse.
 TAIL, WIDTH = 5.0, 1.0
@@ -26,7 +26,7 @@ TAIL, WIDTH = 5.0, 1.0
 CROSSINGS = 4.0
 
 
-def table(settings: Mapping) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Exact depths, lattice depths at each spacing, and barriers shorter and longer than the depth.
 
     Parameters

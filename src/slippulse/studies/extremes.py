@@ -24,13 +24,13 @@ from .edges import Edge, Measured, flags_of, scene, speed
 from .outcomes import NOT_OFFERED
 from .single_precision import crack_velocity
 
-# Keys of the configuration that it reads besides studies.extremes.
-SETTINGS = ("measure.front_window",)
+# What it is made from besides its own section of `studies`.
+NEEDS = {"settings": ["measure.front_window"]}
 
 GAMMA, LEVEL, RATIO = 0.65, 0.5, 0.1
 
 
-def table(settings: Mapping) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Run every edge.
 
     Parameters

@@ -17,8 +17,8 @@ from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
 from ..theory.transition import paper_transition_displacement
 
-# Keys of the configuration that it reads besides studies.published_figure.
-SETTINGS = ("published",)
+# What it is made from besides its own section of `studies`.
+NEEDS = {"settings": ["published"]}
 
 # Lattice: order, step in dx, times at which the largest velocity is looked for, reach of the samples over the duration.
 ORDER, STEP, TIMES, REACH = 8, 1.0, 109, 1.5
@@ -26,7 +26,7 @@ ORDER, STEP, TIMES, REACH = 8, 1.0, 109, 1.5
 DIFFERENCE, FIRST = 0.01, 2
 
 
-def table(settings: Mapping) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Best fits of every reading of the left panel over the damping ratio, and what the right panel says.
 
     Parameters

@@ -12,11 +12,11 @@ from ..model.scene import Scene
 from ..solver.lattice import Lattice
 from ..solver.run import run_scene
 
-# Keys of the configuration that it reads besides studies.requirements.
-SETTINGS = ()
+# What it is made from besides its own section of `studies`.
+NEEDS = {}
 
 
-def table(settings: Mapping) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Count work and memory, and fit how the work grows.
 
     Parameters

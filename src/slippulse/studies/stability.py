@@ -12,8 +12,8 @@ from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import UnstableRun
 from ..solver.lattice import Lattice
 
-# Keys of the configuration that it reads besides studies.stability.
-SETTINGS = ("presets",)
+# What it is made from besides its own section of `studies`.
+NEEDS = {"settings": ["presets"]}
 
 # Far below any stress: blocks there never slide.
 HELD = -1.0e9
@@ -21,7 +21,7 @@ HELD = -1.0e9
 LOOK_AFTER = 100
 
 
-def table(settings: Mapping) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Bisect for the largest sound step of every scheme, order and damping ratio.
 
     Parameters

@@ -1,0 +1,1 @@
+"""What the paper's formulas and the exact theory predict of a run."""

@@ -1,0 +1,15 @@
+"""Write what theory predicts of every run of one simulation, or of one chunk of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..configuration.expand import expand
+from ..data.store import save_table
+from ..predict.table import predictions
+
+
+def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """Outputs: predicted. Settings: sweep (resolved), share (of |x_minus| that counts as arrest)."""
+    scenes, _ = expand(settings["sweep"])
+    save_table(predictions(scenes, settings["share"]), outputs["predicted"])
