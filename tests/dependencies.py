@@ -9,7 +9,7 @@ from pathlib import Path
 import grimp
 from jinja2 import meta
 
-from slippulse.pages.render import PAGES
+from slippulse.report.html import PAGES
 
 PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE = PROJECT / "src/slippulse"
@@ -113,7 +113,7 @@ def reached_by(*modules: str) -> set[str]:
 def templates_of(page: str) -> set[str]:
     """Templates that a page is made with."""
     source, _, _ = PAGES.loader.get_source(PAGES, page)
-    found = {(PACKAGE / "pages/templates" / page).relative_to(PROJECT).as_posix()}
+    found = {(PACKAGE / "report/templates" / page).relative_to(PROJECT).as_posix()}
     for other in meta.find_referenced_templates(PAGES.parse(source)):
         found |= templates_of(other)
     return found

@@ -8,7 +8,7 @@ import pytest
 from tolerances import EXPLORER, EXPLORER_SPEED
 
 from slippulse.model.prestress import Prestress
-from slippulse.pages.explorer import LARGEST_RATIO, explorer_page, simulated_runs
+from slippulse.report.explorer_page import LARGEST_RATIO, explorer_page, simulated_runs
 from slippulse.theory import Rupture, front_speed, steady_pulse
 
 # All by `make test-pages`, which opens the other pages too.
@@ -187,6 +187,6 @@ def test_only_runs_that_the_page_can_compute_are_shown():
 
 def test_the_page_says_what_the_sliders_reach(project):
     """Their ends are those of the settings above."""
-    text = (project / "src/slippulse/pages/templates/explorer.html").read_text(encoding="utf-8")
+    text = (project / "src/slippulse/report/templates/explorer.html").read_text(encoding="utf-8")
     for ends in ('"1e-4", "1e-2"', '"2e-3", "5e-2"', '"0.05", "0.95"', '"0.2", "5"', '"0.02", "2"'):
         assert ends in text

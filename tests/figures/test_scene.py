@@ -23,7 +23,7 @@ from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.figures.style import save_figure
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
-from slippulse.pages.scene import scene_page
+from slippulse.report.scene_page import scene_page
 from slippulse.simulation.sweep import run_sweep
 
 TITLE = "A <scene> & its $title"

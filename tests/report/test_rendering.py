@@ -16,10 +16,10 @@ from PIL import Image
 from pypdf import PdfReader
 
 from slippulse.claims.reading import measured_text
+from slippulse.data.numerals import with_uncertainty
 from slippulse.figures.style import FAMILY
+from slippulse.report.captions import read_captions
 from slippulse.report.execute import execute
-from slippulse.texts.captions import read_captions
-from slippulse.texts.numerals import with_uncertainty
 
 
 class Resources(HTMLParser):

@@ -13,9 +13,9 @@ import yaml
 from slippulse.data.provenance import provenance
 from slippulse.data.records import write_record
 from slippulse.figures.style import new_figure, save_figure
-from slippulse.pages.claims import claims_page
-from slippulse.pages.index import index_page
-from slippulse.pages.scene import scenes_page
+from slippulse.report.claims_page import claims_page
+from slippulse.report.index_page import index_page
+from slippulse.report.scene_page import scenes_page
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 CLAIM = {

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from slippulse.texts.numerals import number, percent, rounded, setting, short, with_uncertainty
-from slippulse.texts.pandoc import html_of
-from slippulse.texts.prose import fill
+from slippulse.data.numerals import number, percent, rounded, setting, short, with_uncertainty
+from slippulse.data.prose import fill
+from slippulse.report.pandoc import html_of
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from slippulse.comparison.table import measured_table
 from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
-from slippulse.pages.scene import scene_page
+from slippulse.report.scene_page import scene_page
 from slippulse.simulation.sweep import run_sweep
 
 SHARE = 0.95

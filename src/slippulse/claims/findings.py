@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from ..comparison.published_figure import inference
+from ..data.prose import fill
 from ..model.scene import prestress_from
-from ..texts.prose import fill
 from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed
 from ..theory.pulse import paper_pulse, steady_pulse
 from ..theory.rupture import Rupture

@@ -8,7 +8,7 @@ import pandas as pd
 from scipy.special import chdtrc
 
 from ..comparison.published_figure import inference, right_panel
-from ..texts.numerals import rounded
+from ..data.numerals import rounded
 from . import rules
 from .evidence import Evidence
 from .ledger import Claim

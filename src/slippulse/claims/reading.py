@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from types import SimpleNamespace
 
 from ..configuration.kinds import KINDS
-from ..texts.numerals import number, percent, rounded, setting, with_uncertainty
+from ..data.numerals import number, percent, rounded, setting, with_uncertainty
 from .rules import EXCLUDED, VERDICTS
 
 # What a reader looks for first.

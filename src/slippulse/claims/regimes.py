@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from ..comparison.final_regime import UNDECIDED, final_regime
+from ..data.numerals import number
 from ..model.balance import prestress_balance_position
 from ..model.scene import prestress_from
-from ..texts.numerals import number
 from . import rules
 from .evidence import Evidence
 from .ledger import Claim

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from ..texts.numerals import setting
+from ..data.numerals import setting
 
 # Of more values than this only the ends are named.
 FEW = 3

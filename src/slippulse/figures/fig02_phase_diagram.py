@@ -15,9 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from ..comparison.final_regime import UNDECIDED, final_regime, growth_beyond
+from ..data.numerals import setting
 from ..data.points import point
 from ..measure.regime import REGIMES
-from ..texts.numerals import setting
 from .shared.regime_examples import EARLIER_DASHES, draw_examples, profiles
 from .style import BLACK, BLUE, COLUMN, GREEN, GREY, ORANGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 

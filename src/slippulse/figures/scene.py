@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..comparison.scene_numbers import far_pulse
-from ..texts.numerals import MOST, number, with_uncertainty
+from ..data.numerals import MOST, number, with_uncertainty
 from .shared.space_time import draw_map, draw_profile, edges, limits, prestress_profile, thin, velocity_map
 from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 

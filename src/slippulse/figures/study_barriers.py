@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from ..texts.numerals import setting
+from ..data.numerals import setting
 from ..theory.barrier import barrier_depth_estimate
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, colour_scale, new_figure, panel_letter
 

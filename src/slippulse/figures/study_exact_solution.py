@@ -11,8 +11,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ..comparison.exact_rupture import differences, exact_rupture
+from ..data.numerals import setting
 from ..data.points import point
-from ..texts.numerals import setting
 from ..theory.rupture import Rupture
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, VELOCITY_MAP, new_figure, panel_letter
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import pandas as pd
 
+from ..data.numerals import number, percent, setting, with_uncertainty
 from ..studies.outcomes import FLAGGED
-from ..texts.numerals import number, percent, setting, with_uncertainty
 from ..theory.front_law import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from ..data.alterations import changes
-from ..texts.numerals import short
+from ..data.numerals import short
 
 
 def alteration_note(

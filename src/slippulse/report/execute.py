@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jupytext
 
-from ..texts.prose import fill
+from ..data.prose import fill
 from .inputs import Inputs
 from .notebook import define
 

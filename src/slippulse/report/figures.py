@@ -8,7 +8,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from ..texts.captions import Caption
+from .captions import Caption
 
 # The number that a figure has in the paper, in its name.
 OF_PAPER = re.compile(r"fig(\d+)_")

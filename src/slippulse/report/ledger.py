@@ -12,7 +12,7 @@ from ..claims.reading import (
     measured_text,
     predicted_text,
 )
-from ..texts.numerals import setting, with_uncertainty
+from ..data.numerals import setting, with_uncertainty
 from .markdown import plain, table
 
 

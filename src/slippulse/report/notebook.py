@@ -11,11 +11,11 @@ import numpy as np
 from .. import theory
 from ..configuration.parameters import parameters
 from ..data.alterations import changes
+from ..data.prose import FILTERS, fill
 from ..model.prestress import Prestress
-from ..texts.captions import read_captions
-from ..texts.prose import FILTERS, fill
 from .accuracy import attempt, edges, grid_studies, presets, speeds, sticking
 from .alterations import alteration_note
+from .captions import read_captions
 from .errata import errata_table
 from .figures import Gallery, placed_figures
 from .inputs import Inputs

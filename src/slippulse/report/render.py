@@ -14,8 +14,8 @@ import typst
 
 from ..data.files import write_whole
 from ..data.origin import configuration
-from ..texts.pandoc import pandoc
 from .page import as_page
+from .pandoc import pandoc
 
 # Those of the figures, which Matplotlib brings along.
 FONTS = str(Path(matplotlib.get_data_path()) / "fonts/ttf")

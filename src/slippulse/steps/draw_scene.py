@@ -10,14 +10,9 @@ from ..data.points import point
 from ..data.store import load_dataset, load_table, save_table
 from ..figures import scene
 from ..figures.style import save_figure
-from ..pages.scene import scene_page
+from ..report.scene_page import scene_page
 
-FILES = (
-    "pages/templates/base.html",
-    "pages/templates/parts.html",
-    "pages/templates/scene.html",
-    "pages/templates/style.css",
-)
+FILES = ("report/templates/parts.html", "report/templates/scene.html")
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

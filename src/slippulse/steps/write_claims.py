@@ -15,14 +15,9 @@ from ..claims.ledger import finite
 from ..claims.paper import all_claims
 from ..data.files import write_text
 from ..data.store import load_table
-from ..pages.claims import claims_page
+from ..report.claims_page import claims_page
 
-FILES = (
-    "pages/templates/base.html",
-    "pages/templates/claims.html",
-    "pages/templates/parts.html",
-    "pages/templates/style.css",
-)
+FILES = ("report/templates/claims.html", "report/templates/parts.html")
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

@@ -6,14 +6,9 @@ from collections.abc import Mapping
 
 from ..data.files import write_text
 from ..data.store import load_table
-from ..pages.explorer import explorer_page
+from ..report.explorer_page import explorer_page
 
-FILES = (
-    "pages/templates/base.html",
-    "pages/templates/explorer.html",
-    "pages/templates/explorer/*",
-    "pages/templates/style.css",
-)
+FILES = ("report/templates/explorer.html", "report/templates/explorer/*")
 # Sweeps that it shows beside the exact solution.
 SIMULATIONS = [
     "scaling_displacement",

@@ -6,14 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..data.files import write_text
-from ..pages.index import index_page
+from ..report.index_page import index_page
 
-FILES = (
-    "pages/templates/base.html",
-    "pages/templates/index.html",
-    "pages/templates/parts.html",
-    "pages/templates/style.css",
-)
+FILES = ("report/templates/index.html", "report/templates/parts.html")
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

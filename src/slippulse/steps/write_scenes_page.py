@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..data.files import write_text
-from ..pages.scene import scenes_page
+from ..report.scene_page import scenes_page
 
-FILES = (
-    "pages/templates/base.html",
-    "pages/templates/scenes.html",
-    "pages/templates/style.css",
-)
+FILES = ("report/templates/scenes.html",)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from ...data.numerals import setting
 from ...model.prestress import Prestress
-from ...texts.numerals import setting
 from ...theory.exact_transition import exact_transition_displacement, uniform_transition_time
 from ...theory.rupture import Rupture
 from ..style import BLACK, colour_scale

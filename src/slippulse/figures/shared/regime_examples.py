@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ...texts.numerals import setting
+from ...data.numerals import setting
 from ..style import BLACK, GREY
 
 # Points kept of each profile.

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ...texts.numerals import setting
+from ...data.numerals import setting
 from ..style import BLACK, GREY, VELOCITY_MAP
 
 # Samples kept along each axis of a map, and blocks along each front.

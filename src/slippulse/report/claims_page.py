@@ -17,8 +17,8 @@ from ..claims.reading import (
     predicted_text,
 )
 from ..claims.rules import VERDICTS
-from ..texts.numerals import rounded
-from .render import markup_of, page
+from ..data.numerals import rounded
+from .html import markup_of, page
 
 # Each verdict has a sign, so that colour is not needed.
 SIGNS = dict(zip(VERDICTS, "\N{CHECK MARK}~\N{MULTIPLICATION SIGN}?\N{EN DASH}", strict=True))

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..texts.numerals import number, rounded, with_uncertainty
-from .render import page
+from ..data.numerals import number, rounded, with_uncertainty
+from .html import page
 
 SHOWN = (
     "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx",

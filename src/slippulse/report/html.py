@@ -9,9 +9,11 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from ..data.origin import configuration
-from ..texts.pandoc import html_of
-from ..texts.prose import FILTERS
+from ..data.prose import FILTERS
+from .pandoc import html_of
 
+# Of every page; what else a page is made with its step names.
+FILES = ("report/templates/base.html", "report/templates/style.css")
 PAGES = Environment(
     loader=FileSystemLoader(Path(__file__).with_name("templates")),
     autoescape=True,

@@ -13,10 +13,10 @@ from markupsafe import Markup
 
 from ..claims.reading import FAILURES_FIRST, Ledger
 from ..configuration.parameters import parameters
-from ..texts.captions import read_captions
-from ..texts.prose import fill
-from .claims import SIGNS, claim_groups
-from .render import markup_of, page, picture_size
+from ..data.prose import fill
+from .captions import read_captions
+from .claims_page import SIGNS, claim_groups
+from .html import markup_of, page, picture_size
 
 FILES = {
     "explorer.html": "Explorer (a rupture with sliders)",

@@ -19,7 +19,7 @@ from ..figures.style import VELOCITY_MAP
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES, prestress_from
 from ..theory.front_law import prestress_for_speed
-from .render import page
+from .html import page
 
 # Grid of the front law: ln(v - 1), and asinh(b/SCALE), which is b where it is small and logarithmic beyond.
 EXCESS = np.linspace(-8.0, 12.0, 61)
