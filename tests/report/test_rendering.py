@@ -14,12 +14,12 @@ import pytest
 import yaml
 from PIL import Image
 from pypdf import PdfReader
+from slippulse.report.captions import read_captions
+from slippulse.report.execute import execute
 
 from slippulse.claims.reading import measured_text
 from slippulse.data.numerals import with_uncertainty
 from slippulse.figures.style import FAMILY
-from slippulse.report.captions import read_captions
-from slippulse.report.execute import execute
 
 
 class Resources(HTMLParser):

@@ -8,14 +8,14 @@ from functools import partial
 import pytest
 import yaml
 from PIL import Image
-
-from slippulse import Prestress
-from slippulse.claims.coverage import coverage, problems
-from slippulse.configuration.parameters import parameters
 from slippulse.report.accuracy import sticking
 from slippulse.report.captions import PARTS, Caption, read_captions
 from slippulse.report.errata import KEYS, check_errata
 from slippulse.report.figures import Gallery, placed_figures
+
+from slippulse import Prestress
+from slippulse.claims.coverage import coverage, problems
+from slippulse.configuration.parameters import parameters
 from slippulse.theory import Rupture
 
 EXPRESSION = re.compile(r"\{\{.+?\}\}", re.S)

@@ -63,7 +63,6 @@ STUDY_NEEDS = {
 ALL_STUDIES = sorted(STUDY_NEEDS)
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 EXPLORER_SIMULATIONS = declared("steps.write_explorer", "SIMULATIONS")
-REPORT_SIMULATIONS = declared("steps.write_report", "SIMULATIONS")
 
 # Sweeps that several jobs share. How many is in the name of each chunk: files left by another number are never taken.
 CHUNKS = {

@@ -4,6 +4,7 @@
 rule write_explorer:
     input:
         sources("steps.write_explorer"),
+        law="results/studies/explorer_law.csv",
         measured=tables("measurements", EXPLORER_SIMULATIONS),
     output:
         html="results/explorer.html",

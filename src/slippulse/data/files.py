@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 
 
-def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
+def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
     """Let ``write`` fill a file beside ``path`` and move it there when it is complete."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)

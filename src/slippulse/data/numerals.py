@@ -6,7 +6,7 @@ import math
 
 # Smaller or larger than this, a number is written with a power of ten.
 SMALL, LARGE = 1e-3, 1e5
-# Significant digits: at most so many without an uncertainty, and with one.
+# Significant digits: the most without an uncertainty, and with one.
 MOST, MOST_WITH_UNCERTAINTY = 5, 6
 MISSING = "not measured"
 SUPERSCRIPT = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -47,7 +47,7 @@ def rounded(value: float | None, digits: int = 4) -> str:
 
 
 def percent(value: float | None, digits: int = 2) -> str:
-    """A share as a percentage, or as it is where a percentage would need a power of ten."""
+    """A fraction as a percentage, or as it is where a percentage would need a power of ten."""
     if value is None or math.isnan(value):
         return MISSING
     if 0.0 < 100.0 * abs(value) < SMALL:
@@ -82,6 +82,12 @@ def short(value: object, longest: int = 80) -> str:
     """Any value of the configuration as text of limited length; an absent one as a dash."""
     text = "\N{EN DASH}" if value is None else str(value)
     return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+# What texts and templates may write a value with.
+FILTERS = {
+    function.__name__: function for function in (number, percent, rounded, setting, short, with_uncertainty)
+}
 
 
 def _power_of_ten(text: str) -> str:

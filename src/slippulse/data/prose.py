@@ -8,15 +8,7 @@ from traceback import extract_tb
 
 from jinja2 import Environment, StrictUndefined, TemplateError
 
-from .numerals import number, percent, setting, short, with_uncertainty
-
-FILTERS = {
-    "number": number,
-    "percent": percent,
-    "setting": setting,
-    "short": short,
-    "with_uncertainty": with_uncertainty,
-}
+from .numerals import FILTERS, number
 
 
 class Prose(Environment):
@@ -40,7 +32,9 @@ class Prose(Environment):
 
 
 def _text(value: object) -> object:
-    return number(value) if value is None or isinstance(value, Real) else value
+    if isinstance(value, Real):
+        value = float(value)
+    return number(value) if value is None or isinstance(value, float) else value
 
 
 PROSE = Prose()
@@ -68,5 +62,5 @@ def fill(text: str, names: Mapping[str, object]) -> str:
 def _line(text: str, error: Exception) -> str:
     """The line of a template at which rendering failed."""
     numbers = [entry.lineno for entry in extract_tb(error.__traceback__) if entry.filename == "<template>"]
-    number = numbers[-1] if numbers else getattr(error, "lineno", 1)
-    return " ".join(text.splitlines()[number - 1].split())[:100]
+    last = (numbers[-1] if numbers else getattr(error, "lineno", None)) or 1
+    return " ".join(text.splitlines()[last - 1].split())[:100]

@@ -1,1 +1,1 @@
-"""The replication report: every number in it comes from the results by name, none is typed."""
+"""What people read: the replication report and the pages, from tables and texts; no number in them is typed."""

@@ -1,6 +1,6 @@
 """results/explorer.html: the exact rupture, its formulas and nearby simulations, recomputed as sliders move.
 
-The page computes by itself, in the scripts beside its template; from here it has a table of the front law, which needs
+The page computes by itself, in the scripts next to its template; from here it has a table of the front law, which needs
 the Wiener-Hopf factor, and the measured numbers of the sweeps.
 """
 
@@ -17,62 +17,62 @@ from markupsafe import Markup
 
 from ..figures.style import VELOCITY_MAP
 from ..model.prestress import Prestress
-from ..model.scene import RELEASES, prestress_from
-from ..theory.front_law import prestress_for_speed
+from ..model.scene import prestress_from
 from .html import page
 
-# Grid of the front law: ln(v - 1), and asinh(b/SCALE), which is b where it is small and logarithmic beyond.
-EXCESS = np.linspace(-8.0, 12.0, 61)
-SCALE, LARGEST_RATIO, RATIOS = 0.005, 5.0, 33
-# What is shown of a run, beside its settings; absent where it was not measured.
+# What is shown of a run with its settings; absent where it was not measured.
 MEASURED = ("front_speed_right", "transition_time", "transition_length", "pulse_slip")
 DIGITS = 5
 COLOURS = 32
 
 
-def explorer_page(measured: Iterable[pd.DataFrame]) -> str:
+def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame]) -> str:
     """The page, one file that loads nothing.
 
     Parameters
     ----------
-    measured : measured tables of sweeps; runs without equal positive levels and a plain peak are left out
+    law : the front law, as `slippulse.studies.explorer_law` has it
+    measured : measured tables of sweeps; runs without equal positive levels and a plain peak, or with a larger damping
+        ratio than the law, are left out
     """
     shades = matplotlib.colormaps[VELOCITY_MAP](np.linspace(0.0, 1.0, COLOURS))
+    largest = float(law["damping_ratio"].max())
     data = {
-        "law": front_law_table(),
-        "largest_ratio": LARGEST_RATIO,
-        "runs": [run for table in measured for run in simulated_runs(table)],
+        "law": front_law(law),
+        "largest_ratio": largest,
+        "runs": [run for table in measured for run in simulated_runs(table, largest)],
         "colours": [[round(255 * part) for part in shade[:3]] for shade in shades.tolist()],
     }
     # No text in it can end the script that it stands in.
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
-    return page("explorer.html", data=Markup(text), largest_ratio=LARGEST_RATIO)
+    return page("explorer.html", data=Markup(text), largest_ratio=largest)
 
 
-def front_law_table() -> dict:
-    """ln(tau/(1 - tau)) by release rule, damping ratio (rows) and ln(v - 1) (columns), with the grid.
-
-    Speeds found in it by cubics are exact to 1e-4.
-    """
-    places = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
-    ratios, speeds = SCALE * np.sinh(places), 1.0 + np.exp(EXCESS)
-    table: dict = {
-        "ratio": {"scale": SCALE, "step": places[1]},
-        "excess": {"first": EXCESS[0], "step": EXCESS[1] - EXCESS[0]},
+def front_law(law: pd.DataFrame) -> dict:
+    """Logit of the pre-stress by release rule, damping ratio (rows) and logarithm of v - 1 (columns), with the grid."""
+    ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
+    first, last = float(excesses[0]), float(excesses[-1])
+    found: dict = {
+        "ratio": {
+            "scale": round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6),
+            "step": float(ratios[-1]) / (len(ratios) - 1),
+        },
+        "excess": {"first": first, "step": (last - first) / (len(excesses) - 1)},
     }
-    for release in RELEASES:
-        tau = prestress_for_speed(speeds[None, :], ratios[:, None], release)
-        table[release] = np.round(np.log(tau) - np.log1p(-tau), 6).tolist()
-    return table
+    for release, rows in law.groupby("release", sort=False):
+        found[release] = rows.pivot(
+            index="damping_ratio", columns="excess_log", values="logit"
+        ).values.tolist()
+    return found
 
 
-def simulated_runs(table: pd.DataFrame) -> list[list]:
+def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     """Rows of tau_0, gamma, W, beta, b, release rule and `MEASURED` of the runs that the page can compare with."""
     kept = []
     for run in table[table["boundary"] == "displacement"].to_dict("records"):
         prestress = prestress_from(run)
         plain = Prestress(prestress.left, prestress.left, prestress.width)
-        if prestress != plain or not prestress.left > 0.0 or run["damping_ratio"] > LARGEST_RATIO:
+        if prestress != plain or not prestress.left > 0.0 or run["damping_ratio"] > largest_ratio:
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan

@@ -1,21 +1,23 @@
-"""Templates to pages; every value is escaped unless it is HTML already."""
+"""Templates and Markdown to HTML; every value is escaped unless it is HTML already."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import subprocess
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import pypandoc
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from ..data.numerals import FILTERS
 from ..data.origin import configuration
-from ..data.prose import FILTERS
-from .pandoc import html_of
 
 # Of every page; what else a page is made with its step names.
 FILES = ("report/templates/base.html", "report/templates/style.css")
+TEMPLATES = Path(__file__).with_name("templates")
 PAGES = Environment(
-    loader=FileSystemLoader(Path(__file__).with_name("templates")),
+    loader=FileSystemLoader(TEMPLATES),
     autoescape=True,
     undefined=StrictUndefined,
     trim_blocks=True,
@@ -29,21 +31,45 @@ def page(template: str, **data: object) -> str:
 
     Parameters
     ----------
-    template : file beside this module, in templates
+    template : file in `TEMPLATES`
     data : what it shows
     """
     return PAGES.get_template(template).render(data, configuration=configuration()) + "\n"
 
 
+def pandoc(text: str, options: Sequence[str]) -> str:
+    """The text as pandoc converts it.
+
+    Raises
+    ------
+    ValueError
+        If pandoc refuses the text or warns of it, with its message.
+    """
+    command = [pypandoc.get_pandoc_path(), "--fail-if-warnings", *options]
+    done = subprocess.run(command, input=text, capture_output=True, text=True, encoding="utf-8", check=False)
+    if done.returncode != 0:
+        raise ValueError(f"pandoc: {done.stderr.strip()}")
+    return done.stdout
+
+
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """Each text of Markdown as HTML with MathML, converted together."""
-    return {text: Markup(html) for text, html in html_of(texts).items()}
+    """Each text, one paragraph of Markdown with formulas, as HTML with MathML; raw HTML in it is shown, not obeyed.
 
+    All are converted by one call of pandoc.
 
-def picture_size(path: str | Path) -> tuple[int, int] | None:
-    """Width and height of a PNG, so that a page does not jump while it loads; None without the file."""
-    path = Path(path)
-    if not path.exists():
-        return None
-    header = path.read_bytes()[16:24]
-    return int.from_bytes(header[:4], "big"), int.from_bytes(header[4:], "big")
+    Raises
+    ------
+    ValueError
+        If a text is more than one paragraph.
+    """
+    texts = sorted({text for text in texts if text.strip()})
+    found = {"": Markup()}
+    if not texts:
+        return found
+    whole = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
+    options = ["--from=markdown-raw_html-smart-fancy_lists", "--to=html5", "--mathml", "--wrap=none"]
+    parts = [part.strip() for part in pandoc(whole, options).split("<hr />")]
+    whole_parts = [part for part in parts if part.startswith("<p>") and part.endswith("</p>")]
+    if not len(texts) == len(parts) == len(whole_parts):
+        raise ValueError("a text for a page is not one paragraph of Markdown")
+    return found | {text: Markup(part[3:-4]) for text, part in zip(texts, parts, strict=True)}

@@ -4,55 +4,31 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import yaml
-from markupsafe import Markup
+from PIL import Image
 
 from ..claims.reading import FAILURES_FIRST, Ledger
 from ..configuration.parameters import parameters
 from ..data.prose import fill
-from .captions import read_captions
-from .claims_page import SIGNS, claim_groups
-from .html import markup_of, page, picture_size
+from .claims_page import shown
+from .html import page
+from .texts import read_captions, read_text
 
-FILES = {
+FILES_OF_RESULTS = {
     "explorer.html": "Explorer (a rupture with sliders)",
     "manuscript/replication.html": "Replication report (HTML)",
     "manuscript/replication.pdf": "Replication report (PDF)",
     "claims.html": "Ledger of claims (a table)",
     "claims.json": "Ledger of claims (JSON)",
-    "findings.json": "Findings beside them (JSON)",
+    "findings.json": "Further findings (JSON)",
     "provenance.json": "Provenance (JSON)",
     "codecheck.yml": "Manifest of every output (CODECHECK)",
     "checksums.txt": "Checksums (make verify)",
     "scenes/index.html": "Scenes",
 }
-
-
-@dataclass(frozen=True)
-class Figure:
-    """A figure as it is shown: name, heading, alternative text, finding and caption as HTML, width and height."""
-
-    name: str
-    title: str
-    alt: str
-    finding: Markup
-    caption: Markup
-    size: tuple[int, int] | None
-
-
-@dataclass(frozen=True)
-class Line:
-    """One line of the verdict: its topic, the claim that decides it, verdict and sign, and what was found as HTML."""
-
-    topic: str
-    claim: str
-    verdict: str
-    sign: str
-    text: Markup
 
 
 def index_page(
@@ -72,64 +48,55 @@ def index_page(
     scenes : titles by name
     """
     results = Path(results)
-    ledger = Ledger(
-        *(
-            json.loads((results / name).read_text(encoding="utf-8"))
-            for name in ("claims.json", "findings.json")
-        )
+    claims, findings, facts = (
+        json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
+        for name in ("claims", "findings", "provenance")
     )
-    facts = json.loads((results / "provenance.json").read_text(encoding="utf-8"))
+    ledger = Ledger(claims, findings)
     names = {"claim": ledger, "found": ledger.found, "config": facts["config"], "facts": facts}
     names["runs"] = partial(parameters, facts["config"])
     captions = read_captions(texts["captions"], lambda text: fill(text, names))
-    summary = yaml.safe_load(Path(texts["summary"]).read_text(encoding="utf-8"))
+    summary = read_text(texts["summary"])
     accuracy = fill(summary["accuracy"], names)
-    lines = [line | {"text": fill(line["text"], names)} for line in summary["verdict"]]
-
-    shown = {
-        # A sweep of one's own has no caption but its name.
+    lines = [
+        {
+            "topic": line["topic"],
+            "text": fill(line["text"], names),
+            # Its sign is the worst of its claims.
+            "claim": min(map(ledger, line["claims"]), key=lambda claim: FAILURES_FIRST.index(claim.verdict)),
+        }
+        for line in summary["verdict"]
+    ]
+    figures = {
+        # A user-defined sweep has no caption but its name.
         name: captions.get(name) or replace(captions["own_sweep"], title=name.removeprefix("sweep_"))
         for listed in galleries.values()
         for name in listed
     }
-    html = markup_of(
-        [text for entry in shown.values() for text in (entry.finding, entry.caption)]
-        + [line["text"] for line in lines]
-        + [accuracy]
-    )
-    figures = {
-        name: Figure(
-            name,
-            entry.title,
-            entry.alt,
-            html[entry.finding],
-            html[entry.caption],
-            picture_size(results / f"figures/{name}.png"),
-        )
-        for name, entry in shown.items()
-    }
+    written = [text for caption in figures.values() for text in (caption.finding, caption.caption)]
     return page(
         "index.html",
         paper=facts["paper"],
         altered=facts["overlay"],
-        lines=[_line(line, ledger, html[line["text"]]) for line in lines],
-        accuracy=html[accuracy],
-        picture=figures.get(summary["picture"]),
-        files={path: title for path, title in FILES.items() if (results / path).exists()},
-        summary=ledger.summary(),
-        kinds=ledger.by_kind(),
-        verdicts=FAILURES_FIRST,
-        groups=claim_groups(ledger),
-        galleries={title: [figures[name] for name in listed] for title, listed in galleries.items()},
+        lines=lines,
+        accuracy=accuracy,
+        figures=figures,
+        sizes={name: picture_size(results / f"figures/{name}.png") for name in figures},
+        picture=summary["picture"],
+        files={path: title for path, title in FILES_OF_RESULTS.items() if (results / path).exists()},
+        galleries=galleries,
         scenes={name: (title, (results / f"scenes/{name}.html").exists()) for name, title in scenes.items()},
         facts=_facts(facts),
+        **shown(ledger, [*written, *(line["text"] for line in lines), accuracy]),
     )
 
 
-def _line(line: Mapping, ledger: Ledger, text: Markup) -> Line:
-    """A line has the worst verdict of its claims."""
-    worst = min(map(ledger, line["claims"]), key=lambda claim: FAILURES_FIRST.index(claim.verdict))
-    return Line(line["topic"], worst.id, worst.verdict, SIGNS[worst.verdict], text)
+def picture_size(path: Path) -> tuple[int, int] | None:
+    """Width and height of a picture, so that the page does not jump while it loads; None without the file."""
+    if not path.exists():
+        return None
+    with Image.open(path) as picture:
+        return picture.size
 
 
 def _facts(facts: Mapping) -> dict[str, str]:
@@ -139,13 +106,13 @@ def _facts(facts: Mapping) -> dict[str, str]:
     if git:
         count = len(git["changed_files"])
         state = f"commit {git['commit']}" + (f", {count} files changed" if count else "")
+    memory = machine["memory_GiB"]
     parts = [
         f"{machine['system']} {machine['architecture']}",
         machine["processor"],
         f"{machine['cores']} cores",
+        memory and f"{memory} GiB of memory",
     ]
-    if machine["memory_GiB"]:
-        parts.append(f"{machine['memory_GiB']} GiB of memory")
     return {
         "preset": str(facts["config"]["preset"]),
         "sources": state,

@@ -9,7 +9,7 @@ from ..data.store import load_table
 from ..report.explorer_page import explorer_page
 
 FILES = ("report/templates/explorer.html", "report/templates/explorer/*")
-# Sweeps that it shows beside the exact solution.
+# Sweeps that it shows with the exact solution.
 SIMULATIONS = [
     "scaling_displacement",
     "damping_displacement",
@@ -20,5 +20,6 @@ SIMULATIONS = [
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: measured. Outputs: html."""
-    write_text(explorer_page(load_table(path) for path in files["measured"]), outputs["html"])
+    """Files: law, measured. Outputs: html."""
+    measured = [load_table(path) for path in files["measured"]]
+    write_text(explorer_page(load_table(files["law"]), measured), outputs["html"])

@@ -2,31 +2,89 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from pathlib import Path
 
-from ..report.build import build_report
-from ..report.inputs import Inputs
+import yaml
 
-# Whose measured numbers and uncertainties the report quotes.
-SIMULATIONS = ["scaling_displacement", "scaling_stress", "steady_displacement"]
+from ..data.files import write_text
+from ..report.document import write_html, write_pdf
+from ..report.manuscript import SOURCE, Inputs, execute, names_for
+from .inputs import given
+
+FILES = ("report/templates/report.html", "report/templates/report.css", "report/templates/report.typ")
+# What the report quotes.
+NEEDS = {
+    "measured": ["space_time_displacement", "space_time_stress", "steady_displacement"],
+    "predicted": ["space_time_displacement", "space_time_stress", "steady_displacement"],
+    "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
+    "studies": ["derivations", "extremes"],
+}
+HEAD = (
+    "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"
+)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: source, claims, findings, shipped, measured, uncertainties, figures. Outputs: html, pdf, verdicts."""
+    """Files: source, claims, findings, shipped, figures, and as `given` takes them. Outputs: html, pdf, verdicts.
 
-    def absolute(path: str | Path) -> str:
-        return str(Path(path).resolve())
+    Settings: figures (names), config.
+    """
+    inputs = inputs_of(files, settings)
+    text = execute(inputs.manuscript / SOURCE, inputs)
+    with ThreadPoolExecutor() as pool:
+        # Both wait for processes of their own, so they overlap.
+        writings = [
+            pool.submit(copy_context().run, write, text, inputs.manuscript, outputs[kind])
+            for kind, write in (("html", write_html), ("pdf", write_pdf))
+        ]
+    for writing in writings:
+        writing.result()
+    verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
+    write_text(HEAD + yaml.safe_dump(verdicts, sort_keys=False), outputs["verdicts"])
 
-    inputs = Inputs(
+
+def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
+    """What the report is written from, read."""
+    return Inputs(
         config=settings["config"],
-        claims_file=absolute(files["claims"]),
-        findings_file=absolute(files["findings"]),
-        measured={Path(path).stem: absolute(path) for path in files["measured"]},
-        uncertainties={Path(path).stem: absolute(path) for path in files["uncertainties"]},
-        figures=list(settings["figures"]),
-        figures_folder=absolute(Path(files["figures"][0]).parent),
-        manuscript=absolute(Path(files["source"]).parent),
-        shipped_config=absolute(files["shipped"]),
+        shipped=yaml.safe_load(Path(files["shipped"]).read_text(encoding="utf-8")),
+        claims=json.loads(Path(files["claims"]).read_text(encoding="utf-8")),
+        findings=json.loads(Path(files["findings"]).read_text(encoding="utf-8")),
+        tables=given(files)[1],
+        figures=settings["figures"],
+        figures_folder=Path(files["figures"][0]).resolve().parent,
+        manuscript=Path(files["source"]).resolve().parent,
     )
-    build_report(inputs, outputs)
+
+
+def by_hand(show: Callable[[str], None] | None = None) -> dict[str, object]:
+    """The names of the cells for a notebook that is opened inside a project with finished results.
+
+    Parameters
+    ----------
+    show : what is shown goes there; by default below the cell
+    """
+    if show is None:
+        from IPython.display import Markdown, display
+
+        def show(markdown: str) -> None:
+            display(Markdown(markdown))
+
+    here = Path.cwd()
+    project = next(path for path in (here, *here.parents) if (path / "config/config.yaml").exists())
+    results = project / "results"
+    config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]
+    folders = {"measured": "measurements", "predicted": "predictions"}
+    files: dict[str, object] = {
+        kind: [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
+        for kind, names in NEEDS.items()
+    }
+    figures = sorted((results / "figures").glob("*.pdf"))
+    files |= {"claims": results / "claims.json", "findings": results / "findings.json", "figures": figures}
+    files |= {"shipped": project / "config/config.yaml", "source": project / "manuscript" / SOURCE}
+    names = [figure.stem for figure in figures]
+    return names_for(inputs_of(files, {"config": config, "figures": names}), show)

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from PIL import Image
 
-from .captions import Caption
+from .texts import Caption
 
 # The number that a figure has in the paper, in its name.
 OF_PAPER = re.compile(r"fig(\d+)_")
 # How the text places a figure.
 PLACED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
-
 # Inches across the pages of the journal, and of the report.
 PAGE = 7.0
-
-
-def placed_figures(source: str) -> list[str]:
-    """Names of the figures that a text places, in its order."""
-    return PLACED.findall(source)
 
 
 class Gallery:
@@ -30,7 +24,7 @@ class Gallery:
     Parameters
     ----------
     included : names of the figures whose files there are
-    placed : names in the order of the text
+    text : of the report, in whose order they are numbered
     captions : per name, its texts
     folder : where NAME.pdf and NAME.png are
 
@@ -38,11 +32,11 @@ class Gallery:
     """
 
     def __init__(
-        self, included: list[str], placed: list[str], captions: Mapping[str, Caption], folder: str
+        self, included: Sequence[str], text: str, captions: Mapping[str, Caption], folder: str | Path
     ) -> None:
-        self.order = [name for name in placed if name in included]
+        placed = PLACED.findall(text)
         self.unplaced = [name for name in included if name not in placed]
-        self.order += self.unplaced
+        self.order = [name for name in placed if name in included] + self.unplaced
         self.captions = captions
         self.folder = Path(folder)
 
@@ -50,19 +44,20 @@ class Gallery:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
         if name not in self.order:
             return ""
-        number = self.order.index(name) + 1
         title = name.replace("_", " ")
         caption = self.captions.get(name, Caption(title, title, "", ""))
         paper = OF_PAPER.match(name)
-        head = f"Figure {number}" + (f" (paper, figure {int(paper[1])})" if paper else "")
+        head = f"Figure {self.order.index(name) + 1}" + (f" (paper, figure {int(paper[1])})" if paper else "")
         text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
-        alternative = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
+        alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         # No extension: the vector file for print, the picture for the browser.
-        return (
-            f"![{text}]({self.folder / name}){{#{name} width={self._share(name):.0f}% alt='{alternative}'}}"
-        )
+        return f"![{text}]({self.folder / name}){{#{name} width={self._width(name):.0f}% alt='{alt}'}}"
 
-    def _share(self, name: str) -> float:
+    def further(self) -> str:
+        """The figures that the text does not place."""
+        return "\n\n".join(self.figure(name) for name in self.unplaced)
+
+    def _width(self, name: str) -> float:
         """Width of a figure in per cent of the page: a column of the journal stays one."""
         with Image.open(self.folder / f"{name}.png") as picture:
             inches = picture.width / picture.info["dpi"][0]
@@ -72,5 +67,5 @@ class Gallery:
         """A link to a figure between two texts, with the word before its number; nothing if it is not included."""
         if name not in self.order:
             return ""
-        start, word = re.fullmatch(r"(.*?)((?:figures? )?)", before).groups()
+        start, word = re.fullmatch(r"(.*?)((?:figures? )?)", before).groups()  # type: ignore[union-attr]
         return f"{start}[{word}{self.order.index(name) + 1}](#{name}){after}"

@@ -1,0 +1,138 @@
+"""The executed manuscript as one self-contained HTML file and a PDF, by pandoc and Typst; no network, no clock."""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+from base64 import b64encode
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from io import BytesIO
+from itertools import count
+from pathlib import Path
+
+import matplotlib
+import typst
+from PIL import Image
+
+from ..data.files import write_text, write_whole
+from ..data.origin import configuration
+from .html import TEMPLATES, page, pandoc
+
+# Those of the figures, which Matplotlib brings along.
+FONTS = Path(matplotlib.get_data_path()) / "fonts/ttf"
+# Any fixed instant will do: equal inputs then give equal bytes.
+TIMESTAMP = 0
+FIGURE = re.compile(r'(<figure id="(\w+)">\s*)<img\s+src="([^"]+)"')
+# Names and alternative texts of the figures of a text, which pandoc does not pass on to Typst.
+ALTERNATIVE = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
+
+
+def write_html(text: str, manuscript: Path, output: str | Path) -> None:
+    """Write the report as one HTML file that loads nothing.
+
+    Parameters
+    ----------
+    text : Markdown
+    manuscript : folder with metadata.yaml and references.bib
+    output : HTML file
+    """
+    with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
+        template = Path(folder) / "report.html"
+        template.write_text(page("report.html"), encoding="utf-8")
+        options = ["--to=html5", "--mathml", "--default-image-extension=png", "--toc", "--toc-depth=2"]
+        html = as_page(_pandoc(text, manuscript, template, options))
+    write_text(html, output)
+
+
+def as_page(html: str) -> str:
+    """The document with its headings below the title, and each figure and table where everybody can use it.
+
+    Parameters
+    ----------
+    html : the report as pandoc writes it, its text inside ``main``, its figures files
+    """
+    head, opening, text = html.partition('<main id="content">')
+    text = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", text)
+    # Where a phone has them scroll, the keyboard must reach them.
+    text = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', text)
+    numbers = count(1)
+    text = re.sub(
+        "<table",
+        lambda tag: (
+            f'<div class="scroll" tabindex="0" role="region" aria-label="Table {next(numbers)}">{tag[0]}'
+        ),
+        text,
+    ).replace("</table>", "</table></div>")
+    with ThreadPoolExecutor() as pool:
+        pictures = pool.map(_as_webp, [figure[2] for figure in FIGURE.findall(text)])
+        # A click on a figure opens its picture, at its own size.
+        text = FIGURE.sub(
+            lambda figure: f'{figure[1]}<a href="../figures/{figure[2]}.png"><img src="{next(pictures)}"',
+            text,
+        )
+    return head + opening + re.sub(r'(<img src="data:[^>]*>)', r"\1</a>", text)
+
+
+def _as_webp(path: str) -> str:
+    """A picture with the same pixels in two thirds of the bytes, as an address."""
+    content = BytesIO()
+    with Image.open(path) as picture:
+        # Higher settings take longer and gain nothing.
+        picture.convert("RGB").save(content, format="WEBP", lossless=True, method=2, quality=75)
+    return "data:image/webp;base64," + b64encode(content.getvalue()).decode("ascii")
+
+
+def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
+    """Write the report as PDF, its figures as vectors.
+
+    Parameters
+    ----------
+    text : Markdown, its figures by their absolute paths
+    manuscript : folder with metadata.yaml and references.bib
+    output : PDF file
+
+    Raises
+    ------
+    ValueError
+        If Typst refuses the text, with its message.
+    """
+    options = ["--to=typst", "--default-image-extension=pdf"]
+    source = _pandoc(text, manuscript, TEMPLATES / "report.typ", options)
+    shows = dict(ALTERNATIVE.findall(text))
+
+    def with_alternative(image: re.Match) -> str:
+        # A string of Typst is written as one of JSON.
+        return f"{image[0]}, alt: {json.dumps(shows[Path(image[1]).stem], ensure_ascii=False)}"
+
+    source = re.sub(r'image\("([^"]+)"', with_alternative, source)
+    with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
+        document = Path(folder) / "report.typ"
+        document.write_text(source, encoding="utf-8")
+        try:
+            pdf = typst.compile(
+                document,
+                root=Path("/"),
+                format="pdf",
+                ignore_system_fonts=True,
+                font_paths=[FONTS],
+                timestamp=TIMESTAMP,
+            )
+        except typst.TypstError as error:
+            raise ValueError(f"Typst: {error}") from None
+    write_whole(output, lambda part: part.write_bytes(pdf))
+
+
+def _pandoc(text: str, manuscript: Path, template: Path, options: Sequence[str]) -> str:
+    common = [
+        "--from=markdown",
+        "--standalone",
+        "--number-sections",
+        "--citeproc",
+        f"--template={template}",
+        f"--metadata-file={manuscript / 'metadata.yaml'}",
+        f"--bibliography={manuscript / 'references.bib'}",
+        f"--variable=configuration:{configuration()}",
+    ]
+    return pandoc(text, [*common, *options])

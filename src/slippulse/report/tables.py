@@ -1,0 +1,286 @@
+"""Tables of the report, as Markdown: ledger, sentences of the paper, errata, and how exact the numbers are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+import pandas as pd
+
+from ..claims.coverage import claims_of
+from ..claims.reading import (
+    FAILURES_FIRST,
+    Ledger,
+    compared_text,
+    evidence_text,
+    measured_text,
+    predicted_text,
+)
+from ..data.numerals import number, percent, setting, with_uncertainty
+from ..studies.outcomes import FLAGGED
+from .texts import ERRATUM
+
+# Wide enough that pandoc takes the dashes as relative widths.
+FULL = 200
+DASH = "\N{EM DASH}"
+# What the grid table shows: simulation, column, name.
+QUANTITIES = (
+    ("steady_displacement", "front_speed_right", "front speed"),
+    ("steady_displacement", "pulse_slip", "final slip"),
+    ("steady_displacement", "pulse_peak_velocity", "peak slip velocity"),
+    ("steady_displacement", "pulse_width", "pulse width"),
+    ("scaling_displacement", "transition_time", r"$T_\mathrm{trans}$, displacement boundary"),
+    ("scaling_displacement", "transition_length", r"$L_\mathrm{trans}$, displacement boundary"),
+    ("scaling_stress", "transition_time", r"$T_\mathrm{trans}$, stress boundary"),
+    ("scaling_stress", "transition_length", r"$L_\mathrm{trans}$, stress boundary"),
+    ("scaling_stress", "last_release_time", "last release, stress boundary"),
+)
+# What a reason reads like in a table of how many sentences have it.
+REASONS = {
+    "tested": "tested by a claim",
+    "repeats": "repeats another sentence",
+    "background": "background, or says no more than that something is shown",
+    "definition": "definition or assumption",
+    "other work": "is about other work",
+    "no model": "no model here can tell",
+}
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int], align: str) -> str:
+    """A pipe table.
+
+    Parameters
+    ----------
+    head : titles of the columns
+    rows : cells, Markdown without line breaks or bare bars
+    widths : relative widths of the columns
+    align : one letter a column: l or r
+    """
+    marks = []
+    for width, side in zip(widths, align, strict=True):
+        dashes = "-" * max(3, round(FULL * width / sum(widths)))
+        marks.append(f":{dashes}" if side == "l" else f"{dashes}:")
+    lines = [head, marks, *rows]
+    return "\n".join("| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines)
+
+
+def plain(text: str) -> str:
+    """Text that Markdown and its tables leave alone."""
+    return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)
+
+
+def counts(ledger: Ledger) -> str:
+    """How many claims of each kind have each verdict; behind a plus those that follow from others."""
+    rows = [[kind, *numbers] for kind, numbers in ledger.by_kind()]
+    rows.append(["counted", *(str(ledger.count(verdict)) for verdict in FAILURES_FIRST)])
+    return table(["kind", *FAILURES_FIRST], rows, [14, 14, 13, 11, 14, 12], "lrrrrr")
+
+
+def failures(ledger: Ledger) -> str:
+    """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
+    rows = [
+        [f"{claim.statement} `{claim.id}`", claim.verdict, claim.why]
+        for verdict in FAILURES_FIRST[:-1]
+        for claim in ledger
+        if claim.verdict == verdict
+    ]
+    return table(["claim", "verdict", "why"], rows, [46, 14, 40], "lll")
+
+
+def whole_ledger(ledger: Ledger) -> str:
+    """Every claim with its position in the paper, numbers, tolerance, verdict and note."""
+    rows = [
+        [
+            f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`",
+            predicted_text(claim),
+            measured_text(claim),
+            compared_text(claim),
+            claim.verdict,
+            evidence_text(claim),
+        ]
+        for claim in ledger
+    ]
+    head = ["claim (place) `id`", "predicted", "measured", "deviation, tolerance", "verdict", "rests on"]
+    return table(head, rows, [32, 8, 12, 14, 9, 29], "lrrlll")
+
+
+def tolerances(ledger: Ledger, reasons: Mapping[str, Mapping]) -> str:
+    """Why each tolerance is what it is: the claims that have kind, tolerance and reason in common together.
+
+    Parameters
+    ----------
+    ledger : the claims
+    reasons : per claim kind, tolerance, reason, and the tolerance_exponent where it has one
+    """
+    groups: dict[tuple, list[str]] = {}
+    for claim in ledger:
+        entry = reasons.get(claim.id)
+        if entry is not None:
+            tolerance, exponent = float(entry["tolerance"]), entry.get("tolerance_exponent")
+            key = (entry["kind"], tolerance, exponent, entry["reason"])
+            groups.setdefault(key, []).append(f"`{claim.id}`")
+    rows = [
+        [
+            kind,
+            setting(tolerance) + (f"; exponent {setting(exponent)}" if exponent else ""),
+            plain(reason),
+            ", ".join(ids),
+        ]
+        for (kind, tolerance, exponent, reason), ids in groups.items()
+    ]
+    return table(["kind", "tolerance", "reason", "claims"], rows, [11, 11, 42, 36], "lrll")
+
+
+def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
+    """Numbers read off the published figure next to ours, with the reading error."""
+    ours = ledger("published_space_time_figure").further
+    rows = [
+        [
+            reading["statement"],
+            with_uncertainty(reading["value"], reading["reading_error"]),
+            with_uncertainty(ours.get(reading["statement"]), None),
+        ]
+        for reading in readings.values()
+    ]
+    return table(["quantity", "published", "this run"], rows, [50, 20, 20], "lrr")
+
+
+def found_list(ledger: Ledger) -> str:
+    """Every finding, as a list."""
+    return "\n".join(f"- {' '.join(finding['text'].split())}" for finding in ledger.findings.values())
+
+
+def sentence_counts(numbers: Mapping[str, int]) -> str:
+    """How many sentences are tested, and how many are not for each reason (`slippulse.claims.coverage.coverage`)."""
+    rows = [[words, str(numbers[key])] for key, words in REASONS.items()]
+    return table(["sentences", "how many"], [*rows, ["all", str(numbers["all"])]], [60, 15], "lr")
+
+
+def tested_sentences(sentences: Sequence[Mapping]) -> str:
+    """Every sentence that is tested, with its position in the paper and its claims."""
+    rows = [
+        [
+            # For a narrow column: paragraph and sentence as numbers.
+            re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", entry["place"]),
+            entry["paraphrase"],
+            ", ".join(f"`{claim}`" for claim in claims_of(entry)),
+        ]
+        for entry in sentences
+        if claims_of(entry)
+    ]
+    return table(["place", "what it says", "claims"], rows, [22, 45, 33], "lll")
+
+
+def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> str:
+    """The errata, their expressions evaluated by ``fill``."""
+    rows = [[fill(entry[key]) for key in ERRATUM] for entry in entries]
+    return table(["place", "printed", "right", "what shows it"], rows, [14, 27, 33, 26], "llll")
+
+
+def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
+    """Observed order and relative numerical uncertainty of the main quantities.
+
+    Parameters
+    ----------
+    tables : with uncertainties/NAME, the grid study of a simulation
+    """
+    rows = []
+    for simulation, quantity, name in QUANTITIES:
+        found = tables[f"uncertainties/{simulation}"]
+        found = found[found["quantity"] == quantity]
+        relative = (found["uncertainty"] / found["value"].abs()).dropna()
+        orders = found["observed_order"].dropna()
+        runs = len(relative) or len(found)
+        order = number(float(orders.median()), 2) if len(orders) and len(relative) else DASH
+        off = (
+            [percent(float(relative.median())), percent(float(relative.max()))]
+            if len(relative)
+            else [DASH] * 2
+        )
+        rows.append([name, str(runs), order, *off])
+    head = ["quantity", "runs", "order", "median uncertainty", "largest"]
+    return table(head, rows, [40, 10, 12, 20, 18], "lrrrr")
+
+
+def presets(settings: Mapping[str, Mapping], chosen: str) -> str:
+    """The presets of the configuration; the one of this run is in bold."""
+    rows = [
+        [
+            f"**{name}**" if name == chosen else name,
+            setting(preset["dx"]),
+            setting(preset["max_step"]),
+            str(preset["order"]),
+            " and ".join(setting(factor) for factor in preset["coarser"]),
+        ]
+        for name, preset in settings.items()
+    ]
+    step = r"largest step over $\Delta x$"
+    head = ["preset", r"spacing $\Delta x$", step, "order", "grid study, times coarser"]
+    return table(head, rows, [18, 18, 24, 12, 28], "lrrrr")
+
+
+def speeds(runs: pd.DataFrame, study: pd.DataFrame) -> str:
+    """Front speed and peak slip velocity of steady pulses: simulated, exact, and by the paper's formulas.
+
+    Parameters
+    ----------
+    runs : measured and predicted numbers of one simulation, one row a run
+    study : its grid study, for their uncertainties
+    """
+    errors = study.set_index(["point", "quantity"])["uncertainty"]
+
+    def measured(row, quantity: str) -> str:
+        return with_uncertainty(getattr(row, quantity), errors.get((row.Index, quantity)))
+
+    rows = [
+        [
+            setting(row.left),
+            setting(row.damping_ratio),
+            measured(row, "front_speed_right"),
+            number(row.exact_front_speed_right, 5),
+            number(row.paper_front_speed_right, 5),
+            measured(row, "pulse_peak_velocity"),
+            number(row.exact_pulse_peak_velocity, 5),
+            number(row.paper_pulse_peak_velocity, 5),
+        ]
+        for row in runs.itertuples()
+    ]
+    speed = ["$v$, run", "$v$, exact", r"$1/\sqrt{1-\tau_0^2}$"]
+    head = [r"$\tau_0$", "$b$", *speed, "peak, run", "peak, exact", r"$1/\sqrt{\gamma}$"]
+    return table(head, rows, [9, 9, 13, 13, 16, 13, 14, 13], "rrrrrrrr")
+
+
+def sticking(examples: pd.DataFrame) -> str:
+    """When positions of an exact rupture are released and stick, and how far they slip; empty without a rupture.
+
+    Parameters
+    ----------
+    examples : with quantity (release_time, stick_time, final_slip), x, value
+    """
+    found = examples[examples["quantity"].isin(["release_time", "stick_time", "final_slip"])]
+    if found["value"].isna().all():
+        return ""
+    columns = found.pivot(index="x", columns="quantity", values="value")
+    rows = [
+        [
+            setting(row.Index),
+            *(number(value, 5) for value in (row.release_time, row.stick_time, row.final_slip)),
+        ]
+        for row in columns.itertuples()
+    ]
+    head = ["$x$", r"release $T$", r"stick $t_\mathrm{s}$", r"slip $u(x,t_\mathrm{s})$"]
+    return table(head, rows, [10, 15, 15, 15], "rrrr")
+
+
+def edges(study: pd.DataFrame) -> str:
+    """The edges of the solver's domain: what was compared, its error and tolerance, and how it ended."""
+    rows = []
+    for row in study.to_dict("records"):
+        outcome = str(row["verdict"])
+        # Behind a flag its name, which is the first word of the message.
+        if outcome == FLAGGED:
+            outcome += ": " + str(row["message"]).partition(",")[0].replace("_", " ")
+        numbers = ["" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance")]
+        rows.append([row["family"], plain(row["value"]), plain(row["quantity"]), *numbers, outcome])
+    head = ["edge", "value", "compared", "error", "tolerance", "outcome"]
+    return table(head, rows, [16, 28, 18, 12, 12, 24], "lllrrl")
