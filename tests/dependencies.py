@@ -15,7 +15,7 @@ PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE = PROJECT / "src/slippulse"
 TEXTS = PROJECT / "manuscript"
 LOCK = "requirements.lock"
-# A sweep of one's own, in chunks so that there are the rules that join them, and a scene.
+# A user-defined sweep, in chunks so that there are the rules that join them, and a scene.
 OVERLAY = {
     "simulations": {
         "own": {
@@ -35,7 +35,7 @@ DRAWN = {path.stem for pattern in ("fig*.py", "study_*.py") for path in (PACKAGE
 STUDIED = {
     f"study_of_{path.stem}": path.stem
     for path in (PACKAGE / "studies").glob("*.py")
-    if re.search(r"^SETTINGS = ", path.read_text(encoding="utf-8"), re.M)
+    if re.search(r"^NEEDS = ", path.read_text(encoding="utf-8"), re.M)
 }
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")}
 # Every rule but those that only name targets.
@@ -46,6 +46,7 @@ PAGE_OF = {
     "write_claims": "claims.html",
     "write_explorer": "explorer.html",
     "write_index": "index.html",
+    "write_report": "report.html",
     "write_scenes_page": "scenes.html",
 }
 # Texts beside the package, by the rules that read them.
@@ -58,10 +59,7 @@ READ_BY = {
     "replication.md": {"write_report"},
     "shipped_verdicts.yaml": {"write_report"},
     "statements.yaml": {"write_claims", "write_report"},
-    "style.css": {"write_report"},
     "summary.yaml": {"write_index"},
-    "template.html": {"write_report"},
-    "template.typ": {"write_report"},
 }
 # Notes a digest of every source.
 EVERY_SOURCE = {"write_provenance"}
@@ -130,6 +128,7 @@ def expected(rule: str) -> set[str]:
         modules = (f"steps.{rule}",)
     found = reached_by(*modules)
     found |= templates_of(PAGE_OF[rule]) if rule in PAGE_OF else set()
+    found |= {"src/slippulse/report/templates/report.typ"} if rule == "write_report" else set()
     found |= {f"manuscript/{name}" for name, rules in READ_BY.items() if rule in rules}
     return found
 

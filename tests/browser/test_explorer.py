@@ -8,7 +8,9 @@ import pytest
 from tolerances import EXPLORER, EXPLORER_SPEED
 
 from slippulse.model.prestress import Prestress
-from slippulse.report.explorer_page import LARGEST_RATIO, explorer_page, simulated_runs
+from slippulse.report.explorer_page import explorer_page, simulated_runs
+from slippulse.studies.explorer_law import LARGEST_RATIO
+from slippulse.studies.explorer_law import table as explorer_law
 from slippulse.theory import Rupture, front_speed, steady_pulse
 
 # All by `make test-pages`, which opens the other pages too.
@@ -23,12 +25,16 @@ RUN = {
 }  # fmt: skip
 
 
+def law() -> pd.DataFrame:
+    return explorer_law({}, {}, {})
+
+
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
     # The way back leads somewhere.
     path.with_name("index.html").touch()
-    path.write_text(explorer_page([pd.DataFrame([RUN])]), encoding="utf-8")
+    path.write_text(explorer_page(law(), [pd.DataFrame([RUN])]), encoding="utf-8")
     return path
 
 
@@ -167,7 +173,7 @@ def test_the_nearest_run_can_be_visited(file, opened):
 
 
 def test_without_a_run_to_compare_with_there_is_no_comparison(tmp_path, opened):
-    (tmp_path / "explorer.html").write_text(explorer_page([]), encoding="utf-8")
+    (tmp_path / "explorer.html").write_text(explorer_page(law(), []), encoding="utf-8")
     with opened(tmp_path / "explorer.html") as page:
         settled(page)
         assert page.locator("#exact tbody tr").count() == 6
@@ -180,7 +186,7 @@ def test_only_runs_that_the_page_can_compute_are_shown():
         RUN | {"steps_and_bumps": '{"steps": [[1.0, 0.2]], "bumps": []}'}, RUN | {"damping_ratio": 6.0},
     ]  # fmt: skip
     unsteady = RUN | {"pulse_state": "unsteady"}
-    runs = simulated_runs(pd.DataFrame([RUN, *others, unsteady]))
+    runs = simulated_runs(pd.DataFrame([RUN, *others, unsteady]), LARGEST_RATIO)
     settings = [0.3, 0.5, 1.0, 1e-3, 0.1, "total", 1.1, 4.1, 10.1]
     assert runs == [[*settings, 1.11], [*settings, None]]
 

@@ -13,7 +13,7 @@ from matplotlib.mathtext import MathTextParser
 from matplotlib.text import Text
 
 from slippulse.figures.style import PAGE, SCRIPTS, save_figure
-from slippulse.report.captions import read_captions
+from slippulse.report.texts import read_captions
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))

@@ -5,18 +5,17 @@ from __future__ import annotations
 import re
 from functools import partial
 
+import pandas as pd
 import pytest
 import yaml
 from PIL import Image
-from slippulse.report.accuracy import sticking
-from slippulse.report.captions import PARTS, Caption, read_captions
-from slippulse.report.errata import KEYS, check_errata
-from slippulse.report.figures import Gallery, placed_figures
+from report.conftest import read
 
-from slippulse import Prestress
 from slippulse.claims.coverage import coverage, problems
 from slippulse.configuration.parameters import parameters
-from slippulse.theory import Rupture
+from slippulse.report.gallery import PLACED, Gallery
+from slippulse.report.tables import sticking
+from slippulse.report.texts import ERRATUM, PARTS, Caption, read_captions, read_errata
 
 EXPRESSION = re.compile(r"\{\{.+?\}\}", re.S)
 
@@ -28,24 +27,31 @@ def source(manuscript) -> str:
 
 @pytest.fixture(scope="module")
 def errata(manuscript) -> list[dict]:
-    return yaml.safe_load((manuscript / "errata.yaml").read_text(encoding="utf-8"))
+    return read_errata(manuscript / "errata.yaml")
+
+
+@pytest.fixture(scope="module")
+def captions(manuscript) -> dict[str, Caption]:
+    return read_captions(manuscript / "captions.yaml")
 
 
 def mentioned(text: str) -> set[str]:
-    return set(re.findall(r"""\bclaim(?:\.(?!count\b)\w+)?\(\s*["'](\w+)["']""", text))
+    return set(re.findall(r"""\b(?:claim(?:\.(?!count\b)\w+)?|judged)\(\s*["'](\w+)["']""", text))
 
 
-def test_every_claim_that_is_mentioned_is_in_the_ledger(source, errata, shipped):
+def test_every_claim_that_is_mentioned_is_in_the_ledger(source, errata, manuscript, shipped):
     names = mentioned(source)
     for entry in errata:
-        names |= mentioned(" ".join(entry.values()))
-        names |= set(re.findall(r"`(\w+)`", entry["shown"]))
-    assert len(names) > 30
-    assert names <= set(shipped["claims"])
+        names |= mentioned(" ".join(entry.values())) | set(re.findall(r"`(\w+)`", entry["shown"]))
+    summary = read(manuscript / "summary.yaml")
+    for line in summary["verdict"]:
+        names |= {*line["claims"], *mentioned(line["text"])}
+    assert len(names) > 30 and len(summary["verdict"]) == 5
+    assert names | mentioned(summary["accuracy"]) <= set(shipped["claims"])
 
 
 def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(manuscript, shipped):
-    statements = yaml.safe_load((manuscript / "statements.yaml").read_text(encoding="utf-8"))["statements"]
+    statements = read(manuscript / "statements.yaml")["statements"]
     assert problems(statements, list(shipped["claims"])) == []
     counts = coverage(statements)
     assert counts["tested"] > 150
@@ -71,17 +77,16 @@ def test_a_gap_in_the_map_is_found(changed, problem):
     assert any(line.startswith(problem) for line in problems([sentence], ["c"]))
 
 
-def test_every_claim_has_a_text(manuscript, shipped):
-    texts = yaml.safe_load((manuscript / "claims.yaml").read_text(encoding="utf-8"))
+def test_every_claim_has_a_text_and_a_shipped_verdict(manuscript, shipped, captions):
+    texts = read(manuscript / "claims.yaml")
     assert list(texts["claims"]) == list(shipped["claims"])
-    figures = set(read_captions(manuscript / "captions.yaml"))
     for text in texts["claims"].values():
         assert set(text) <= {"statement", "figure"} and text["statement"].endswith(".")
-        assert text.get("figure", "fig05_scaling") in figures
+        assert text.get("figure", "fig05_scaling") in captions
+    assert set(read(manuscript / "shipped_verdicts.yaml")) == set(shipped["claims"])
 
 
-def test_every_erratum_is_whole_and_shown(errata, source):
-    check_errata(errata)
+def test_every_erratum_is_shown(errata, source):
     assert len(errata) >= 15
     headings = set(re.findall(r"^#+ (.+?)(?: \{.*)?$", source, re.M))
     for entry in errata:
@@ -89,122 +94,76 @@ def test_every_erratum_is_whole_and_shown(errata, source):
             assert "".join(title) in headings, entry
 
 
-@pytest.mark.parametrize("key", KEYS)
-def test_an_erratum_that_is_not_whole_is_refused(key):
-    entry = {name: "text" for name in KEYS} | {key: " "}
-    with pytest.raises(ValueError, match=f"entry 1: {key}: missing"):
-        check_errata([entry])
+@pytest.mark.parametrize(
+    ("reader", "keys", "wrap", "where"),
+    [
+        (read_captions, PARTS, lambda parts: {"one": parts}, "one"),
+        (read_errata, ERRATUM, lambda parts: [parts], "entry 1"),
+    ],
+)
+def test_a_text_that_is_not_whole_is_refused(reader, keys, wrap, where, tmp_path):
+    whole = dict.fromkeys(keys, "text")
+    wrong = {f"{key}: missing": whole | {key: " "} for key in keys}
+    for reason, parts in (wrong | {"colour: unknown key": whole | {"colour": "red"}}).items():
+        (tmp_path / "texts.yaml").write_text(yaml.safe_dump(wrap(parts)), encoding="utf-8")
+        with pytest.raises(ValueError, match=f"{where}: {reason}"):
+            reader(tmp_path / "texts.yaml")
 
 
-def test_every_figure_has_one_place_and_a_caption(source, manuscript):
-    captions = read_captions(manuscript / "captions.yaml")
-    placed = placed_figures(source)
+def test_every_figure_has_one_position_and_a_caption(source, captions, project, manuscript):
+    placed = PLACED.findall(source)
+    modules = (project / "src/slippulse/figures").glob("*.py")
+    figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert sorted([*placed, "own_sweep"]) == sorted(captions)
-    titles = [caption.title for caption in captions.values()]
-    assert len(set(titles)) == len(titles)
-    for caption in captions.values():
+    assert len(figures) >= 17 and figures <= set(placed)
+    assert read(manuscript / "summary.yaml")["picture"] in figures
+    assert len({caption.title for caption in captions.values()}) == len(captions)
+    for name, caption in captions.items():
         # Plain text stands in headings and alternative texts; a finding is one sentence.
         assert not set("$*_{") & set(caption.title + caption.alt)
         assert caption.finding.endswith(".") and ". " not in EXPRESSION.sub(" ", caption.finding)
-
-
-@pytest.mark.parametrize("key", PARTS)
-def test_a_caption_that_is_not_whole_is_refused(key, tmp_path):
-    parts = {name: "text" for name in PARTS} | {key: " "}
-    (tmp_path / "captions.yaml").write_text(yaml.safe_dump({"one": parts}), encoding="utf-8")
-    with pytest.raises(ValueError, match=f"one: {key}: missing"):
-        read_captions(tmp_path / "captions.yaml")
-
-
-def test_a_caption_with_another_key_is_refused(tmp_path):
-    parts = {name: "text" for name in PARTS} | {"colour": "red"}
-    (tmp_path / "captions.yaml").write_text(yaml.safe_dump({"one": parts}), encoding="utf-8")
-    with pytest.raises(ValueError, match="one: colour: unknown key"):
-        read_captions(tmp_path / "captions.yaml")
-
-
-def test_the_summary_is_five_lines_about_claims_and_figures_that_there_are(manuscript, shipped):
-    summary = yaml.safe_load((manuscript / "summary.yaml").read_text(encoding="utf-8"))
-    assert len(summary["verdict"]) == 5
-    assert summary["picture"] in read_captions(manuscript / "captions.yaml")
-    for line in summary["verdict"]:
-        assert {*line["claims"], *mentioned(line["text"])} <= set(shipped["claims"])
-    assert mentioned(summary["accuracy"]) <= set(shipped["claims"])
-
-
-def test_the_shipped_verdicts_are_of_the_claims(manuscript, shipped):
-    verdicts = yaml.safe_load((manuscript / "shipped_verdicts.yaml").read_text(encoding="utf-8"))
-    assert set(verdicts) == set(shipped["claims"])
+        text = caption.finding + caption.caption
+        assert "runs(" in text or r"\Gamma=" in text or "no run" in text or name == "own_sweep", name
 
 
 def test_every_citation_is_in_the_bibliography_and_every_entry_is_cited(source, manuscript):
-    entries = set(
-        re.findall(r"^@\w+\{(\w+),", (manuscript / "references.bib").read_text(encoding="utf-8"), re.M)
-    )
-    assert set(re.findall(r"@([A-Z]\w+)", source)) == entries
+    bibliography = (manuscript / "references.bib").read_text(encoding="utf-8")
+    assert set(re.findall(r"@([A-Z]\w+)", source)) == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.M))
 
 
-def drawn(folder, **inches: float) -> str:
-    """A folder with pictures so many inches wide."""
-    for name, width in inches.items():
-        Image.new("1", (round(100 * width), 10)).save(folder / f"{name}.png", dpi=(100, 100))
-    return str(folder)
-
-
-def test_a_figure_of_one_column_is_one_in_the_report(tmp_path):
-    gallery = Gallery(["column", "page"], [], {}, drawn(tmp_path, column=3.4, page=7.05))
-    assert "width=49%" in gallery.figure("column") and "width=100%" in gallery.figure("page")
-
-
-def test_a_figure_that_the_text_does_not_place_comes_last(tmp_path):
-    gallery = Gallery(["new_one", "a"], ["a"], {"a": caption("text")}, drawn(tmp_path, new_one=7.0))
-    assert gallery.unplaced == ["new_one"]
-    assert "**Figure 2. new one.**" in gallery.figure("new_one")
-
-
-def test_every_figure_of_the_package_has_a_place(project, source):
-    modules = (project / "src/slippulse/figures").glob("*.py")
-    figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
-    assert len(figures) >= 17
-    assert figures <= set(placed_figures(source))
-
-
-def test_a_figure_of_the_paper_says_which(tmp_path):
-    gallery = Gallery(
-        ["fig05_scaling"], [], {"fig05_scaling": caption("text")}, drawn(tmp_path, fig05_scaling=7.0)
-    )
-    assert gallery.figure("fig05_scaling").startswith("![**Figure 1 (paper, figure 5). text.**")
-
-
-def test_every_caption_names_boundary_and_parameters(manuscript):
-    captions = read_captions(manuscript / "captions.yaml")
-    del captions["own_sweep"]
-    for name, caption in captions.items():
-        text = caption.finding + caption.caption
-        assert "runs(" in text or r"\Gamma=" in text or "no run" in text, name
+def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_path):
+    for name, width in {"a": 3.4, "c": 7.05, "fig05_scaling": 7.0, "new_one": 7.0}.items():
+        Image.new("1", (round(100 * width), 10)).save(tmp_path / f"{name}.png", dpi=(100, 100))
+    captions = {
+        name: Caption(name.upper(), "alt", "finding", "what") for name in ("a", "b", "c", "fig05_scaling")
+    }
+    text = "figure('a') figure('fig05_scaling') figure('b') figure('c')"
+    gallery = Gallery(["new_one", "c", "fig05_scaling", "a"], text, captions, tmp_path)
+    assert gallery.figure("c").startswith(f"![**Figure 3. C.** finding what]({tmp_path}/c){{")
+    assert gallery.figure("fig05_scaling").startswith("![**Figure 2 (paper, figure 5). FIG05_SCALING.**")
+    assert "width=49%" in gallery.figure("a") and "width=100%" in gallery.figure("c")
+    assert gallery.see("c", " (figure ", ")") == " ([figure 3](#c))"
+    assert gallery.see("c", " and ") == " and [3](#c)"
+    # One without files is left out; one that the text does not place comes last, with its name.
+    assert gallery.figure("b") == gallery.see("b") == ""
+    assert gallery.further() == gallery.figure("new_one") and "**Figure 4. new one.**" in gallery.further()
 
 
 def test_the_parameters_of_a_simulation_in_words(shipped):
     config = {
         "simulations": {
-            "one": {
-                "boundary": "displacement",
-                "left": [0.3],
-                "right": "same",
-                "gamma": [1e-3, 0.1, 0.2, 1.0],
-            },
+            "one": {"boundary": "displacement", "left": [0.3], "right": "same", "gamma": [1e-3, 0.1, 0.2, 1.0]},
             "two": {
                 "boundary": "stress",
                 "profiles": [
-                    {"left": -1.0, "right": 0.0, "width": 1.0},
-                    {"left": -0.5, "right": 0.0, "width": 2.0},
+                    {"left": -1.0, "right": 0.0, "width": 1.0}, {"left": -0.5, "right": 0.0, "width": 2.0},
                 ],
                 "beyond": {"position": 5.0, "levels": [0.1, 0.3]},
                 "damping_ratio": [0.0, 0.1, 0.3],
             },
         },
         "model": {"damping_ratio": 0.1},
-    }
+    }  # fmt: skip
     assert parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
     assert parameters(config, "two") == (
         r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
@@ -212,10 +171,8 @@ def test_the_parameters_of_a_simulation_in_words(shipped):
     )
     with pytest.raises(ValueError, match="simulation: 'three'; allowed: one, two"):
         parameters(config, "three")
-    assert all(
-        "$b$" in text or r"$\beta$" in text
-        for text in map(partial(parameters, shipped), shipped["simulations"])
-    )
+    for text in map(partial(parameters, shipped), shipped["simulations"]):
+        assert "$b$" in text or r"$\beta$" in text
 
 
 def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_checked(source, project):
@@ -233,20 +190,13 @@ def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_che
     assert all(any(title.startswith(name) for title in titles) for name in referred)
 
 
-def test_figures_are_numbered_in_the_order_of_the_text(tmp_path):
-    captions = {name: caption(name.upper()) for name in "abc"}
-    gallery = Gallery(["c", "a"], ["a", "b", "c"], captions, drawn(tmp_path, a=7.0, c=7.0))
-    assert gallery.figure("c").startswith(f"![**Figure 2. C.** finding what]({tmp_path}/c){{")
-    assert gallery.see("c", " (figure ", ")") == " ([figure 2](#c))"
-    assert gallery.see("c", " and ") == " and [2](#c)"
-    assert gallery.figure("b") == gallery.see("b") == ""
-
-
-def caption(title: str) -> Caption:
-    return Caption(title, "alt", "finding", "what")
-
-
 def test_the_table_of_stick_times():
-    rows = sticking(Rupture(Prestress(0.25, 0.25), 0.55, 0.1, duration=5.0), [0, 9]).splitlines()[2:]
-    assert rows == ["| 0 | 0 | 3.9312 | 1.9417 |", "| 9 | not measured | not measured | 0 |"]
-    assert sticking(None, [0]) == ""
+    values = {"release_time": (0.0, None), "stick_time": (3.93122803, None), "final_slip": (1.94166, 0.0)}
+    rows = [
+        {"quantity": name, "x": x, "value": value}
+        for name, pair in values.items()
+        for x, value in zip((0.0, 9.0), pair, strict=True)
+    ]
+    found = sticking(pd.DataFrame(rows)).splitlines()[2:]
+    assert found == ["| 0 | 0 | 3.9312 | 1.9417 |", "| 9 | not measured | not measured | 0 |"]
+    assert sticking(pd.DataFrame(rows).assign(value=float("nan"))) == ""

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from slippulse.figures import study_extremes
-from slippulse.report.accuracy import edges
+from slippulse.report.tables import edges
 from slippulse.simulation.simulate import UnstableRun
 from slippulse.studies.edges import Edge, Measured
 from slippulse.studies.outcomes import FLAGGED, NO_NUMBER, REFUSED, RIGHT, STOPPED, VERDICTS, WRONG

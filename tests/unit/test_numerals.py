@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from slippulse.report.pandoc import html_of
+from slippulse.report.html import markup_of
 
 from slippulse.data.numerals import number, percent, rounded, setting, short, with_uncertainty
 from slippulse.data.prose import fill
@@ -64,8 +64,8 @@ def test_prose_says_what_is_missing_and_refuses_what_is_unknown():
 
 
 def test_texts_for_pages_are_one_paragraph_each_and_show_raw_html():
-    html = html_of(["a <b>x</b> & $\\tau_0$", "(a) two", ""])
+    html = markup_of(["a <b>x</b> & $\\tau_0$", "(a) two", ""])
     assert html["a <b>x</b> & $\\tau_0$"].startswith("a &lt;b&gt;x&lt;/b&gt; &amp; <math")
     assert html["(a) two"] == "(a) two" and html[""] == ""
     with pytest.raises(ValueError, match="not one paragraph"):
-        html_of(["# a heading"])
+        markup_of(["# a heading"])

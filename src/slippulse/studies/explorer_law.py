@@ -10,7 +10,8 @@ import pandas as pd
 from ..model.scene import RELEASES
 from ..theory.front_law import prestress_for_speed
 
-NEEDS: dict = {}
+# From nothing but itself.
+NEEDS = {"sweeps": ()}
 
 # Even steps of ln(v - 1), and of asinh(b/SCALE), which is b where it is small and logarithmic beyond.
 EXCESS = np.linspace(-8.0, 12.0, 61)

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import pytest
 import yaml
+from report.conftest import CLAIM
 
 from slippulse.data.provenance import provenance
 from slippulse.data.records import write_record
@@ -18,14 +19,6 @@ from slippulse.report.index_page import index_page
 from slippulse.report.scene_page import scenes_page
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
-CLAIM = {
-    "id": "speed", "figure_or_section": "III A", "statement": r"fronts <outrun> the waves & keep $\gamma<1$",
-    "kind": "exact", "counted": True, "follows_from": [], "why": "", "deviation": 8e-5,
-    "predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "tolerance": 1e-3, "verdict": "reproduced",
-    "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0, "held": None, "failed": None, "undecided": None,
-    "ninety": None, "largest": None, "exponent": None, "exponent_uncertainty": None, "tolerance_exponent": None,
-    "exact_median": None, "exact_largest": None, "further": {}, "figure": "fig01_one",
-}  # fmt: skip
 FAILED = CLAIM | {
     "id": "width", "verdict": "not reproduced", "measured": 1.5, "deviation": 0.2, "figure": "", "why": "It is *off*.",
 }  # fmt: skip

@@ -1,0 +1,180 @@
+"""The report as a reader gets it: whole, self-contained, the same bytes each time, with the numbers of its run."""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from base64 import b64decode
+from dataclasses import replace
+from html.parser import HTMLParser
+from io import BytesIO
+from types import SimpleNamespace
+
+import pytest
+import yaml
+from PIL import Image
+from pypdf import PdfReader
+from report.conftest import DIGEST
+
+from slippulse.claims.reading import measured_text
+from slippulse.data.numerals import with_uncertainty
+from slippulse.figures.style import FAMILY
+from slippulse.report.manuscript import SOURCE, execute, names_for
+from slippulse.report.texts import read_captions
+from slippulse.steps import write_report
+
+
+class Resources(HTMLParser):
+    """What a browser would load, and how many tags of each kind there are."""
+
+    LOADING = frozenset({"src", "srcset", "data", "poster", "background", "action"})
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.loaded: list[str] = []
+        self.tags: dict[str, int] = {}
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags[tag] = self.tags.get(tag, 0) + 1
+        for key, value in attributes:
+            if key in self.LOADING or (key in ("href", "xlink:href") and tag != "a"):
+                self.loaded.append(value)
+
+
+@pytest.fixture(scope="module")
+def html(report) -> str:
+    return report.html.read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def pdf(report) -> PdfReader:
+    return PdfReader(report.pdf)
+
+
+def test_the_html_is_one_page_that_loads_nothing(html):
+    found = Resources(html)
+    assert len(found.loaded) >= 11
+    assert all(value.startswith(("data:", "#")) for value in found.loaded)
+    assert "script" not in found.tags
+    styles = " ".join(re.findall(r"<style.*?</style>", html, re.S))
+    assert "@import" not in styles and not re.search(r"url\(\s*['\"]?(?!data:|#)", styles)
+    assert found.tags["h1"] == found.tags["main"] == 1 and found.tags["h2"] > 5
+    assert (
+        html.count('<div class="scroll" tabindex="0"') == found.tags["table"] == html.count("</table></div>")
+    )
+    assert html.index('href="#content"') < html.index('href="../index.html"') < html.index('id="TOC"')
+    assert html.count("<math") > 150
+    text = re.sub(r"<annotation.*?</annotation>", "", html, flags=re.S)
+    assert not re.search(r"\\(?:frac|sqrt|tau|gamma|int)\b|\$\$", text)
+
+
+def test_both_carry_the_digest_of_their_configuration(html, pdf):
+    assert f'<meta name="configuration" content="{DIGEST}">' in html
+    assert pdf.metadata["/Keywords"] == f"configuration {DIGEST}"
+
+
+def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(html, report):
+    pictures = re.findall(
+        r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img src="data:image/webp;base64,([^"]+)"[^>]*></a>',
+        html,
+    )
+    assert sorted(name for name, _, _ in pictures) == sorted(report.inputs.figures)
+    for name, link, content in pictures:
+        path = report.inputs.figures_folder / f"{name}.png"
+        with Image.open(BytesIO(b64decode(content))) as shown, Image.open(path) as drawn:
+            assert shown.convert("RGB").tobytes() == drawn.convert("RGB").tobytes()
+        assert link == name
+
+
+def test_the_pdf_is_a4_in_the_typeface_of_its_figures_which_have_alternative_texts(pdf, report):
+    assert len(pdf.pages) >= 12
+    assert {tuple(sorted(round(float(x)) for x in page.mediabox[2:])) for page in pdf.pages} == {(595, 842)}
+    fonts = pdf.pages[0]["/Resources"]["/Font"].values()
+    assert any(FAMILY in font.get_object()["/BaseFont"] for font in fonts)
+    objects = (pdf.get_object(number) for number in range(1, int(pdf.trailer["/Size"])))
+    said = {entry["/Alt"].strip() for entry in objects if isinstance(entry, dict) and "/Alt" in entry}
+    captions = read_captions(report.inputs.manuscript / "captions.yaml")
+    assert {captions[name].alt for name in report.inputs.figures} <= said
+
+
+@pytest.mark.slow
+def test_equal_inputs_give_equal_bytes(report, build):
+    again = build(report.inputs)
+    assert again.pdf.read_bytes() == report.pdf.read_bytes()
+    assert again.html.read_bytes() == report.html.read_bytes()
+
+
+def test_both_have_the_numbers_of_the_ledger(report, html, pdf):
+    claim = report.claims["front_speed"]
+    for text in (html, " ".join(page.extract_text() for page in pdf.pages)):
+        flat = re.sub(r"\s+", " ", text)
+        assert with_uncertainty(claim["measured"], claim["uncertainty"]) in flat
+        assert measured_text(SimpleNamespace(**report.claims["grows_above_zero"])) in flat
+        for id in report.claims:
+            assert id in flat or id.replace("_", "_ ") in flat
+    assert "{{" not in re.sub(r"<(pre|code).*?</\1>", "", html, flags=re.S)
+    verdicts = {id: claim["verdict"] for id, claim in report.claims.items()}
+    assert yaml.safe_load(report.verdicts.read_text()) == verdicts
+
+
+def test_an_altered_run_changes_the_numbers_and_says_so(report, make_inputs, shipped, manuscript):
+    config = copy.deepcopy(shipped)
+    config["simulations"]["space_time_displacement"]["left"] = [0.4]
+    config["simulations"]["steady_displacement"]["left"] = [0.3]
+    altered = make_inputs(config, scale=1.05)
+    before, after = (execute(manuscript / SOURCE, inputs) for inputs in (report.inputs, altered))
+    assert "Altered configuration" not in before
+    top = after[: after.index("# Abstract")]
+    assert "`simulations.space_time_displacement.left`: `[0.4]` (shipped: `[0.25]`)" in top
+    assert "`simulations.steady_displacement.left`" in top and "Verdicts that differ" in top
+    for text, inputs in ((before, report.inputs), (after, altered)):
+        tau = inputs.config["simulations"]["space_time_displacement"]["left"][0]
+        claim = next(claim for claim in inputs.claims if claim["id"] == "front_speed")
+        assert rf"$\tau_0$ = {tau}" in text
+        assert with_uncertainty(claim["measured"], claim["uncertainty"]) in text
+    assert with_uncertainty(1.05 * 1.00137, 0.00021) not in before
+
+
+def test_what_was_not_measured_or_has_no_theory_is_said_to_be_so(report, manuscript):
+    nothing = {"measured": None, "uncertainty": None, "verdict": "not testable"}
+    tables = dict(report.inputs.tables)
+    for name in ("space_time_displacement", "space_time_stress"):
+        tables[name] = tables[name] * float("nan")
+    tables["derivations"] = tables["derivations"].assign(value=float("nan"))
+    claims = [claim | nothing for claim in report.inputs.claims]
+    text = execute(manuscript / SOURCE, replace(report.inputs, claims=claims, tables=tables))
+    assert "$T_\\mathrm{trans}$ = not measured" in text
+    assert not re.search(r"\bnan\b", re.sub(r"`[^`]*`", "", text), re.I)
+
+
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        ("# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n", r"small\.md: .*no_such"),
+        (
+            "```python\nwidth = 1 / 0\n```\n",
+            r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)",
+        ),
+    ],
+)
+def test_what_fails_is_one_line_that_names_it(source, reason, report, tmp_path):
+    (tmp_path / "small.md").write_text(source, encoding="utf-8")
+    with pytest.raises(ValueError, match=reason) as caught:
+        execute(tmp_path / "small.md", report.inputs)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path, monkeypatch):
+    inputs, results = report.inputs, tmp_path / "results"
+    for folder in ("config", "manuscript"):
+        (tmp_path / folder).symlink_to(project / folder)
+    results.mkdir()
+    (results / "figures").symlink_to(inputs.figures_folder)
+    contents = {"provenance": {"config": inputs.config}, "claims": inputs.claims, "findings": inputs.findings}
+    for name, content in contents.items():
+        (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
+    monkeypatch.chdir(results)
+    monkeypatch.setattr(write_report, "given", lambda files: ({}, inputs.tables))
+    assert set(write_report.by_hand(print)) == set(names_for(inputs, print))
