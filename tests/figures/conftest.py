@@ -10,9 +10,9 @@ import pytest
 import yaml
 from selection import selected
 
-from slippulse.comparison.table import measured_table
 from slippulse.configuration.expand import expand, resolve
 from slippulse.data.store import load_table, save_table
+from slippulse.predict.measured import measured_table
 from slippulse.simulation.sweep import run_sweep
 from slippulse.steps.reach import declared
 

@@ -6,13 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from slippulse.comparison.table import measured_table
 from slippulse.data.store import load_table, save_table
 from slippulse.figures import fig02_phase_diagram as figure
 from slippulse.figures.style import GREY
 from slippulse.measure.regime import REGIMES
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
+from slippulse.predict.measured import measured_table
 from slippulse.simulation.simulate import Samples
 from slippulse.simulation.sweep import run_sweep
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slippulse.comparison.published_figure import inference, likely
+from slippulse.claims.inference import inference, likely
 
 
 @pytest.fixture(scope="module")

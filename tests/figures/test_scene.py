@@ -11,7 +11,6 @@ import tolerances as tol
 from PIL import Image
 
 from slippulse.comparison.scene_numbers import scene_numbers
-from slippulse.comparison.table import measured_table
 from slippulse.configuration.expand import expand, resolve
 from slippulse.configuration.scenes import scene_problems, scene_simulation
 from slippulse.data.points import point
@@ -23,6 +22,7 @@ from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.figures.style import save_figure
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
+from slippulse.predict.measured import measured_table
 from slippulse.report.scene_page import scene_page
 from slippulse.simulation.sweep import run_sweep
 

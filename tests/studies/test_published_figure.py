@@ -7,8 +7,9 @@ import pytest
 from scipy.optimize import least_squares
 from selection import selected
 
-from slippulse.comparison.published_figure import curve, exact_values, inference, likely, right_panel
+from slippulse.claims.inference import curve, inference, likely, right_panel
 from slippulse.model.prestress import Prestress
+from slippulse.predict.published_figure import exact_values
 from slippulse.studies import published_figure as study_module
 from slippulse.studies.published_figure import _Panel
 from slippulse.theory.rupture import Rupture

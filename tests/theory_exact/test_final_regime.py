@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slippulse.comparison.final_regime import UNDECIDED, final_regime, growth_beyond
 from slippulse.measure.regime import REGIMES
 from slippulse.model.prestress import Prestress
+from slippulse.predict.final_regime import UNDECIDED, final_regime, growth_beyond
 from slippulse.theory.rupture import Rupture
 
 STILL, RATIO = 0.05, 0.1

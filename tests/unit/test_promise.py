@@ -10,10 +10,10 @@ import pytest
 
 import slippulse as sp
 from slippulse.comparison.scene_numbers import scene_numbers
-from slippulse.comparison.table import measured_table
 from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
+from slippulse.predict.measured import measured_table
 from slippulse.report.scene_page import scene_page
 from slippulse.simulation.sweep import run_sweep
 

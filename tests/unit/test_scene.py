@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.comparison.table import measured_table
 from slippulse.data.points import point
 from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
+from slippulse.predict.measured import measured_table
 
 DISPLACEMENT = {
     "boundary": "displacement",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import slippulse as sp
-from slippulse.comparison.steadiness import pulse_state
 from slippulse.measure.pulses import leading_pulse
+from slippulse.predict.measured import pulse_state
 
 
 def state(level: float, duration: float, **values) -> str:

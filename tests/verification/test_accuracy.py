@@ -10,8 +10,8 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.comparison.table import measured_table
 from slippulse.measure.promise import covers
+from slippulse.predict.measured import measured_table
 from slippulse.simulation.sweep import run_sweep
 
 SHARE = 0.95

@@ -82,6 +82,7 @@ rule predict:
         step="predict",
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
         share=config["measure"]["share"],
+        still=config["measure"]["still"],
         configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Predicting {wildcards.simulation}"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import pandas as pd
 
-from ..comparison.published_figure import inference
+from ..claims.inference import inference
 from ..data.prose import fill
 from ..model.scene import prestress_from
 from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pandas as pd
 from scipy.special import chdtrc
 
-from ..comparison.published_figure import inference, right_panel
+from ..claims.inference import inference, right_panel
 from ..data.numerals import rounded
 from . import rules
 from .evidence import Evidence

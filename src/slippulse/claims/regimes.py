@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from ..comparison.final_regime import UNDECIDED, final_regime
 from ..data.numerals import number
 from ..model.balance import prestress_balance_position
 from ..model.scene import prestress_from
+from ..predict.final_regime import UNDECIDED, final_regime
 from . import rules
 from .evidence import Evidence
 from .ledger import Claim
@@ -23,7 +23,7 @@ LASTING = ("pulse, one-way, steady", "pulse, one-way, growing", "pulses, two-way
 HALF_PERIODS = 1.5
 # Under a stress boundary, in units of |x_minus|, as the collapses of figure 5 are run.
 BALANCE_DISTANCES = 2.6
-EXACT = "comparison.final_regime"
+EXACT = "predict.final_regime"
 
 
 def regime_claims(evidence: Evidence) -> list[Claim]:

@@ -14,10 +14,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from ..comparison.final_regime import UNDECIDED, final_regime, growth_beyond
 from ..data.numerals import setting
 from ..data.points import point
 from ..measure.regime import REGIMES
+from ..predict.final_regime import UNDECIDED, final_regime, growth_beyond
 from .shared.regime_examples import EARLIER_DASHES, draw_examples, profiles
 from .style import BLACK, BLUE, COLUMN, GREEN, GREY, ORANGE, PURPLE, SKY, YELLOW, new_figure, panel_letter
 

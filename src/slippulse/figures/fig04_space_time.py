@@ -11,9 +11,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ..comparison.exact_rupture import exact_rupture
 from ..data.points import point
 from ..measure.fronts import position_at
+from ..predict.exact_rupture import exact_rupture
 from .shared.space_time import STUCK, draw_map, draw_profile, edges, prestress_profile, velocity_map
 from .style import BLACK, COLUMN, ORANGE, PURPLE, new_figure, panel_letter
 

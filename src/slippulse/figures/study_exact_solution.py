@@ -10,9 +10,9 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..comparison.exact_rupture import differences, exact_rupture
 from ..data.numerals import setting
 from ..data.points import point
+from ..predict.exact_rupture import differences, exact_rupture
 from ..theory.rupture import Rupture
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, PURPLE, VELOCITY_MAP, new_figure, panel_letter
 

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from ..comparison.published_figure import curve, likely
+from ..claims.inference import curve, likely
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 # What is drawn: data, measured numbers and studies by name, and keys of the configuration.

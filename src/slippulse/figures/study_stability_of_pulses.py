@@ -10,11 +10,11 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..comparison.exact_rupture import exact_rupture
 from ..data.numerals import setting
 from ..data.points import point
 from ..measure.pulses import leading_pulse
 from ..model.scene import prestress_from
+from ..predict.exact_rupture import exact_rupture
 from ..theory.front_law import front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
 from ..theory.rupture import Rupture

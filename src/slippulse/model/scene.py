@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from numbers import Real
+from typing import Any
 
 from .checks import check_choice, check_kind, check_number, short_repr
 from .prestress import Prestress
@@ -239,8 +240,22 @@ class Scene:
             raise ValueError(f"{error.args[0]}: missing; allowed: every attribute of a run") from None
 
 
+def scene_of(run: Any) -> Scene:
+    """The scene of a run: of a Dataset, of its attributes, or of a row of a measured table (itertuples or Series).
+
+    Raises
+    ------
+    ValueError
+        As `Scene.from_attributes`.
+    """
+    if hasattr(run, "_asdict"):
+        return Scene.from_attributes(run._asdict())
+    attributes = getattr(run, "attrs", None)
+    return Scene.from_attributes(attributes or run)
+
+
 def prestress_from(attributes: Mapping) -> Prestress:
-    """The pre-stress of a run, from the attributes of its Dataset or its row of a measured table.
+    """The pre-stress of a run, from its attributes.
 
     Raises
     ------
@@ -249,12 +264,15 @@ def prestress_from(attributes: Mapping) -> Prestress:
     KeyError
         If one is missing.
     """
-    text = attributes["steps_and_bumps"]
+    steps, bumps = _steps_and_bumps(attributes["steps_and_bumps"])
+    return Prestress(*(attributes[name] for name in ("left", "right", "width", "peak")), steps, bumps)
+
+
+def _steps_and_bumps(text: str) -> tuple[list, list]:
     try:
         more = json.loads(text)
-        rows = more["steps"], more["bumps"]
+        return more["steps"], more["bumps"]
     except (TypeError, ValueError, LookupError):
         raise ValueError(
             f"steps_and_bumps: {short_repr(text)}; allowed: a JSON object of steps and bumps"
         ) from None
-    return Prestress(*(attributes[name] for name in ("left", "right", "width", "peak")), *rows)

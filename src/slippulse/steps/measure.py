@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..comparison.table import measured_table
 from ..data.store import load_dataset, save_table
+from ..predict.measured import measured_table
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

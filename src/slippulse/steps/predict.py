@@ -10,6 +10,6 @@ from ..predict.table import predictions
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Outputs: predicted. Settings: sweep (resolved), share (of |x_minus| that counts as arrest)."""
+    """Outputs: predicted. Settings: sweep (resolved), share and still, as in `measure` of the configuration."""
     scenes, _ = expand(settings["sweep"])
-    save_table(predictions(scenes, settings["share"]), outputs["predicted"])
+    save_table(predictions(scenes, settings["share"], settings["still"]), outputs["predicted"])

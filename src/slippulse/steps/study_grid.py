@@ -11,12 +11,12 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from ..comparison.table import measured_table
 from ..configuration.expand import expand, promise_of
 from ..data.store import load_table, save_table
 from ..measure.promise import judged, summary
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import grid_tables
+from ..predict.measured import measured_table
 from ..simulation.sweep import run_sweep
 
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ..comparison.steadiness import pulse_state
 from ..measure.fronts import front_speed, path
 from ..measure.pulses import leading_pulse
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
+from ..predict.measured import pulse_state
 from ..simulation.simulate import UnstableRun, simulate
 from .outcomes import FLAGGED, NO_NUMBER, NOT_OFFERED, REFUSED, RIGHT, STOPPED, WRONG
 

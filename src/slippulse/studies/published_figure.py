@@ -7,11 +7,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pandas as pd
 
-from ..comparison.published_figure import exact_values, inference, lattice_values, readings_of
+from ..claims.inference import inference, readings_of
 from ..model.prestress import Prestress
 from ..model.roots import root_between
 from ..model.samples import Samples
 from ..model.scene import RELEASES, Scene
+from ..predict.published_figure import exact_values, lattice_values
 from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
@@ -40,7 +41,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     the same at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels
     and width read off it; "arrow": where the arrows end, the paper's estimate, and the exact value at the best fit
 
-    Source: `comparison.published_figure`.
+    Source: `claims.inference`.
     """
     panel = _Panel(readings_of(settings["published"], "space_time_displacement"), settings["end"])
     start = np.array([settings["near"]["tau0"], settings["near"]["gamma"]])

@@ -10,22 +10,19 @@ import pandas as pd
 import xarray as xr
 
 from ..model.prestress import Prestress
-from ..model.scene import prestress_from
+from ..model.scene import scene_of
 from ..theory.rupture import Rupture
 
-# Positions that are compared, between these shares of the ways of the two fronts: a front that stops does so sharply.
-POSITIONS, SHARES = 41, (0.8, 0.9)
+# Positions that are compared, between these fractions of the ways of the two fronts: a front that stops does so sharply.
+POSITIONS, FRACTIONS = 41, (0.8, 0.9)
 # Time after the release and before the stick that belongs to the layers at both edges.
 LAYER = 0.4
 
 
-def exact_rupture(attributes: Mapping) -> Rupture:
-    """The exact solution of a run's scene, from the attributes of its Dataset or its row of a measured table."""
-    gamma = float(attributes["gamma"]) if attributes["boundary"] == "displacement" else 0.0
-    return _rupture(
-        prestress_from(attributes), gamma, float(attributes["damping_ratio"]), str(attributes["release"]),
-        float(attributes["duration"]),
-    )  # fmt: skip
+def exact_rupture(run: xr.Dataset | Mapping) -> Rupture:
+    """The exact solution of a run's scene, as `scene_of` takes it."""
+    scene = scene_of(run)
+    return _rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
 
 
 @lru_cache(maxsize=64)
@@ -34,11 +31,11 @@ def _rupture(prestress: Prestress, gamma: float, ratio: float, release: str, dur
 
 
 def compared_positions(rupture: Rupture) -> np.ndarray:
-    """Evenly between shares of the ways of the outermost fronts."""
+    """Evenly between fractions of the ways of the outermost fronts."""
     ends = rupture.front_ends
     stops = ends[0][0].reason == "stops"
-    left = ends[0][0].x * (SHARES[0] if stops or rupture.gamma == 0.0 else SHARES[1])
-    return np.linspace(left, ends[-1][1].x * SHARES[1], POSITIONS)
+    left = ends[0][0].x * (FRACTIONS[0] if stops or rupture.gamma == 0.0 else FRACTIONS[1])
+    return np.linspace(left, ends[-1][1].x * FRACTIONS[1], POSITIONS)
 
 
 def differences(run: xr.Dataset, rupture: Rupture) -> pd.DataFrame:
@@ -52,7 +49,7 @@ def differences(run: xr.Dataset, rupture: Rupture) -> pd.DataFrame:
     Returns
     -------
     DataFrame of quantity (release, stick, slip, velocity), difference (mean of |run - exact| over the mean of |exact|)
-    and places (how many points that is over); a quantity that the scene does not have is left out
+    and places (how many points); a quantity that the scene does not have is left out
     """
     rows = []
     for quantity, found, exact in (*_edges(run, rupture), _velocity(run, rupture)):

@@ -1,29 +1,16 @@
-"""The published space-time figure as one inference: what parameters predict of its readings, and which are likely.
-
-The figure was drawn from a lattice. A trial is the exact solution of the continuum limit; what a finite spacing adds
-to each reading is taken from a lattice run of the same trial (`studies.published_figure`). The largest velocity needs
-that most: it is the largest value over all blocks, still grows when the figure ends, and falls with the spacing.
-"""
+"""The published space-time figure as one inference: which parameters its readings make likely."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from scipy.interpolate import CubicSpline
 from scipy.special import chdtrc, chdtri
 
-from ..measure.fronts import front_speed, position_at
-from ..theory.rupture import Rupture
-
-# A lattice's front is a straight line over this last share of its path; the exact one is beyond the Gaussian.
-WINDOW = 0.3
-# Positions of the trailing edge and of the last profile of slip velocity.
-EDGE, PROFILE = 241, 401
 # Points of a curve over the damping ratio.
 FINE = 801
-TRAILING = "trailing_edge_"
 CONFIDENCE = (0.68, 0.95)
 
 
@@ -47,61 +34,6 @@ def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def exact_values(rupture: Rupture, quantities: Iterable[str]) -> np.ndarray:
-    """Readings of an exact rupture, symmetric and under a displacement boundary, that ends where the figure does.
-
-    Parameters
-    ----------
-    rupture : its duration is where the figure ends
-    quantities : names as in a measured table
-
-    Raises
-    ------
-    ValueError
-        Naming a quantity that is not predicted here.
-
-    Source: `Rupture`.
-    """
-    end = rupture.front_ends[-1][1]
-    before = (1.0 - WINDOW) * end.x
-    speed = (end.x - before) / (end.time - float(rupture.release_time(before)))
-    x = np.linspace(0.0, end.x, EDGE)
-    stick = rupture.stick_time(x)
-    edge = stick[np.isfinite(stick)], x[np.isfinite(stick)]
-    at_end = rupture.slip_velocity(np.linspace(0.0, end.x, PROFILE), rupture.duration)
-    known = {
-        "front_speed_right": speed,
-        "front_intercept_right": end.x - speed * end.time,
-        "first_stick_time": rupture.transition_time,
-        "largest_velocity": max(rupture.largest_velocity, float(np.max(at_end))),
-    }
-    return _chosen(quantities, known, lambda time: float(np.interp(time, *edge)))
-
-
-def lattice_values(run: xr.Dataset, quantities: Iterable[str]) -> np.ndarray:
-    """The same of a lattice run whose samples are its blocks."""
-    speed, intercept, _ = front_speed(run, WINDOW)
-    known = {
-        "front_speed_right": speed,
-        "front_intercept_right": intercept,
-        "first_stick_time": run.attrs["first_stick_time"],
-        "largest_velocity": float(run["sample_velocity"].max()),
-    }
-    return _chosen(quantities, known, lambda time: float(position_at(run, time, edge="stick_time")))
-
-
-def _chosen(quantities: Iterable[str], known: Mapping[str, float], trailing_edge) -> np.ndarray:
-    out = []
-    for name in quantities:
-        if name.startswith(TRAILING):
-            out.append(trailing_edge(float(name.removeprefix(TRAILING))))
-        elif name in known:
-            out.append(known[name])
-        else:
-            raise ValueError(f"quantity: {name!r}; allowed: {', '.join(known)}, {TRAILING}TIME")
-    return np.array(out)
-
-
 def curve(profile: pd.DataFrame) -> pd.DataFrame:
     """Best trials of one release rule over the damping ratio, between those that were fitted.
 
@@ -114,9 +46,6 @@ def curve(profile: pd.DataFrame) -> pd.DataFrame:
     DataFrame of damping_ratio, dx, tau0, gamma, their errors at that damping ratio, chi2, and one column a reading:
     its pull, (predicted - drawn)/reading_error; cubic in the logarithm of the damping ratio
     """
-    # Slow to load, and needed here only.
-    from scipy.interpolate import CubicSpline
-
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     numbers = profile.groupby("damping_ratio")[["dx", "tau0", "gamma", "tau0_error", "gamma_error"]].first()
     nodes = pd.concat([pulls, numbers], axis=1)
@@ -128,7 +57,7 @@ def curve(profile: pd.DataFrame) -> pd.DataFrame:
 
 
 def likely(level: float, parameters: int = 1) -> float:
-    """How far chi-square may lie above its smallest value inside a confidence region of so many parameters."""
+    """How far chi-square may lie above its smallest value inside a confidence region of that many parameters."""
     return float(chdtri(parameters, 1.0 - level))
 
 

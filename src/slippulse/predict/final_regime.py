@@ -18,7 +18,7 @@ def final_regime(
     left, right : levels of the pre-stress, below 1, with one nucleation point between them
     gamma : elasticity ratio, or 0 for the stress boundary
     damping_ratio, release : beta/dx and the release rule, which set the front speed
-    still : share of the largest velocity below which the nucleation point counts as at rest, as in `classify`
+    still : fraction of the largest velocity below which the nucleation point counts as at rest, as in `classify`
 
     Returns
     -------
@@ -54,8 +54,8 @@ def final_regime(
     if high == 0.0:
         return "pulse, one-way, steady"
     ratio = high / -low
-    share = ratio / (1.0 + 1.0 / float(front_speed(high, damping_ratio, release)) + 2.0 * ratio)
-    return "crack-like, one-way" if share >= still else "pulse, one-way, growing"
+    centre = ratio / (1.0 + 1.0 / float(front_speed(high, damping_ratio, release)) + 2.0 * ratio)
+    return "crack-like, one-way" if centre >= still else "pulse, one-way, growing"
 
 
 def growth_beyond(level: float) -> str:

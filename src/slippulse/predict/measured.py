@@ -1,0 +1,116 @@
+"""Every number of every run of a sweep, one row a run, with what takes theory to say of its pulse and transition."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ..data.points import point
+from ..measure.fronts import path
+from ..measure.pulses import LeadingPulse, comoving, slip_variation
+from ..measure.table import measure_run
+from ..model.scene import scene_of
+from ..theory.pulse import paper_pulse, steady_pulse
+from ..theory.transition import paper_transition_displacement, paper_transition_stress
+
+# A width that differs from that of the steady pulse at the measured speed by more than this, the damped layer and the
+# blocks that the front takes, or slip that still varies by more than this behind it, belongs to a pulse that changes.
+CHANGE, WIDTH_BLOCKS = 0.05, 3.0
+# The damped layer at the front over the width of the pulse: the front speed is computed without leaf springs, and its
+# error grows as the square, to one per cent here.
+THICKEST_LAYER = 0.125
+
+
+def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
+    """Measure every run of a sweep.
+
+    Parameters
+    ----------
+    sweep : data of a sweep
+    settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
+
+    Returns
+    -------
+    one row a run: `measure_run`, the state of its leading pulse, and the paper's T_trans and L_trans where the
+    transition is measured
+    """
+    rows = []
+    for index in range(sweep.sizes["point"]):
+        run = point(sweep, index)
+        row, pulse = measure_run(run, settings)
+        if pulse is not None:
+            row["pulse_state"] = pulse_state(run, pulse)
+            row["pulse_shape_deviation"] = shape_deviation(run, pulse)
+        if "transition_time" in row:
+            row["paper_transition_time"], row["paper_transition_length"] = paper_transition(run)
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def pulse_state(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> str:
+    """Whether the leading pulse is the steady one, so that the numbers of steady pulses apply to it.
+
+    Parameters
+    ----------
+    run : one run with fronts and fields
+    pulse : its leading pulse on ``side``
+
+    Returns
+    -------
+    "steady"; "unsteady" when its width is not the steady one at its speed, the slip behind it varies, or it is slower
+    than the waves; "thick_front" when the damped layer is not thin against it; "none" without a pulse or under a
+    stress boundary
+
+    Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
+    """
+    if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
+        return "none"
+    _, distance = path(run, side)
+    sign = 1.0 if side == "right" else -1.0
+    tau = float(run["prestress"].values[np.argmin(np.abs(sign * run["x"].values - distance[-1]))])
+    if not 0.0 < tau < 1.0:
+        return "none"
+    if pulse.speed <= 1.0:
+        return "unsteady"
+    beta, dx = run.attrs["beta"], run.attrs["dx"]
+    steady = steady_pulse(tau, run.attrs["gamma"], beta, pulse.speed)
+    layer = beta * pulse.speed / (pulse.speed**2 - 1.0)
+    if layer > THICKEST_LAYER * steady.width:
+        return "thick_front"
+    allowed = CHANGE * steady.width + layer + WIDTH_BLOCKS * dx
+    # A pulse too young to have left slip behind is judged by its width alone.
+    varied = slip_variation(run, pulse, side)
+    changes = abs(pulse.width - steady.width) > allowed or varied > CHANGE
+    return "unsteady" if changes else "steady"
+
+
+def shape_deviation(run: xr.Dataset, pulse: LeadingPulse) -> float:
+    """Largest distance of the right pulse's slip velocity from the paper's cosine, over its peak, the peaks aligned.
+
+    Two blocks at each end of the cosine are left out, where the lattice rounds its corner. NaN without a pulse, or
+    where the paper has none.
+
+    Source: equations (9) and (C10) of the paper.
+    """
+    tau = run.attrs["right"]
+    if run.attrs["boundary"] != "displacement" or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
+        return float("nan")
+    paper = paper_pulse(tau, run.attrs["gamma"])
+    fields = comoving(run, pulse)
+    away = fields["xi"] - (pulse.peak_distance - pulse.front)
+    inside = np.abs(away) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
+    if np.count_nonzero(inside) < 4:
+        return float("nan")
+    _, cosine, _ = paper.profile(away[inside] + paper.peak_position)
+    return float(np.max(np.abs(fields["slip_velocity"][inside] - cosine)) / paper.peak_velocity)
+
+
+def paper_transition(run: xr.Dataset) -> tuple[float, float]:
+    """The paper's T_trans and L_trans of a run (sections III B and III C)."""
+    scene = scene_of(run)
+    if scene.boundary == "displacement":
+        return paper_transition_displacement(scene.prestress.left, scene.gamma)
+    return paper_transition_stress(scene.prestress)
