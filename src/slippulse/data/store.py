@@ -47,9 +47,10 @@ def load_dataset(path: str | Path) -> xr.Dataset:
         raise UnreadableFile(path, error) from error
 
 
-def save_table(table: pd.DataFrame, path: str | Path) -> None:
-    """Write a table as CSV, 9 significant digits."""
-    write_whole(path, lambda part: table.to_csv(part, index=False, float_format="%.9g", lineterminator="\n"))
+def save_table(table: pd.DataFrame, path: str | Path, digits: int = 9) -> None:
+    """Write a table as CSV, to some significant digits."""
+    form = f"%.{digits}g"
+    write_whole(path, lambda part: table.to_csv(part, index=False, float_format=form, lineterminator="\n"))
 
 
 def load_table(path: str | Path, whole: Collection[str] | None = None) -> pd.DataFrame:

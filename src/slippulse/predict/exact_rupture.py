@@ -13,7 +13,7 @@ from ..model.prestress import Prestress
 from ..model.scene import scene_of
 from ..theory.rupture import Rupture
 
-# Positions that are compared, between these fractions of the ways of the two fronts: a front that stops does so sharply.
+# Positions that are compared, between these fractions of the two fronts' ways: a front that stops does so sharply.
 POSITIONS, FRACTIONS = 41, (0.8, 0.9)
 # Time after the release and before the stick that belongs to the layers at both edges.
 LAYER = 0.4

@@ -85,7 +85,7 @@ def _front_speeds(scenes: Sequence[Scene], side: str) -> pd.DataFrame:
 
 
 def _known(find: Callable[[], Found]) -> Found | None:
-    """What theory has; None outside the domain that it states by a ValueError, or where numbers are too large for it."""
+    """What theory has; None outside the domain that it states by a ValueError, or where numbers are too large."""
     try:
         return find()
     except (ValueError, ArithmeticError):
