@@ -4,10 +4,12 @@
 rule write_claims:
     input:
         sources("steps.write_claims"),
-        measured=tables("measurements", CLAIM_SIMULATIONS),
+        # Of front speeds at one level, without a grid study.
+        measured=tables("measurements", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=tables("uncertainties/coarser", CLAIM_SIMULATIONS),
         uncertainties=tables("uncertainties", CLAIM_SIMULATIONS),
-        study="results/studies/published_figure.csv",
+        predicted=tables("predictions", [*CLAIM_SIMULATIONS, "front_speed"]),
+        studies=tables("studies", ["exact_pulses", "published_figure"]),
         texts="manuscript/claims.yaml",
         statements="manuscript/statements.yaml",
     output:

@@ -9,43 +9,43 @@ from collections.abc import Mapping, Sequence
 WHY_NONE = ("background", "definition", "other work", "no model")
 
 
-def claims_of(sentence: Mapping) -> list[str]:
-    """The claims that test a sentence."""
-    named = sentence.get("claim", [])
-    return [named] if isinstance(named, str) else list(named)
+def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
+    """The claims, and the algebra, that test a sentence."""
+    return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 
-def problems(statements: Sequence[Mapping], claims: Sequence[str]) -> list[str]:
+def problems(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> list[str]:
     """One line for each sentence that is neither tested nor excused, each claim without a sentence, each wrong name."""
-    ids = Counter(sentence["id"] for sentence in statements)
+    ids = Counter(sentence["id"] for sentence in sentences)
     lines = [f"{id}: twice" for id, count in ids.items() if count > 1]
-    for sentence in statements:
-        named, why = claims_of(sentence), str(sentence.get("why_none", ""))
-        if bool(named) == bool(why):
+    for sentence in sentences:
+        why = str(sentence.get("why_none", ""))
+        if bool(claims_of(entries, sentence)) == bool(why):
             lines.append(f"{sentence['id']}: allowed: a claim, or why there is none")
-        lines += [f"{sentence['id']}: {claim}: no such claim" for claim in named if claim not in claims]
         repeated = why.removeprefix("repeats ")
         if why and why not in WHY_NONE and repeated not in ids:
             lines.append(f"{sentence['id']}: {why!r}; allowed: {', '.join(WHY_NONE)}, repeats ID")
         if len(sentence["paraphrase"].split()) > 25:
             lines.append(f"{sentence['id']}: paraphrase of more than 25 words")
-    tested = {claim for sentence in statements for claim in claims_of(sentence)}
-    return lines + [f"{claim}: tests no sentence" for claim in claims if claim not in tested]
+    for id, entry in entries.items():
+        lines += [f"{id}: {name}: no such sentence" for name in entry["sentences"] if name not in ids]
+        lines += [] if entry["sentences"] else [f"{id}: tests no sentence"]
+    return lines
 
 
-def coverage(statements: Sequence[Mapping]) -> dict[str, int]:
+def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
     """How many sentences there are, how many are tested, and how many are not for each reason."""
-    counts: Counter[str] = Counter()
-    for sentence in statements:
-        why = str(sentence.get("why_none", "tested"))
-        counts["repeats" if why.startswith("repeats") else why] += 1
-    return {"all": len(statements), **{key: counts[key] for key in ("tested", "repeats", *WHY_NONE)}}
+    why = [str(sentence.get("why_none", "tested")) for sentence in sentences]
+    counts = Counter("repeats" if reason.startswith("repeats") else reason for reason in why)
+    return {"all": len(sentences), **{key: counts[key] for key in ("tested", "repeats", *WHY_NONE)}}
 
 
-def places(statements: Sequence[Mapping]) -> dict[str, str]:
+def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
     """Per claim the sections, appendices and figures whose sentences it tests."""
-    found: dict[str, dict[str, None]] = {}
-    for sentence in statements:
-        for claim in claims_of(sentence):
-            found.setdefault(claim, {})[sentence["place"].split(",")[0]] = None
-    return {claim: "; ".join(where) for claim, where in found.items()}
+    found = {}
+    for id, entry in entries.items():
+        tested = [
+            sentence["place"].split(",")[0] for sentence in sentences if sentence["id"] in entry["sentences"]
+        ]
+        found[id] = "; ".join(dict.fromkeys(tested))
+    return found

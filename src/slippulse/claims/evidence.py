@@ -1,24 +1,55 @@
-"""What was measured on three lattices, and from it a claim of each kind."""
+"""What was measured on three lattices, beside what is predicted, and from it a claim of each kind."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
 
 from ..measure.uncertainty import GridStudy, grid_study
 from . import rules
-from .ledger import Claim
 
 NAN = float("nan")
-ROUNDING = float(np.finfo(float).eps) * 8.0
+Where = Callable[[pd.DataFrame], pd.Series]
 
 
-def unflagged(table: pd.DataFrame) -> pd.Series:
-    """Runs whose numbers are those of the model."""
-    return table["run_flags"].isna() | (table["run_flags"] == "")
+class NoRuns(Exception):
+    """An altered configuration has left no runs to take a number from."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What was found about one claim; what it says stands in manuscript/claims.yaml.
+
+    Attributes
+    ----------
+    id : short name
+    verdict : one of `rules.VERDICTS`
+    predicted, measured : numbers; for an approximate claim 1 and the median ratio, for a qualitative one the runs and
+        how many it holds in, for a reading the degrees of freedom and chi-square
+    uncertainty : numerical uncertainty of `measured`; for a qualitative claim how many runs are undecided
+    deviation : what stands beside the tolerance: relative deviation, its median, fraction of runs that contradict, p
+    numbers : what its kind has besides: runs and left_out (those without numbers); ninety and largest (quantile and
+        largest deviation of the runs), exponent and exponent_uncertainty, exact_median and exact_largest (of the
+        deviations of the runs at spacing 0 from the exact theory); held, failed and undecided
+    further : other numbers, by what they are
+    why : one sentence on why it is not simply reproduced, where its numbers do not say it
+    note, source : in place of those that stand with the text
+    """
+
+    id: str
+    verdict: str
+    predicted: float = NAN
+    measured: float = NAN
+    uncertainty: float = NAN
+    deviation: float = NAN
+    numbers: Mapping[str, float | None] = field(default_factory=dict)
+    further: Mapping[str, float] = field(default_factory=dict)
+    why: str = ""
+    note: str = ""
+    source: str = ""
 
 
 def line(table: pd.DataFrame, measured: str, predicted: str) -> float:
@@ -33,78 +64,106 @@ def deviations(table: pd.DataFrame, measured: str, predicted: str) -> np.ndarray
     return np.abs(table[measured].to_numpy(float) / table[predicted].to_numpy(float) - 1.0)
 
 
+def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
+    """What two lattices both say; None where they differ, or say nothing."""
+    pairs = zip(first, second, strict=True)
+    return [bool(one) if one is not None and one == other else None for one, other in pairs]
+
+
+def counts(decided: Sequence[bool | None]) -> dict[str, int]:
+    """How many runs hold, fail and are undecided."""
+    held, failed = (
+        sum(found is not None and bool(found) is want for found in decided) for want in (True, False)
+    )
+    return {"held": held, "failed": failed, "undecided": len(decided) - held - failed}
+
+
 @dataclass(frozen=True)
 class Evidence:
     """What the ledger is computed from.
 
     Attributes
     ----------
-    measured : per simulation, one row a run
-    coarser : per simulation, the measured tables of the coarser lattices, finer first
+    tables : per simulation or study its table; predictions alone where nothing is measured
+    lattices_of : per simulation, measured with predicted on the finest lattice, the middle and the coarsest
     uncertainties : per simulation, the grid study of every number of every run
-    settings : per claim, kind, tolerance and so on, from the configuration
+    entries : per claim, what manuscript/claims.yaml says of it
     steady : change of the largest velocity below which a pulse is steady, from the configuration
-    still : share of the largest velocity below which a point is at rest, from the configuration
     """
 
-    measured: Mapping[str, pd.DataFrame]
-    coarser: Mapping[str, list[pd.DataFrame]]
+    tables: Mapping[str, pd.DataFrame]
+    lattices_of: Mapping[str, Sequence[pd.DataFrame]]
     uncertainties: Mapping[str, pd.DataFrame]
-    settings: Mapping[str, Mapping]
+    entries: Mapping[str, Mapping]
     steady: float = 0.02
-    still: float = 0.05
+
+    @classmethod
+    def of(
+        cls, tables: Mapping[str, pd.DataFrame], entries: Mapping[str, Mapping], steady: float
+    ) -> Evidence:
+        """From tables by name, those of a grid study as coarser/NAME and uncertainties/NAME."""
+        lattices, studies = {}, {}
+        for name in tables:
+            if name.startswith("coarser/"):
+                finest, coarser = tables[name.removeprefix("coarser/")], tables[name]
+                predicted = finest[finest.columns.difference(coarser.columns)]
+                parts = (part.reset_index(drop=True) for _, part in coarser.groupby("factor"))
+                lattices[name.removeprefix("coarser/")] = [finest, *(part.join(predicted) for part in parts)]
+            elif name.startswith("uncertainties/"):
+                studies[name.removeprefix("uncertainties/")] = tables[name]
+        return cls(tables, lattices, studies, entries, steady)
 
     # Runs
 
     def lattices(self, *simulations: str) -> list[pd.DataFrame]:
         """Tables of some simulations one below the other: on the finest lattice, the middle and the coarsest.
 
-        Runs that are flagged on the finest one are left out of all.
+        Runs that are flagged on the finest one, whose numbers are not those of the model, are left out of all.
         """
-        parts: list[list[pd.DataFrame]] = []
+        parts = []
         for name in simulations:
-            kept = unflagged(self.measured[name]).to_numpy()
-            tables = (self.measured[name], *self.coarser[name])
-            parts.append([table.reset_index(drop=True)[kept].assign(simulation=name) for table in tables])
+            kept = _unflagged(self.lattices_of[name][0])
+            parts.append([table[kept].assign(simulation=name) for table in self.lattices_of[name]])
         return [pd.concat(level, ignore_index=True) for level in zip(*parts, strict=True)]
 
-    def points(self, simulation: str, quantity: str) -> pd.DataFrame:
+    def runs(self, *simulations: str, where: Where | None = None) -> pd.DataFrame:
+        """Unflagged runs on the finest lattice.
+
+        Raises
+        ------
+        NoRuns
+        """
+        table = self.lattices(*simulations)[0]
+        table = table if where is None else table[where(table)]
+        if table.empty:
+            raise NoRuns(", ".join(simulations))
+        return table
+
+    def points(self, simulation: str, quantity: str, where: Where | None = None) -> pd.DataFrame:
         """Unflagged runs of a sweep with one quantity: value, extrapolated to spacing 0, uncertainty."""
         study = self.uncertainties[simulation]
         study = study[study["quantity"] == quantity].set_index("point")
-        table = self.measured[simulation].reset_index(drop=True)
+        table = self.lattices_of[simulation][0]
         columns = {
             name: study[name].reindex(table.index) for name in ("value", "extrapolated", "uncertainty")
         }
-        return table.assign(simulation=simulation, **columns)[unflagged(table).to_numpy()]
+        points = table.assign(simulation=simulation, **columns)[_unflagged(table)]
+        return points if where is None else points[where(points)]
 
     def studied(self, tables: Sequence[pd.DataFrame], number: Callable[[pd.DataFrame], float]) -> GridStudy:
         """Grid study of a number that is computed from a table, as a median is; of one table, no uncertainty."""
         values = tuple(number(table) for table in tables)
         if len(tables) == 1:
             return GridStudy(values[0], values[0], NAN, 0.0)
-        factors = tuple(float(table["factor"].dropna().iloc[0]) for table in tables[1:])
-        return grid_study(values, factors)
+        return grid_study(values, tuple(float(table["factor"].dropna().iloc[0]) for table in tables[1:]))
 
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
-        return float(self.settings[id]["tolerance"])
-
-    def claim(self, id: str, source: str, verdict: str, **fields) -> Claim:
-        """A claim with kind and tolerance from the configuration."""
-        empty = dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"), NAN)
-        entry = self.settings[id]
-        return Claim(
-            **{"note": "", **empty, **fields}, id=id, kind=entry["kind"], tolerance=self.tolerance(id),
-            tolerance_exponent=entry.get("tolerance_exponent"), verdict=verdict, source=source,
-            follows_from=tuple(entry.get("follows_from", ())), counted="follows_from" not in entry,
-        )  # fmt: skip
+        return float(self.entries[id]["tolerance"])
 
     # A claim of each kind
 
-    def exact(
-        self, id: str, source: str, points: pd.DataFrame, predicted: Iterable[float], note: str = ""
-    ) -> Claim:
+    def exact(self, id: str, points: pd.DataFrame, predicted: Iterable[float]) -> Claim:
         """An equation, by the values of its runs at spacing 0.
 
         Parameters
@@ -112,24 +171,31 @@ class Evidence:
         points : runs with columns extrapolated and uncertainty
         predicted : what the paper has for each; 0 is compared without division
         """
-        predicted = np.asarray(list(predicted), dtype=float)
-        scale = np.where(predicted == 0.0, 1.0, np.abs(predicted))
+        paper = np.asarray(list(predicted), dtype=float)
+        scale = np.where(paper == 0.0, 1.0, np.abs(paper))
         value, uncertainty = (points[name].to_numpy(float) for name in ("extrapolated", "uncertainty"))
-        deviation, blur = np.abs(value - predicted) / scale, uncertainty / scale
+        deviation, blur = np.abs(value - paper) / scale, uncertainty / scale
         verdict, run = rules.exact(deviation, blur, self.tolerance(id))
         usable = int(np.isfinite(deviation + blur).sum())
-        found = {"runs": usable, "left_out": len(points) - usable, "note": note}
-        if run is not None:
-            found |= {
-                "predicted": predicted[run], "measured": value[run], "uncertainty": uncertainty[run],
-                "deviation": deviation[run],
-            }  # fmt: skip
-        return self.claim(id, source, verdict, **found)
+        claim = Claim(id, verdict, numbers={"runs": usable, "left_out": len(points) - usable})
+        if run is None:
+            return claim
+        return replace(
+            claim,
+            predicted=paper[run],
+            measured=value[run],
+            uncertainty=uncertainty[run],
+            deviation=deviation[run],
+        )
 
     def approximate(
-        self, id: str, source: str, tables: Sequence[pd.DataFrame], measured: str, predicted: str,
-        levels: Sequence[str] = (), note: str = "",
-    ) -> Claim:  # fmt: skip
+        self,
+        id: str,
+        tables: Sequence[pd.DataFrame],
+        measured: str,
+        predicted: str,
+        levels: Sequence[str] = (),
+    ) -> Claim:
         """An estimate, by the median deviation of its runs and, where a tolerance is given for it, the exponent.
 
         Parameters
@@ -139,36 +205,31 @@ class Evidence:
         levels : columns of which one level at a time is left out, for the uncertainty of the exponent
         """
         each = deviations(tables[0], measured, predicted)
-        if not np.isfinite(each).any():
-            return self.claim(id, source, "not testable", note=note, left_out=len(tables[0]))
-        median = self.studied(
-            tables, lambda table: float(np.nanmedian(deviations(table, measured, predicted)))
-        )
-        finest = tables[0]
-        exponent, allowed = None, self.settings[id].get("tolerance_exponent")
+        each = each[np.isfinite(each)]
+        names = ("ninety", "largest", "exponent", "exponent_uncertainty", "exact_median", "exact_largest")
+        numbers = {"runs": each.size, "left_out": len(tables[0]) - each.size, **dict.fromkeys(names)}
+        if not each.size:
+            return Claim(id, "not testable", numbers=numbers)
+        median = self.studied(tables, lambda t: float(np.nanmedian(deviations(t, measured, predicted))))
+        ratio = self.studied(tables, lambda t: float(np.nanmedian(t[measured] / t[predicted])))
+        exponent, allowed = None, self.entries[id].get("tolerance_exponent")
         if allowed is not None:
-            found = self.studied(tables, lambda table: line(table, measured, predicted))
+            found = self.studied(tables, lambda t: line(t, measured, predicted))
             without = [
-                line(finest[finest[name] != level], measured, predicted)
+                line(tables[0][tables[0][name] != level], measured, predicted)
                 for name in levels
-                for level in finest[name].unique()
+                for level in tables[0][name].unique()
             ]
             moved = max((abs(other - found.value) for other in without), default=0.0)
             exponent = found.value, max(found.uncertainty, moved)
-        each = each[np.isfinite(each)]
-        ratio = self.studied(tables, lambda table: float(np.nanmedian(table[measured] / table[predicted])))
-        return self.claim(
-            id, source,
-            rules.approximate((median.value, median.uncertainty), self.tolerance(id), exponent, allowed),
-            predicted=1.0, measured=ratio.value, uncertainty=ratio.uncertainty, deviation=median.value, note=note,
-            runs=int(each.size), left_out=len(finest) - int(each.size),
-            ninety=float(np.quantile(each, 0.9)), largest=float(each.max()),
-            exponent=exponent and exponent[0], exponent_uncertainty=exponent and exponent[1],
-        )  # fmt: skip
+            numbers |= {"exponent": exponent[0], "exponent_uncertainty": exponent[1]}
+        numbers |= {"ninety": float(np.quantile(each, 0.9)), "largest": float(each.max())}
+        verdict = rules.approximate(
+            (median.value, median.uncertainty), self.tolerance(id), exponent, float(allowed or 0.0)
+        )
+        return Claim(id, verdict, 1.0, ratio.value, ratio.uncertainty, median.value, numbers)
 
-    def qualitative(
-        self, id: str, source: str, decided: Iterable[bool | None], note: str = "", condition: bool = False
-    ) -> Claim:
+    def qualitative(self, id: str, decided: Iterable[bool | None], condition: bool = False) -> Claim:
         """An always, never or every.
 
         Parameters
@@ -177,53 +238,50 @@ class Evidence:
         condition : whether it needs one that the paper does not state
         """
         decided = list(decided)
-        held, failed = (
-            sum(found is not None and bool(found) is want for found in decided) for want in (True, False)
-        )
-        undecided = len(decided) - held - failed
-        return self.claim(
-            id, source, rules.qualitative(held, failed, undecided, condition),
-            predicted=float(len(decided)), measured=float(held), uncertainty=float(undecided),
-            deviation=failed / len(decided) if decided else NAN,
-            note=note, runs=len(decided), held=held, failed=failed, undecided=undecided,
-        )  # fmt: skip
+        found = counts(decided)
+        runs, held, failed, undecided = len(decided), *found.values()
+        verdict = rules.qualitative(held, failed, undecided, condition)
+        contradicting = failed / runs if runs else NAN
+        return Claim(id, verdict, runs, held, undecided, contradicting, {"runs": runs, **found})
 
     def agreed(
-        self, simulation: str, where: Callable[[pd.DataFrame], pd.Series], holds: Callable[[pd.DataFrame], pd.Series],
-        exactly: Callable[[tuple], bool | None] = lambda row: None,
-        long_enough: Callable[[pd.DataFrame], pd.Series] | None = None,
-    ) -> list[bool | None]:  # fmt: skip
+        self,
+        simulation: str,
+        where: Where,
+        holds: Where,
+        exactly: Where | None = None,
+        told: Where | None = None,
+    ) -> list[bool | None]:
         """Of each run of a sweep whether it holds: as the two finest lattices agree, else as the exact solution says.
 
         Parameters
         ----------
         where : which runs
         holds : whether it holds, on one lattice
-        exactly : the same of a row by the exact solution; None where that does not tell
-        long_enough : which runs last long enough for a lattice to tell; all of them if not given
+        exactly : the same by the exact solution; None or NA where that does not tell
+        told : which runs last long enough for a lattice to tell; all of them if not given
         """
         finest, middle, *_ = self.lattices(simulation)
-        first, second = (np.asarray(holds(table), dtype=bool) for table in (finest, middle))
-        told = np.ones(len(finest), dtype=bool) if long_enough is None else long_enough(finest).to_numpy(bool)
+        every = pd.Series(True, finest.index)
+        both = agreeing(np.asarray(holds(finest), bool), np.asarray(holds(middle), bool))
+        theory = [None] * len(finest) if exactly is None else exactly(finest).tolist()
+        rows = zip(where(finest), every if told is None else told(finest), both, theory, strict=True)
         return [
-            bool(first[i]) if told[i] and first[i] == second[i] else exactly(row)
-            for i, (row, chosen) in enumerate(zip(finest.itertuples(), where(finest), strict=True))
+            found if seen and found is not None else None if exact is None or pd.isna(exact) else bool(exact)
+            for chosen, seen, found, exact in rows
             if chosen
         ]
 
-    def arithmetic(self, id: str, source: str, ratio: float, note: str = "", **further: float) -> Claim:
-        """A formula, by its ratio to the derived one at the parameters where they are farthest apart."""
-        deviation = abs(ratio - 1.0)
-        return self.claim(
-            id, source, rules.arithmetic(deviation, self.tolerance(id)), predicted=1.0, measured=ratio,
-            uncertainty=ROUNDING, deviation=deviation, note=note, further=further,
-        )  # fmt: skip
+
+def _unflagged(table: pd.DataFrame) -> np.ndarray:
+    return (table["run_flags"].isna() | (table["run_flags"] == "")).to_numpy()
 
 
-def compared(claim: Claim, values: Iterable[float], exact: Iterable[float]) -> Claim:
+def compared(claim: Claim, values: pd.Series, exact: pd.Series) -> Claim:
     """The claim with the median and the largest relative deviation of its runs from the exact theory."""
-    deviation = np.abs(np.asarray(list(values), dtype=float) / np.asarray(list(exact), dtype=float) - 1.0)
+    deviation = np.abs(values.to_numpy(float) / exact.to_numpy(float) - 1.0)
     deviation = deviation[np.isfinite(deviation)]
     if deviation.size == 0:
         return claim
-    return replace(claim, exact_median=float(np.median(deviation)), exact_largest=float(deviation.max()))
+    beside = {"exact_median": float(np.median(deviation)), "exact_largest": float(deviation.max())}
+    return replace(claim, numbers={**claim.numbers, **beside})

@@ -1,24 +1,20 @@
-"""The whole ledger: every claim with its text, in the order of the configuration."""
+"""The whole ledger: every claim with its text, in the order of manuscript/claims.yaml."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from types import SimpleNamespace
 
-import pandas as pd
-
-from .coverage import places
-from .evidence import Evidence
-from .formulas import formula_claims
-from .ledger import Claim
-from .published import published_claims
+from .coverage import positions
+from .evidence import Claim, Evidence
+from .published import published_figure
 from .pulses import pulse_claims
 from .reading import why_text
 from .regimes import regime_claims
-from .stress_pulses import stress_pulse_claims
 from .transition import transition_claims
 
-# Whose measured numbers, grid studies and coarser tables the claims are computed from.
+# Whose measured numbers, grid studies, coarser tables and predictions the claims are computed from.
 SIMULATIONS = [
     "any_prestress",
     "arrest_profiles",
@@ -45,47 +41,50 @@ SIMULATIONS = [
 ]
 
 
-def all_claims(
-    evidence: Evidence,
-    share: float,
-    readings: Mapping,
-    study: pd.DataFrame,
-    texts: Mapping,
-    statements: Sequence[Mapping],
-) -> list[Claim]:
-    """The ledger.
+def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mapping]) -> list[dict]:
+    """The ledger, as in claims.json: of each claim its entry in manuscript/claims.yaml and what was found.
 
     Parameters
     ----------
-    evidence : measured tables, grid studies and tolerances
-    share : share of |x_minus| at which a stress boundary's sweeps were measured
     readings : numbers read off the published space-time figure
-    study : what they say together, results/studies/published_figure.csv
-    texts : per claim, its statement and the figure that shows it
-    statements : sentences of the paper, which name the claims that test them
+    sentences : of the paper, as in manuscript/statements.yaml
 
     Raises
     ------
     ValueError
-        If the configuration, the texts and what is computed are not about the same claims.
+        If the entries and what is computed are not about the same claims.
     """
     claims = [
         *pulse_claims(evidence),
-        *transition_claims(evidence, share),
+        *transition_claims(evidence),
         *regime_claims(evidence),
-        *stress_pulse_claims(evidence),
-        *published_claims(evidence, readings, study),
-        *formula_claims(evidence),
+        published_figure(evidence, readings),
     ]
     found = {claim.id: claim for claim in claims}
-    for what, names in (("configuration", evidence.settings), ("texts", texts)):
-        if odd := sorted({*names} ^ {*found}):
-            raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the {what} and in the ledger")
-    where = places(statements)
-    return [
-        replace(
-            found[id], statement=texts[id]["statement"], figure=texts[id].get("figure", ""),
-            figure_or_section=where.get(id, ""), why=why_text(found[id]),
-        )
-        for id in evidence.settings
-    ]  # fmt: skip
+    if odd := sorted({*evidence.entries} ^ {*found}):
+        raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
+    where = positions(evidence.entries, sentences)
+    return [written(found[id], entry, where[id]) for id, entry in evidence.entries.items()]
+
+
+def written(claim: Claim, entry: Mapping, where: str) -> dict:
+    """One claim with its text, as JSON has it."""
+    out = {
+        "figure": "", "follows_from": [], **entry, **vars(claim), **claim.numbers, "figure_or_section": where,
+        "counted": "follows_from" not in entry, "note": claim.note or entry.get("note", ""),
+        "source": claim.source or entry.get("source", ""),
+    }  # fmt: skip
+    del out["numbers"], out["sentences"]
+    out["why"] = why_text(SimpleNamespace(**out))
+    return finite(out)
+
+
+def finite(value):
+    """Builtins with None for every number that JSON does not have."""
+    if isinstance(value, Mapping):
+        return {key: finite(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(entry) for entry in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from types import SimpleNamespace
 
-from ..configuration.kinds import KINDS
 from ..data.numerals import number, percent, rounded, setting, with_uncertainty
-from .rules import EXCLUDED, VERDICTS
+from .rules import EXCLUDED, KINDS, VERDICTS, WORST_FIRST
 
 # What a reader looks for first.
-FAILURES_FIRST = ("not reproduced", "inconclusive", "not testable", "reproduced with caveat", "reproduced")
+FAILURES_FIRST = WORST_FIRST
 # A tolerance below this is for rounding alone.
 SLIGHT = 1e-6
 
@@ -153,7 +152,7 @@ def compared_text(claim: SimpleNamespace) -> str:
         return f"{number(claim.deviation, 2)}, tolerance {setting(claim.tolerance)}"
     middle = "median " if claim.kind == "approximate" else ""
     text = f"{middle}{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
-    if claim.exponent is None:
+    if claim.kind == "exact" or claim.exponent is None:
         return text
     exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
     return f"{text}; exponent {exponent}, tolerance {setting(claim.tolerance_exponent)}"
@@ -226,21 +225,20 @@ WHY = {
 def evidence_text(claim: SimpleNamespace) -> str:
     """What the verdict rests on besides the numbers shown, as Markdown."""
     parts = [claim.note] if claim.note else []
-    if claim.runs is not None and claim.kind != "qualitative":
-        parts.append(f"{claim.runs} runs")
-    if claim.largest is not None:
+    if claim.kind in ("exact", "approximate"):
+        parts += [f"{claim.runs} runs"] if claim.runs else []
+    if claim.kind == "approximate" and claim.largest is not None:
         parts.append(
             f"90 % of them within {percent(claim.ninety)}, the largest deviation {percent(claim.largest)}"
         )
-    if claim.left_out:
+    if claim.kind in ("exact", "approximate") and claim.left_out:
         parts.append(f"left out, without numbers: {claim.left_out}")
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
-    if claim.exact_largest is not None:
+    if claim.kind == "approximate" and claim.exact_largest is not None:
         parts.append(
             f"runs off the exact theory by {percent(claim.exact_median)} (median) to {percent(claim.exact_largest)}"
         )
     if claim.follows_from:
-        parts.append(
-            f"follows from {', '.join(f'`{id}`' for id in claim.follows_from)} and is not counted again"
-        )
+        names = ", ".join(f"`{id}`" for id in claim.follows_from)
+        parts.append(f"follows from {names} and is not counted again")
     return "; ".join(parts)

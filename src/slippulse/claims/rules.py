@@ -6,22 +6,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-VERDICTS = (
-    "reproduced",
-    "reproduced with caveat",
-    "not reproduced",
-    "inconclusive",
-    "not testable",
-)
+KINDS = ("exact", "approximate", "qualitative", "reading", "arithmetic")
+VERDICTS = ("reproduced", "reproduced with caveat", "not reproduced", "inconclusive", "not testable")
 # Of several verdicts the first of these counts.
-WORST_FIRST = (
-    "not reproduced",
-    "inconclusive",
-    "not testable",
-    "reproduced with caveat",
-    "reproduced",
-)
-# More undecided runs than this share leave a qualitative claim open.
+WORST_FIRST = ("not reproduced", "inconclusive", "not testable", "reproduced with caveat", "reproduced")
+# More undecided runs than this fraction leave a qualitative claim open.
 UNDECIDED = 0.1
 # Below this p the readings exclude every parameter, not only most.
 EXCLUDED = 0.003
@@ -68,7 +57,7 @@ def exact(
 
     Returns
     -------
-    the verdict, and which run it is: of those with this verdict the one that deviates most; None without any
+    the verdict, and of the runs with this verdict the one that deviates most; None without any
     """
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
     tested = [i for i, verdict in enumerate(verdicts) if verdict != "not testable"]
@@ -82,7 +71,7 @@ def approximate(
     median: tuple[float, float],
     tolerance: float,
     exponent: tuple[float, float] | None = None,
-    tolerance_exponent: float | None = None,
+    tolerance_exponent: float = 0.0,
 ) -> str:
     """Verdict on an estimate: the worse of those on median and exponent. The single worst run does not decide.
 
@@ -99,21 +88,21 @@ def approximate(
     return worst(verdicts)
 
 
-def at_shares(shares: Sequence[str], last: str) -> str:
-    """Verdict on a time that has no end, from those at several shares of the way and at the last release.
+def at_fractions(fractions: Sequence[str], last: str) -> str:
+    """Verdict on a time that has no end, from those at several fractions of the way and at the last release.
 
     Parameters
     ----------
-    shares : verdict at each share
+    fractions : verdict at each
     last : verdict at the last release on the lattice
 
     Returns
     -------
-    "reproduced" if it is at every share; "not reproduced" if it is at none of them nor at the last release; else
+    "reproduced" if it is at every fraction; "not reproduced" if it is at none of them nor at the last release; else
     "reproduced with caveat", which of them being the caveat; "inconclusive" if that is the best there is
     """
-    every = [*shares, last]
-    if all(verdict == "reproduced" for verdict in shares):
+    every = [*fractions, last]
+    if all(verdict == "reproduced" for verdict in fractions):
         return "reproduced"
     if "reproduced" in every or "reproduced with caveat" in every:
         return "reproduced with caveat"
@@ -145,12 +134,7 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
 
 
 def existence(held: Sequence[int]) -> str:
-    """Verdict on "there are": one decided run of each case suffices.
-
-    Parameters
-    ----------
-    held : decided runs that show it, one number for each case
-    """
+    """Verdict on "there are", from how many decided runs show each case: one of each suffices."""
     return "reproduced" if held and all(held) else "inconclusive"
 
 

@@ -16,6 +16,8 @@ REGIMES = (
     "pulse, one-way, steady",
     "pulse, one-way, decaying",
 )
+# In place of one of them, where theory does not say which a rupture ends in.
+UNDECIDED = "undecided"
 
 
 def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str, float | str]:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from ..measure.regime import UNDECIDED
 from ..model.checks import check_number
 from ..theory.front_law import front_speed
-
-UNDECIDED = "undecided"
 
 
 def final_regime(

@@ -137,9 +137,7 @@ def _displacement(scene: Scene) -> dict[str, float]:
 
 
 @cache
-def _first_stick(
-    level: float, width: float, gamma: float, ratio: float, release: str
-) -> tuple[float, float]:
+def _first_stick(level: float, width: float, gamma: float, ratio: float, release: str) -> tuple[float, float]:
     profile = Prestress(level, level, width)
     # More panels than theory allows, or more damping.
     exact = _known(lambda: exact_transition_displacement(profile, gamma, ratio, release))

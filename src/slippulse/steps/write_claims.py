@@ -6,45 +6,35 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-import pandas as pd
 import yaml
 
 from ..claims.evidence import Evidence
 from ..claims.findings import findings
-from ..claims.ledger import finite
-from ..claims.paper import all_claims
+from ..claims.paper import all_claims, finite
 from ..data.files import write_text
-from ..data.store import load_table
 from ..report.claims_page import claims_page
+from .inputs import given
 
-FILES = ("report/templates/claims.html", "report/templates/parts.html")
+FILES = (
+    "report/templates/base.html",
+    "report/templates/claims.html",
+    "report/templates/parts.html",
+    "report/templates/style.css",
+)
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: measured, coarser, uncertainties, study, texts, statements. Outputs: json, findings, html.
+    """Files: as `given` takes them, texts, statements. Outputs: json, findings, html.
 
-    Settings: claims, measure, published, damping_ratio, altered.
+    Settings: claims (tolerances in place of those with the texts), measure, published, damping_ratio, altered.
     """
-    measure = settings["measure"]
-    coarser = {name: _by_factor(table) for name, table in _tables(files["coarser"]).items()}
-    evidence = Evidence(
-        _tables(files["measured"]), coarser, _tables(files["uncertainties"]), settings["claims"],
-        measure["steady_tolerance"], measure["still"],
-    )  # fmt: skip
     texts = yaml.safe_load(Path(files["texts"]).read_text(encoding="utf-8"))
-    statements = yaml.safe_load(Path(files["statements"]).read_text(encoding="utf-8"))["statements"]
-    study, readings = load_table(files["study"]), settings["published"]
-    found = all_claims(evidence, measure["share"], readings, study, texts["claims"], statements)
-    claims = [claim.as_dict() for claim in found]
-    beside = finite(findings(evidence, settings["damping_ratio"], measure["share"], study, texts["findings"]))
+    sentences = yaml.safe_load(Path(files["statements"]).read_text(encoding="utf-8"))["statements"]
+    entries = {id: entry | settings["claims"].get(id, {}) for id, entry in texts["claims"].items()}
+    _, tables = given(files)
+    evidence = Evidence.of(tables, entries, settings["measure"]["steady_tolerance"])
+    claims = all_claims(evidence, settings["published"], sentences)
+    beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
     write_text(json.dumps(beside, indent=1, ensure_ascii=False) + "\n", outputs["findings"])
     write_text(claims_page(claims, settings["altered"], beside), outputs["html"])
-
-
-def _tables(paths: list[str]) -> dict[str, pd.DataFrame]:
-    return {Path(path).stem: load_table(path) for path in paths}
-
-
-def _by_factor(table: pd.DataFrame) -> list[pd.DataFrame]:
-    return [part.reset_index(drop=True) for _, part in table.groupby("factor")]
