@@ -38,13 +38,13 @@ def read(path: Path):
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
-def invented_claims(config: dict, texts: str, scale: float = 1.0) -> list[dict]:
-    """One entry for each claim of the configuration, each with numbers of its own."""
+def invented_claims(config: dict, entries: dict, texts: str, scale: float = 1.0) -> list[dict]:
+    """One entry for each claim of the manuscript, each with numbers of its own."""
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
     claims = []
-    for i, (id, entry) in enumerate(config["claims"].items()):
+    for i, (id, entry) in enumerate(entries.items()):
         deviation = abs(scale * (1.0 + 0.00137 * (i + 1)) - 1.0)
         claims.append(
             CLAIM
@@ -54,6 +54,7 @@ def invented_claims(config: dict, texts: str, scale: float = 1.0) -> list[dict]:
                 "counted": "follows_from" not in entry, "follows_from": entry.get("follows_from", []),
                 "tolerance": entry["tolerance"], "tolerance_exponent": entry.get("tolerance_exponent"),
                 "deviation": deviation, "verdict": within(deviation, 0.00021, entry["tolerance"]),
+                "reason": entry["reason"],
                 "why": "since $x$ is so", "note": r"measured at $\Delta x=0$", "figure": "fig05_scaling",
                 "ninety": 1e-3 * (i + 1), "largest": 2e-3 * (i + 1), "further": further,
                 "exponent": 1.01 if "tolerance_exponent" in entry else None, "exponent_uncertainty": 0.002,
@@ -128,7 +129,7 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
         return Inputs(
             config=config,
             shipped=shipped,
-            claims=invented_claims(config, texts, scale),
+            claims=invented_claims(config, read(manuscript / "claims.yaml")["claims"], texts, scale),
             findings=invented_findings(read(manuscript / "claims.yaml")["findings"], texts),
             tables=invented_tables(texts),
             figures=figures,

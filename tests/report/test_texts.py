@@ -11,7 +11,8 @@ import yaml
 from PIL import Image
 from report.conftest import read
 
-from slippulse.claims.coverage import coverage, problems
+from slippulse.claims.entries import coverage, problems
+from slippulse.claims.rules import KINDS
 from slippulse.configuration.parameters import parameters
 from slippulse.report.gallery import PLACED, Gallery
 from slippulse.report.tables import sticking
@@ -47,12 +48,14 @@ def test_every_claim_that_is_mentioned_is_in_the_ledger(source, errata, manuscri
     for line in summary["verdict"]:
         names |= {*line["claims"], *mentioned(line["text"])}
     assert len(names) > 30 and len(summary["verdict"]) == 5
-    assert names | mentioned(summary["accuracy"]) <= set(shipped["claims"])
+    texts = read(manuscript / "claims.yaml")
+    assert names | mentioned(summary["accuracy"]) <= {*texts["claims"], *texts["algebra"]}
 
 
 def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(manuscript, shipped):
     statements = read(manuscript / "statements.yaml")["statements"]
-    assert problems(statements, list(shipped["claims"])) == []
+    texts = read(manuscript / "claims.yaml")
+    assert problems(texts["claims"] | texts["algebra"], statements) == []
     counts = coverage(statements)
     assert counts["tested"] > 150
     assert sum(count for key, count in counts.items() if key != "all") == counts["all"] == len(statements)
@@ -61,29 +64,28 @@ def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentenc
 @pytest.mark.parametrize(
     ("changed", "problem"),
     [
-        ({"claim": "no_such"}, "a: no_such: no such claim"),
-        ({"claim": None}, "a: allowed: a claim, or why there is none"),
+        ({"sentences": ["no_such"]}, "c: no_such: no such sentence"),
+        ({"sentences": []}, "a: allowed: a claim, or why there is none"),
+        ({"sentences": []}, "c: tests no sentence"),
         ({"why_none": "background"}, "a: allowed: a claim, or why there is none"),
-        ({"claim": None, "why_none": "too hard"}, "a: 'too hard'; allowed: background"),
-        ({"claim": None, "why_none": "repeats b"}, "a: 'repeats b'; allowed: background"),
-        ({"claim": None, "why_none": "no model"}, "c: tests no sentence"),
+        ({"why_none": "too hard"}, "a: 'too hard'; allowed: background"),
+        ({"why_none": "repeats b"}, "a: 'repeats b'; allowed: background"),
         ({"paraphrase": "word " * 26}, "a: paraphrase of more than 25 words"),
     ],
 )
 def test_a_gap_in_the_map_is_found(changed, problem):
-    sentence = {"id": "a", "place": "section I", "paraphrase": "so it is", "claim": "c"}
-    assert problems([sentence], ["c"]) == []
-    sentence = {key: value for key, value in (sentence | changed).items() if value is not None}
-    assert any(line.startswith(problem) for line in problems([sentence], ["c"]))
+    sentence = {"id": "a", "place": "section I", "paraphrase": "so it is"}
+    assert problems({"c": {"sentences": ["a"]}}, [sentence]) == []
+    entries = {"c": {"sentences": changed.get("sentences", ["a"])}}
+    assert any(line.startswith(problem) for line in problems(entries, [sentence | changed]))
 
 
 def test_every_claim_has_a_text_and_a_shipped_verdict(manuscript, shipped, captions):
     texts = read(manuscript / "claims.yaml")
-    assert list(texts["claims"]) == list(shipped["claims"])
     for text in texts["claims"].values():
-        assert set(text) <= {"statement", "figure"} and text["statement"].endswith(".")
+        assert text["statement"].endswith(".") and text["tolerance"] >= 0.0 and text["reason"] and text["kind"] in KINDS
         assert text.get("figure", "fig05_scaling") in captions
-    assert set(read(manuscript / "shipped_verdicts.yaml")) == set(shipped["claims"])
+    assert list(read(manuscript / "shipped_verdicts.yaml")) == list(texts["claims"])
 
 
 def test_every_erratum_is_shown(errata, source):

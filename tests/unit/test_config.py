@@ -38,10 +38,6 @@ MISTAKES = [
     ("simulations.scaling_stress.gamma", [0.5], ("scaling_stress.gamma", "left out under boundary 'stress'")),
     ("simulations.burridge_knopoff_stress.width", [0.5], ("prestress.width", "0.5", ">= dx")),
     ("simulations.scaling_stress.duration", {"half_periods": 1.0}, ("duration.half_periods", "displacement")),
-    ("claims.pulse_slip.kind", "about", ("claims.pulse_slip.kind", "'about'", "exact, approximate")),
-    ("claims.pulse_slip.follows_from", ["pulse_slip"], ("claims.pulse_slip.follows_from", "other claims")),
-    ("claims.pulse_slip.follows_from", ["pulse_profil"], ("did you mean 'pulse_profile'",)),
-    ("claims.pulse_slip.tolerance_exponent", 0.1, ("pulse_slip.tolerance_exponent", "kind is approximate")),
     ("measure.share", 1.5, ("measure.share", "1.5", "between 0 and 1")),
 ]
 

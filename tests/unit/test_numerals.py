@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import pytest
-from slippulse.report.html import markup_of
 
 from slippulse.data.numerals import number, percent, rounded, setting, short, with_uncertainty
 from slippulse.data.prose import fill
+from slippulse.report.html import markup_of
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,13 @@
 # What the paper says, what was measured, how sure that is, and the verdict.
 
+if config["claims"]:
+    from slippulse.claims.entries import read_entries
+
+    try:
+        read_entries("manuscript/claims.yaml", config["claims"])
+    except ValueError as error:
+        refuse(f"The configuration is refused:\n{error}")
+
 
 rule write_claims:
     input:

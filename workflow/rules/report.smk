@@ -8,6 +8,7 @@ rule write_report:
             f"manuscript/{name}"
             for name in (
                 "captions.yaml",
+                "claims.yaml",
                 "errata.yaml",
                 "metadata.yaml",
                 "references.bib",

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 
-from .coverage import positions
+from .entries import positions
 from .evidence import Claim, Evidence
 from .published import published_figure
 from .pulses import pulse_claims

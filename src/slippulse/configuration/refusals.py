@@ -163,7 +163,7 @@ def removal_problems(removed: Sequence[tuple[str, ...]], shipped: Mapping) -> li
             problems.append(f"{key}: null{nearest(place[-1], known)}; allowed: null for a key that there is")
         elif names is not None and place[1] not in names:
             problems.append(f"{key}: null{nearest(place[1], names)}; allowed: null for a name that there is")
-        elif names is not None and place[0] in ("simulations", "claims"):
+        elif names is not None and place[0] == "simulations":
             problems.append(
                 f"{key}: null; allowed: what is shipped stays, since figures and verdicts need it"
             )
@@ -187,22 +187,6 @@ def name_problems(config: Mapping, shipped: Mapping | None) -> list[str]:
             )
     for name, entry in config["published"].items():
         lines += _reading_problems(f"published.{name}", entry, config)
-    if shipped is not None:
-        for name in config["claims"]:
-            if name not in shipped["claims"]:
-                lines.append(
-                    f"{dotted(['claims', name])}: unknown claim{nearest(name, shipped['claims'])}; allowed: those in"
-                    " config/config.yaml"
-                )
-    for name, entry in config["claims"].items():
-        for other in entry.get("follows_from", []):
-            if other not in config["claims"] or other == name:
-                key = f"{dotted(['claims', name])}.follows_from"
-                hint = nearest(other, config["claims"])
-                lines.append(f"{key}: {short_repr(other)}{hint}; allowed: names of other claims")
-        if ("tolerance_exponent" in entry) and entry.get("kind") != "approximate":
-            key = f"{dotted(['claims', name])}.tolerance_exponent"
-            lines.append(f"{key}: given; allowed: where kind is approximate")
     return lines + _study_problems(config)
 
 

@@ -31,7 +31,6 @@ from .keys import (
     key,
     number,
 )
-from .kinds import KINDS
 from .schema_simulations import NamedScene, Simulation
 from .schema_studies import Studies
 
@@ -125,17 +124,12 @@ class Figures(Block):
 
 
 class Claim(Block):
-    """What kind of statement a claim is, and when it counts as reproduced."""
+    """When a claim counts as reproduced, in place of what stands with it in manuscript/claims.yaml."""
 
-    kind: choice(KINDS) = key("which rule gives its verdict")
-    tolerance: NonNegative = key("what counts as agreement, by kind")
+    tolerance: NonNegative = key("what counts as agreement, by kind", otherwise="as with the claim")
     tolerance_exponent: Positive = key(
-        "of an approximate claim: largest distance of the exponent from 1", otherwise="none"
+        "of an approximate claim: largest distance of the exponent from 1", otherwise="as with the claim"
     )
-    follows_from: different(str, "a list of different names of claims, at least one") = key(
-        "claims that it follows from, so that it is not counted again", otherwise="none"
-    )
-    reason: Sentence = key("why this kind and this much")
 
 
 class Reading(Block):
@@ -163,6 +157,6 @@ class Configuration(Block):
     scenes: dict[Name, NamedScene] = key("single runs by name", otherwise="none")
     measure: Measure = key("how numbers are read off a run")
     figures: Figures = key("of figures that draw no simulation")
-    claims: dict[str, Claim] = key("what counts as reproduced, by claim")
+    claims: dict[str, Claim] = key("other tolerances than those of manuscript/claims.yaml, by claim")
     published: dict[str, Reading] = key("numbers read off a published figure, by name")
     studies: Studies = key("studies of the solver itself")

@@ -11,7 +11,7 @@ from pathlib import Path
 import jupytext
 import pandas as pd
 
-from ..claims.coverage import coverage
+from ..claims.entries import coverage
 from ..claims.reading import Ledger
 from ..configuration.parameters import parameters
 from ..data.alterations import changes
@@ -76,6 +76,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     sentences = read_text(folder / "statements.yaml")["statements"]
+    texts = read_text(folder / "claims.yaml")
     verdicts = read_text(folder / "shipped_verdicts.yaml") or {}
     names: dict[str, object] = {
         **FILTERS,
@@ -105,11 +106,12 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
         "counts": partial(tables.counts, ledger),
         "failures": partial(tables.failures, ledger),
         "whole_ledger": partial(tables.whole_ledger, ledger),
-        "tolerances": partial(tables.tolerances, ledger, config["claims"]),
+        "tolerances": partial(tables.tolerances, ledger),
         "published": partial(tables.published, ledger, config["published"]),
         "found_list": partial(tables.found_list, ledger),
         "sentence_counts": partial(tables.sentence_counts, coverage(sentences)),
-        "tested_sentences": partial(tables.tested_sentences, sentences),
+        "tested_sentences": partial(tables.tested_sentences, sentences, texts["claims"] | texts["algebra"]),
+        "algebra": partial(tables.algebra, texts["algebra"]),
         "errata": lambda: tables.errata(read_errata(folder / "errata.yaml"), filled),
         "grid_studies": partial(tables.grid_studies, inputs.tables),
         "presets": partial(tables.presets, config["presets"], config["preset"]),

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from ..claims.coverage import claims_of
+from ..claims.entries import claims_of
 from ..claims.reading import (
     FAILURES_FIRST,
     Ledger,
@@ -104,21 +104,13 @@ def whole_ledger(ledger: Ledger) -> str:
     return table(head, rows, [32, 8, 12, 14, 9, 29], "lrrlll")
 
 
-def tolerances(ledger: Ledger, reasons: Mapping[str, Mapping]) -> str:
-    """Why each tolerance is what it is: the claims that have kind, tolerance and reason in common together.
-
-    Parameters
-    ----------
-    ledger : the claims
-    reasons : per claim kind, tolerance, reason, and the tolerance_exponent where it has one
-    """
+def tolerances(ledger: Ledger) -> str:
+    """Why each tolerance is what it is: the claims that have kind, tolerance and reason in common together."""
     groups: dict[tuple, list[str]] = {}
     for claim in ledger:
-        entry = reasons.get(claim.id)
-        if entry is not None:
-            tolerance, exponent = float(entry["tolerance"]), entry.get("tolerance_exponent")
-            key = (entry["kind"], tolerance, exponent, entry["reason"])
-            groups.setdefault(key, []).append(f"`{claim.id}`")
+        exponent = vars(claim).get("tolerance_exponent")
+        key = (claim.kind, claim.tolerance, exponent, claim.reason)
+        groups.setdefault(key, []).append(f"`{claim.id}`")
     rows = [
         [
             kind,
@@ -151,22 +143,28 @@ def found_list(ledger: Ledger) -> str:
 
 
 def sentence_counts(numbers: Mapping[str, int]) -> str:
-    """How many sentences are tested, and how many are not for each reason (`slippulse.claims.coverage.coverage`)."""
+    """How many sentences are tested, and how many are not for each reason (`slippulse.claims.entries.coverage`)."""
     rows = [[words, str(numbers[key])] for key, words in REASONS.items()]
     return table(["sentences", "how many"], [*rows, ["all", str(numbers["all"])]], [60, 15], "lr")
 
 
-def tested_sentences(sentences: Sequence[Mapping]) -> str:
-    """Every sentence that is tested, with its position in the paper and its claims."""
+def algebra(entries: Mapping[str, Mapping]) -> str:
+    """Formulas of the paper that a test finds equal to the derived ones."""
+    rows = [[entry["statement"], f"`test_algebra[{id}]`"] for id, entry in entries.items()]
+    return table(["what the paper says", "test"], rows, [60, 40], "ll")
+
+
+def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
+    """Every sentence that is tested, with its position in the paper and its claims, or algebra."""
     rows = [
         [
             # For a narrow column: paragraph and sentence as numbers.
             re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", entry["place"]),
             entry["paraphrase"],
-            ", ".join(f"`{claim}`" for claim in claims_of(entry)),
+            ", ".join(f"`{claim}`" for claim in claims_of(entries, entry)),
         ]
         for entry in sentences
-        if claims_of(entry)
+        if "why_none" not in entry
     ]
     return table(["place", "what it says", "claims"], rows, [22, 45, 33], "lll")
 

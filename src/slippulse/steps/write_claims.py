@@ -8,6 +8,7 @@ from pathlib import Path
 
 import yaml
 
+from ..claims.entries import read_entries
 from ..claims.evidence import Evidence
 from ..claims.findings import findings
 from ..claims.paper import all_claims, finite
@@ -28,11 +29,10 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
 
     Settings: claims (tolerances in place of those with the texts), measure, published, damping_ratio, altered.
     """
-    texts = yaml.safe_load(Path(files["texts"]).read_text(encoding="utf-8"))
+    texts = read_entries(files["texts"], settings["claims"])
     sentences = yaml.safe_load(Path(files["statements"]).read_text(encoding="utf-8"))["statements"]
-    entries = {id: entry | settings["claims"].get(id, {}) for id, entry in texts["claims"].items()}
     _, tables = given(files)
-    evidence = Evidence.of(tables, entries, settings["measure"]["steady_tolerance"])
+    evidence = Evidence.of(tables, texts["claims"], settings["measure"]["steady_tolerance"])
     claims = all_claims(evidence, settings["published"], sentences)
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])

@@ -1,12 +1,34 @@
-"""The sentences of the paper that can be tested, and the claims that test them."""
+"""Claims as manuscript/claims.yaml has them, and the sentences of the paper that they test."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import yaml
+
+from ..model.checks import nearest
 
 # Why a sentence has no claim of its own; a repetition names the sentence that it repeats.
 WHY_NONE = ("background", "definition", "other work", "no model")
+
+
+def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
+    """Claims, algebra and findings, the claims with other tolerances where the configuration has them.
+
+    Raises
+    ------
+    ValueError
+        Naming a claim of the configuration that there is not.
+    """
+    texts = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    claims = texts["claims"]
+    for id, other in tolerances.items():
+        if id not in claims:
+            raise ValueError(f"claims.{id}: unknown claim{nearest(id, claims)}; allowed: those in {path}")
+        claims[id] |= other
+    return texts
 
 
 def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
