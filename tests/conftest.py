@@ -17,6 +17,7 @@ import pytest
 import yaml
 from selection import selected
 
+from slippulse.configuration.expand import resolve
 from slippulse.data.store import load_table, save_table
 from slippulse.steps.reach import declared
 
@@ -119,11 +120,18 @@ def study(project, tmp_path_factory):
     shared = UNTOUCHED in os.environ
     folder = Path(os.environ[UNTOUCHED]).parent if shared else tmp_path_factory.mktemp("studies")
 
-    def run(name: str):
+    def run(name: str, data: dict | None = None, tables: dict | None = None):
         path = folder / f"{name}.csv"
         if not path.exists():
-            settings = selected(config, declared(f"studies.{name}", "SETTINGS"), config["studies"][name])
-            save_table(import_module(f"slippulse.studies.{name}").table(settings), path)
+            needs = declared(f"studies.{name}", "NEEDS")
+            settings = selected(config, needs.get("settings", ()), {})
+            if "sweeps" in needs:
+                settings["sweeps"] = {
+                    sweep: resolve(config["simulations"][sweep], config["model"], config["presets"]["draft"])
+                    for sweep in needs["sweeps"]
+                }
+            module = import_module(f"slippulse.studies.{name}")
+            save_table(module.table(data or {}, tables or {}, settings), path)
         return load_table(path)
 
     return run

@@ -13,6 +13,7 @@ from selection import selected
 from slippulse.configuration.expand import expand, resolve
 from slippulse.data.store import load_table, save_table
 from slippulse.predict.measured import measured_table
+from slippulse.predict.table import predictions
 from slippulse.simulation.sweep import run_sweep
 from slippulse.steps.reach import declared
 
@@ -46,29 +47,38 @@ def draw(project, tmp_path_factory, study):
             scenes, samples = expand(block)
             sweep = run_sweep(scenes, samples, block["record"], threads=2)
             save_table(measured_table(sweep, config["measure"]), folder / f"{name}.csv")
-            simulated[name, coarser] = (sweep, load_table(folder / f"{name}.csv"))
+            save_table(predictions(scenes, config["measure"]["share"]), folder / f"{name}.predicted.csv")
+            tables = load_table(folder / f"{name}.csv"), load_table(folder / f"{name}.predicted.csv")
+            simulated[name, coarser] = (sweep, *tables)
         return simulated[name, coarser]
+
+    def inputs(needs: dict) -> tuple[dict, dict]:
+        """Data and tables, as the workflow joins them."""
+        data = {source: simulate(source)[0] for source in needs.get("data", [])}
+        tables = {source: simulate(source)[1] for source in needs.get("measured", [])}
+        for source in needs.get("predicted", []):
+            predicted = simulate(source)[2]
+            tables[source] = tables[source].join(predicted) if source in tables else predicted
+        for source in needs.get("studies", []):
+            tables[source] = study(source, *inputs(declared(f"studies.{source}", "NEEDS")))
+        factor = config["presets"]["draft"]["coarser"][0]
+        for source in needs.get("coarser", []):
+            tables[f"coarser/{source}"] = simulate(source, factor)[1].assign(factor=factor)
+        return data, tables
 
     def figure(name: str) -> SimpleNamespace:
         if name not in drawn:
             module = import_module(f"slippulse.figures.{name}")
             needs = declared(f"figures.{name}", "NEEDS")
             settings = selected(config, needs.get("settings", ()), config["figures"].get(name, {}))
-            data = {source: simulate(source)[0] for source in needs.get("data", [])}
-            measured = {source: simulate(source)[1] for source in needs.get("measured", [])}
-            measured |= {source: study(source) for source in needs.get("studies", [])}
-            factor = config["presets"]["draft"]["coarser"][0]
-            measured |= {
-                f"coarser/{source}": simulate(source, factor)[1].assign(factor=factor)
-                for source in needs.get("coarser", [])
-            }
-            save_table(module.table(data, measured, settings), folder / f"{name}.csv")
+            data, tables = inputs(needs)
+            save_table(module.table(data, tables, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")
             drawn[name] = SimpleNamespace(
                 table=table,
                 figure=module.plot(table),
                 data=data,
-                measured=measured,
+                measured=tables,
                 settings=settings,
                 module=module,
             )

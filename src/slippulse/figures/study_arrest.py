@@ -11,122 +11,105 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from ..data.points import point
-from ..measure.fronts import arrival, path
-from ..model.scene import prestress_from
-from ..theory.arrest import ArrestingCrack
-from .style import BLACK, CYCLE, GREY, PAGE, new_figure, panel_letter
+from ..measure.fronts import path
+from .style import GREY, PAGE, colour_scale, new_figure, panel_letter
 
-# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
-NEEDS = {"data": ["arrest"], "measured": ["arrest"]}
+# What is drawn: data, measured numbers, predictions and studies by name, and keys of the configuration.
+NEEDS = {
+    "data": ["arrest"],
+    "measured": ["arrest"],
+    "predicted": ["arrest"],
+    "studies": ["arrest_path"],
+    "settings": ["measure.share"],
+}
 
-SHARES = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99)
-# The share whose convergence is drawn for every damping ratio.
-DRAWN_SHARE = 0.9
-PATH_POINTS = 300
+PATH_POINTS = 150
 MARKERS = ("o", "s", "^", "D", "v")
 
 
 def table(
-    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """The left front's path, its last release, and its share times, simulated and exact.
+    """The left front's path, its last release, and when it has covered the fraction of the way that counts as arrest.
 
     Parameters
     ----------
     data : arrest
-    measured : arrest
-    settings : not used
+    tables : arrest, and the study arrest_path
+    settings : measure (share)
 
     Returns
     -------
-    DataFrame in units of |x_minus|: role path and exact_path (x: time, y: distance), share (share, y: time, exact) and
-    arrest (y: time of the last release)
+    DataFrame in units of |x_minus|: role path (simulated at the finest spacing) and exact_path (time, to_go), and run
+    (dx, last_release, fraction_time, exact_fraction_time)
     """
-    sweep, runs = data["arrest"], measured["arrest"]
-    parts, cracks = [], {}
-    finest = runs.groupby("damping_ratio")["dx"].idxmin()
-    for index, row in runs.iterrows():
-        run = point(sweep, int(index))
-        ratio = row["damping_ratio"]
-        if ratio not in cracks:
-            cracks[ratio] = ArrestingCrack(prestress_from(run.attrs), ratio, row["release"])
-        crack = cracks[ratio]
-        scale = abs(crack.balance_position)
-        common = {"damping_ratio": ratio, "dx": row["dx"], "run_flags": row["run_flags"]}
-        for share in SHARES:
-            time = arrival(run, share * scale, "left") / scale
-            exact = crack.share_time(share) / scale
-            parts.append(
-                pd.DataFrame([{"role": "share", "share": share, "y": time, "exact": exact} | common])
-            )
-        arrest = row["last_release_time"] / scale
-        parts.append(pd.DataFrame([{"role": "arrest", "y": arrest} | common]))
-        if index == finest[ratio]:
-            times, distances = path(run, "left")
-            step = max(1, times.size // PATH_POINTS)
-            kept = np.unique(np.append(np.arange(0, times.size, step), times.size - 1))
-            parts.append(
-                pd.DataFrame({"x": times[kept] / scale, "y": distances[kept] / scale}).assign(
-                    role="path", **common
-                )
-            )
-            # Crowded towards x_minus, which takes for ever.
-            reached = 1.0 - np.geomspace(1.0, 1e-6, PATH_POINTS)[1:]
-            exact = np.array([crack.share_time(share) for share in reached]) / scale
-            parts.append(pd.DataFrame({"x": exact, "y": reached}).assign(role="exact_path", **common))
+    runs = tables["arrest"]
+    # The paper estimates the time of the transition by |x_minus|.
+    scale = runs["paper_transition_time"]
+    numbers = runs[["damping_ratio", "dx", "run_flags"]].assign(
+        role="run",
+        last_release=runs["last_release_time"] / scale,
+        fraction=settings["measure"]["share"],
+        fraction_time=runs["transition_time"] / scale,
+        exact_fraction_time=runs["exact_transition_time"] / scale,
+    )
+    parts = [numbers, tables["arrest_path"].assign(role="exact_path")]
+    for ratio, index in runs.groupby("damping_ratio")["dx"].idxmin().items():
+        time, distance = path(point(data["arrest"], int(index)), "left")
+        kept = np.unique(np.linspace(0, time.size - 1, PATH_POINTS).astype(int))
+        lines = {"time": time[kept] / scale[index], "to_go": 1.0 - distance[kept] / scale[index]}
+        parts.append(pd.DataFrame(lines).assign(role="path", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) path and (b) what is left of it, at the finest spacing; (c) share and arrest times against dx."""
+    """(a) what is left of the way, at the finest spacing; (b) times of the fraction and of the last release."""
     figure = new_figure(PAGE, 2.9)
-    path_axes, rest_axes, spacing_axes = figure.subplots(1, 3)
-    ratios = np.unique(table["damping_ratio"])
-    longest = float(table.loc[table["role"] == "path", "x"].max()) * 1.08
-    for colour, ratio, marker in zip(CYCLE, ratios, MARKERS, strict=False):
-        rows = table[table["damping_ratio"] == ratio]
+    path_axes, spacing_axes = figure.subplots(1, 2)
+    longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
+    for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
+        look = {"color": colour_scale("damping_ratio").to_rgba(ratio)}
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
-        exact = exact[exact["x"] <= longest]
-        for axes, transform in ((path_axes, lambda y: y), (rest_axes, lambda y: 1.0 - y)):
-            axes.plot(
-                simulated["x"], transform(simulated["y"]), color=colour, linewidth=3.0, alpha=0.35,
-                gid=f"simulation {ratio:g}",
-            )  # fmt: skip
-            axes.plot(exact["x"], transform(exact["y"]), color=colour, linewidth=0.9, gid=f"theory {ratio:g}")
-        last = simulated.iloc[-1]
-        path_axes.plot(last["x"], last["y"], marker=marker, color=colour, linestyle="none")
-        rest_axes.plot(last["x"], max(1.0 - last["y"], 1e-6), marker=marker, color=colour, linestyle="none")
-        arrest = rows[rows["role"] == "arrest"].sort_values("dx")
-        share = rows[(rows["role"] == "share") & (rows["share"] == DRAWN_SHARE)].sort_values("dx")
-        spacing_axes.plot(arrest["dx"], arrest["y"], marker=marker, color=colour, gid=f"arrest {ratio:g}")
-        spacing_axes.plot(
-            share["dx"], share["y"], marker=marker, color=colour, linestyle="--", markerfacecolor="white",
-            gid=f"share {ratio:g}",
-        )  # fmt: skip
-        spacing_axes.plot(
-            share["dx"].min() * 0.8, share["exact"].iloc[0], marker="<", color=colour, linestyle="none"
+        exact = exact[exact["time"] <= longest]
+        path_axes.plot(
+            simulated["time"],
+            simulated["to_go"],
+            linewidth=3.0,
+            alpha=0.35,
+            gid=f"simulation {ratio:g}",
+            **look,
         )
-        spacing_axes.plot([], [], marker=marker, color=colour, label=f"{ratio:g}")
-    path_axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
-    path_axes.set(xlabel=r"time $t\,/\,|x_-|$", ylabel=r"left front $|x|\,/\,|x_-|$")
+        path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, gid=f"theory {ratio:g}", **look)
+        path_axes.plot(simulated["time"].iloc[-1:], simulated["to_go"].iloc[-1:], marker, **look)
+        runs = rows[rows["role"] == "run"].sort_values("dx")
+        spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, gid=f"last {ratio:g}", **look)
+        spacing_axes.plot(
+            runs["dx"],
+            runs["fraction_time"],
+            marker + "--",
+            markerfacecolor="white",
+            gid=f"fraction {ratio:g}",
+            **look,
+        )
+        spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
+        spacing_axes.plot([], [], marker=marker, label=f"$b$ = {ratio:g}", **look)
     path_axes.plot([], [], color=GREY, linewidth=3.0, alpha=0.35, label="simulation")
     path_axes.plot([], [], color=GREY, linewidth=0.9, label="exact")
-    path_axes.plot([], [], color=GREY, marker="o", linestyle="none", label="last release")
-    path_axes.legend(loc="lower right")
-    rest_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_-|$", ylabel=r"still to go, $1-|x|/|x_-|$")
-    rest_axes.set_ylim(3e-4, 1.1)
-    spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_-|$")
-    spacing_axes.plot([], [], marker="o", color=GREY, label="last release")
-    label = f"{DRAWN_SHARE:.0%} of the path"
-    spacing_axes.plot([], [], marker="o", color=GREY, linestyle="--", markerfacecolor="white", label=label)
-    spacing_axes.plot([], [], marker="<", color=GREY, linestyle="none", label="the same, exact")
-    spacing_axes.legend(title=r"$b$", ncols=2, loc="upper right", columnspacing=0.8)
-    spacing_axes.xaxis.set_minor_formatter(NullFormatter())
-    spacing_axes.set_xticks(
-        np.unique(table["dx"].dropna()), [f"{dx:g}" for dx in np.unique(table["dx"].dropna())]
+    path_axes.plot([], [], "o", color=GREY, label="last release")
+    path_axes.set(
+        yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylabel=r"still to go, $1-|x|/|x_{-}|$", ylim=(5e-4, 1.1)
     )
-    low, high = spacing_axes.get_ylim()
-    spacing_axes.set_ylim(low, high + 0.6 * (high - low))
-    for axes, letter in zip((path_axes, rest_axes, spacing_axes), "abc", strict=True):
+    path_axes.legend(loc="lower left")
+    spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
+    name = f"{table['fraction'].max():.0%} of the way"
+    spacing_axes.plot([], [], "o-", color=GREY, label="last release")
+    spacing_axes.plot([], [], "o--", color=GREY, markerfacecolor="white", label=name)
+    spacing_axes.plot([], [], "<", color=GREY, label="the same, exact")
+    handles, labels = spacing_axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside right center")
+    spacing_axes.xaxis.set_minor_formatter(NullFormatter())
+    spacings = np.unique(table["dx"].dropna())
+    spacing_axes.set_xticks(spacings, [f"{dx:g}" for dx in spacings])
+    for axes, letter in zip((path_axes, spacing_axes), "ab", strict=True):
         panel_letter(axes, letter)
     return figure

@@ -1,0 +1,34 @@
+"""The exact path of the left front that slows for ever under a stress boundary."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from ..configuration.expand import expand
+from ..theory.arrest import ArrestingCrack
+
+# The simulation that the path stands beside.
+NEEDS = {"sweeps": ["arrest"]}
+
+# What is still to go, in units of |x_minus|: denser towards the end, which takes for ever.
+TO_GO = np.geomspace(1.0, 1e-4, 200)[1:]
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """When so much of the way is still to go, in units of |x_minus|, for each damping ratio of the sweep.
+
+    Parameters
+    ----------
+    data, tables : not used
+    settings : sweeps
+    """
+    parts = {}
+    for scene in expand(settings["sweeps"]["arrest"])[0]:
+        if scene.damping_ratio not in parts:
+            crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
+            time = np.array([crack.share_time(1.0 - left) for left in TO_GO]) / -crack.balance_position
+            parts[scene.damping_ratio] = pd.DataFrame({"time": time, "to_go": TO_GO})
+    return pd.concat(parts, names=["damping_ratio"]).reset_index("damping_ratio")

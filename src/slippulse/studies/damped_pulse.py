@@ -1,0 +1,51 @@
+"""The exact steady pulse with damping as curves over the damping ratio, and its limit as the spacing goes to 0."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from ..configuration.expand import expand
+from ..theory.front_law import front_speed
+from ..theory.pulse import paper_pulse, steady_pulse
+
+# Simulations that the curves stand beside.
+NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
+
+QUANTITIES = ("peak_velocity", "width", "slip")
+# Denser towards no damping, where the pulse changes most.
+POINTS = 61
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """Peak velocity, width and slip.
+
+    Parameters
+    ----------
+    data, tables : not used
+    settings : sweeps
+
+    Returns
+    -------
+    DataFrame of left (the level), damping_ratio and value: role curve (in units of the paper's formulas) and limit
+    (dx -> 0 at the fixed ratio of the refined lattices, where beta vanishes too; with the front speed)
+    """
+    swept, refined = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    scene, rows = swept[0], []
+    ratios = max(each.damping_ratio for each in swept) * np.linspace(0.0, 1.0, POINTS) ** 2
+    for left in sorted({each.prestress.left for each in swept}):
+        paper = paper_pulse(left, scene.gamma)
+        for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
+            pulse = steady_pulse(left, scene.gamma, ratio * scene.dx, speed)
+            row = {"role": "curve", "left": left, "damping_ratio": ratio}
+            rows += [
+                row | {"quantity": q, "value": getattr(pulse, q) / getattr(paper, q)} for q in QUANTITIES
+            ]
+    scene = refined[0]
+    speed = float(front_speed(scene.prestress.left, scene.damping_ratio, scene.release))
+    pulse = steady_pulse(scene.prestress.left, scene.gamma, 0.0, speed)
+    row = {"role": "limit", "left": scene.prestress.left, "damping_ratio": scene.damping_ratio}
+    rows += [row | {"quantity": q, "value": getattr(pulse, q)} for q in QUANTITIES]
+    return pd.DataFrame([*rows, row | {"quantity": "front_speed", "value": speed}])

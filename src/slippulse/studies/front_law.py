@@ -1,0 +1,90 @@
+"""Exact front speeds as curves: over the pre-stress, over the leaf springs, and over the spacing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from ..configuration.expand import expand
+from ..theory.front_law import continuum_front_speed, lattice_front_speed, prestress_for_speed
+
+# Simulations that the curves stand beside.
+NEEDS = {
+    "sweeps": [
+        "front_speed",
+        "front_speed_springs",
+        "continuum_fixed_ratio",
+        "continuum_fixed_beta",
+        "front_speed_fixed_beta",
+    ]
+}
+
+# The inverse is the cheaper one: lines over the pre-stress are found over the speed.
+SPEEDS = 1.0 + np.geomspace(1e-3, 299.0, 60)
+# gamma dx^2, denser where the speed falls and the lines end.
+SPRINGS = np.concatenate([np.geomspace(3e-3, 0.3, 8), np.geomspace(0.34, 6.0, 34)])
+SPRINGS_RELEASE = "total"
+SPACINGS = 33
+# Refined lattices of one level; at a larger beta the pulse is as narrow as the layer at its front.
+REFINED_LEVEL, LARGEST_BETA = 0.5, 0.1
+LINE = ["release", "left", "gamma", "held", "fixed"]
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """Speeds of theory alone.
+
+    Parameters
+    ----------
+    data, tables : not used
+    settings : sweeps
+
+    Returns
+    -------
+    DataFrame of panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over
+    springs = gamma dx^2; NaN where no front outruns the waves), refined (over dx; held: b or beta, at the value fixed),
+    and limit (dx -> 0 under the elastic rule at fixed beta)
+    """
+    runs = {
+        name: pd.DataFrame([scene.attributes() for scene in expand(sweep)[0]])
+        for name, sweep in settings["sweeps"].items()
+    }
+    parts = [
+        pd.DataFrame({"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS}).assign(
+            panel="prestress", release=release, damping_ratio=ratio
+        )
+        for release, ratio in runs["front_speed"][["release", "damping_ratio"]].drop_duplicates().values
+    ]
+    rows = []
+    for left, ratio in runs["front_speed_springs"][["left", "damping_ratio"]].drop_duplicates().values:
+        line = {"panel": "springs", "release": SPRINGS_RELEASE, "left": left, "damping_ratio": ratio}
+        rows += [
+            line | {"springs": g, "speed": _speed(left, g, 1.0, ratio, SPRINGS_RELEASE)} for g in SPRINGS
+        ]
+    for values, dx in _refined(runs).groupby(LINE)["dx"]:
+        line = dict(zip(LINE, values, strict=True))
+        if line["held"] == "beta" and line["release"] == "elastic":
+            speed = continuum_front_speed(line["left"], line["gamma"], line["fixed"])
+            rows.append(line | {"panel": "limit", "speed": speed})
+        for spacing in np.geomspace(dx.min(), dx.max(), SPACINGS):
+            ratio = line["fixed"] / (1.0 if line["held"] == "b" else spacing)
+            speed = _speed(line["left"], line["gamma"], spacing, ratio, line["release"])
+            rows.append(line | {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed})
+    return pd.concat([*parts, pd.DataFrame(rows)], ignore_index=True)
+
+
+def _refined(runs: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
+    """Scenes on refined lattices, with what is held fixed (b = beta/dx or beta) and its value."""
+    ratio, *betas = (runs[name] for name in NEEDS["sweeps"][2:])
+    beta = pd.concat([each.assign(held="beta", fixed=each["beta"]) for each in betas])
+    both = pd.concat([ratio.assign(held="b", fixed=ratio["damping_ratio"]), beta])
+    return both[(both["left"] == REFINED_LEVEL) & (both["beta"] <= LARGEST_BETA)]
+
+
+def _speed(*scene) -> float:
+    """The lattice's front speed; NaN where no front outruns the waves."""
+    try:
+        return lattice_front_speed(*scene)
+    except ValueError:
+        return np.nan

@@ -1,0 +1,28 @@
+"""Exact transitions over the pre-stress, without damping: nucleated at a point, and with a Gaussian peak of W = 1."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from ..model.prestress import Prestress
+from ..theory.exact_transition import exact_transition_displacement, uniform_transition_time
+
+# Nothing but the scenes below.
+NEEDS = {"sweeps": []}
+
+LEVELS = np.linspace(0.1, 0.9, 33).round(12)
+GAMMAS = (0.01, 0.1, 0.65)
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """T_trans sqrt(gamma)/pi at Gamma = 1; no gamma in uniform pre-stress, where it does not depend on it."""
+    rows = []
+    for left in LEVELS:
+        rows.append({"left": left, "over_paper": uniform_transition_time(left, 1.0) / np.pi})
+        for gamma in GAMMAS:
+            time = exact_transition_displacement(Prestress(left, left), gamma).time
+            rows.append({"left": left, "gamma": gamma, "over_paper": time * np.sqrt(gamma) / np.pi})
+    return pd.DataFrame(rows)
