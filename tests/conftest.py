@@ -15,9 +15,8 @@ from threading import Thread
 
 import pytest
 import yaml
-from selection import selected
+from selection import selected, small_sweep
 
-from slippulse.configuration.expand import resolve
 from slippulse.data.store import load_table, save_table
 from slippulse.steps.reach import declared
 
@@ -126,10 +125,7 @@ def study(project, tmp_path_factory):
             needs = declared(f"studies.{name}", "NEEDS")
             settings = selected(config, needs.get("settings", ()), {})
             if "sweeps" in needs:
-                settings["sweeps"] = {
-                    sweep: resolve(config["simulations"][sweep], config["model"], config["presets"]["draft"])
-                    for sweep in needs["sweeps"]
-                }
+                settings["sweeps"] = {sweep: small_sweep(config, sweep) for sweep in needs["sweeps"]}
             module = import_module(f"slippulse.studies.{name}")
             save_table(module.table(data or {}, tables or {}, settings), path)
         return load_table(path)

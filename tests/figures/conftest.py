@@ -2,31 +2,19 @@
 
 from __future__ import annotations
 
-import copy
 from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
 import yaml
-from selection import selected
+from selection import selected, small_sweep
 
-from slippulse.configuration.expand import expand, resolve
+from slippulse.configuration.expand import expand
 from slippulse.data.store import load_table, save_table
 from slippulse.predict.measured import measured_table
 from slippulse.predict.table import predictions
 from slippulse.simulation.sweep import run_sweep
 from slippulse.steps.reach import declared
-
-# A few points of each list are enough to draw.
-THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
-
-
-def thinned(values: list, count: int) -> list:
-    """The first, the last and evenly between."""
-    if len(values) <= count:
-        return values
-    step = (len(values) - 1) / (count - 1)
-    return [values[round(i * step)] for i in range(count)]
 
 
 @pytest.fixture(scope="session")
@@ -38,18 +26,11 @@ def draw(project, tmp_path_factory, study):
 
     def simulate(name: str, coarser: float = 1.0):
         if (name, coarser) not in simulated:
-            block = copy.deepcopy(config["simulations"][name])
-            if not name.startswith("regimes"):
-                for key, count in THIN.items():
-                    if key in block:
-                        block[key] = thinned(block[key], count)
-            block = resolve(block, config["model"], config["presets"]["draft"], coarser)
+            block = small_sweep(config, name, coarser)
             scenes, samples = expand(block)
             sweep = run_sweep(scenes, samples, block["record"], threads=2)
             save_table(measured_table(sweep, config["measure"]), folder / f"{name}.csv")
-            save_table(predictions(scenes, config["measure"]["share"]), folder / f"{name}.predicted.csv")
-            tables = load_table(folder / f"{name}.csv"), load_table(folder / f"{name}.predicted.csv")
-            simulated[name, coarser] = (sweep, *tables)
+            simulated[name, coarser] = (sweep, load_table(folder / f"{name}.csv"), scenes)
         return simulated[name, coarser]
 
     def inputs(needs: dict) -> tuple[dict, dict]:
@@ -57,7 +38,10 @@ def draw(project, tmp_path_factory, study):
         data = {source: simulate(source)[0] for source in needs.get("data", [])}
         tables = {source: simulate(source)[1] for source in needs.get("measured", [])}
         for source in needs.get("predicted", []):
-            predicted = simulate(source)[2]
+            path, measure = folder / f"{source}.predicted.csv", config["measure"]
+            if not path.exists():
+                save_table(predictions(simulate(source)[2], measure["share"], measure["still"]), path)
+            predicted = load_table(path)
             tables[source] = tables[source].join(predicted) if source in tables else predicted
         for source in needs.get("studies", []):
             tables[source] = study(source, *inputs(declared(f"studies.{source}", "NEEDS")))

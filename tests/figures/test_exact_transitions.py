@@ -5,32 +5,37 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-
-@pytest.fixture(scope="module")
-def table(draw):
-    return draw("study_exact_transition").table
+from slippulse.model.prestress import Prestress
+from slippulse.theory.rupture import Rupture
 
 
-def test_uniform_prestress_leaves_the_papers_estimate_from_above(table):
-    uniform = table[table["role"] == "uniform"].sort_values("left")
-    found = uniform.set_index("left")["exact"]
-    assert found[[0.1, 0.4, 0.9]].to_numpy() == pytest.approx([1.219, 1.206, 1.112], abs=1e-3)
-    assert (np.diff(uniform["exact"]) < 0.0).all()
-    peaks = table[table["role"] == "peak"].merge(
-        uniform[["left", "exact"]], on="left", suffixes=("", "_uniform")
+def test_uniform_prestress_leaves_the_papers_estimate_from_above(study):
+    rows = study("gaussian_transition")
+    uniform = rows[rows["gamma"].isna()].set_index("left")["over_paper"]
+    assert uniform[[0.1, 0.4, 0.9]].to_numpy() == pytest.approx([1.219, 1.206, 1.112], abs=1e-3)
+    assert (np.diff(uniform) < 0.0).all()
+    peaks = rows.dropna(subset="gamma")
+    assert (peaks["over_paper"].to_numpy() < uniform[peaks["left"]].to_numpy()).all(), (
+        "the peak brings the transition forward"
     )
-    assert (peaks["exact"] < peaks["exact_uniform"]).all(), "the peak brings the transition forward"
 
 
-def test_one_way_pulses_of_the_grid(table):
-    assert not (table["role"] == "limit").any()
-    rows = table[table["role"] == "one_way"]
-    for quantity, group in rows.groupby("quantity"):
-        grid = group.pivot(index="left", columns="right", values="exact").to_numpy()
-        assert grid.size >= 20 and np.isfinite(grid).all()
-        assert (np.diff(grid, axis=0) > 0.0).all(), "a weaker barrier lets everything come later and farther"
-        if quantity != "stop":
-            assert (np.diff(grid, axis=1) > 0.0).all()
+def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
+    found = np.array(
+        [
+            [
+                (-end.x, rupture.transition_time, rupture.transition_length)
+                for right in (0.1, 0.5, 0.9)
+                for rupture in [Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)]
+                for end in [rupture.front_ends[0][0]]
+                if end.reason == "stops" and not rupture.limit
+            ]
+            for left in (-1.0, -0.3, -0.1)
+        ]
+    )
+    assert found.shape == (3, 3, 3) and np.isfinite(found).all()
+    assert (np.diff(found, axis=0) > 0.0).all()
+    assert (np.diff(found[:, :, 1:], axis=1) > 0.0).all()
 
 
 def test_the_lattice_of_the_space_time_figure_lies_on_the_exact_edges(draw):

@@ -6,80 +6,112 @@ import numpy as np
 import pytest
 import tolerances as tol
 
-from slippulse.figures import study_stability_of_pulses
+
+def off(rows, value, exact):
+    """Relative distances of one column from another."""
+    return np.abs(rows[value] / rows[exact] - 1.0)
 
 
-def test_front_speed_points_lie_on_their_lines(draw):
+def test_front_speeds_lie_on_their_lines(draw):
     drawn = draw("study_front_speed")
-    rows = drawn.table[drawn.table["role"] == "simulation"]
-    for rule in ("total", "elastic"):
-        steady = rows[(rows["release"] == rule) & (rows["tau0"] >= 0.3) & (rows["damping_ratio"] <= 1.0)]
-        assert len(steady) >= 8
-        assert np.max(np.abs(steady["speed"] / steady["theory"] - 1.0)) < tol.FRONT_SPEED_STUDY
+    runs = drawn.table[drawn.table["role"] == "simulation"]
+    uniform = runs[runs["panel"] == "prestress"]
+    for _, rows in uniform.groupby("release"):
+        steady = rows[(rows["left"] >= 0.3) & (rows["damping_ratio"] <= 1.0)]
+        assert len(steady) >= 8 and off(steady, "speed", "theory").max() < tol.FRONT_SPEED_STUDY
     # The two rules agree without damping, and differ with it.
-    plain = drawn.table[(drawn.table["role"] == "simulation") & (drawn.table["damping_ratio"] == 0.0)]
-    total, elastic = (plain[plain["release"] == rule]["speed"].to_numpy() for rule in ("total", "elastic"))
+    plain = uniform[uniform["damping_ratio"] == 0.0].groupby("release")["speed"]
+    total, elastic = (plain.get_group(rule).to_numpy() for rule in ("total", "elastic"))
     assert total == pytest.approx(elastic, rel=tol.FRONT_SPEED_STUDY)
     ids = {line.get_gid() for axes in drawn.figure.axes for line in axes.lines}
-    assert {f"theory {ratio:g}" for ratio in rows["damping_ratio"].unique()} <= ids
+    assert {f"theory {ratio:g}" for ratio in uniform["damping_ratio"].unique()} <= ids
 
 
-def test_pulse_theory_beats_the_paper_where_there_is_damping(draw):
-    table = draw("study_pulse_theory").table
-    rows = table[(table["role"] == "simulation") & (table["damping_ratio"] > 0.0)]
-    peaks = rows[rows["quantity"] == "peak_velocity"]
-    ours = np.abs(peaks["y"] / peaks["theory"] - 1.0)
-    papers = np.abs(peaks["y"] / peaks["paper"] - 1.0)
-    assert (ours < papers).all()
-    assert papers.max() > 0.1
+def test_leaf_springs_slow_fronts_under_both_rules_down_to_one_block_a_layer(draw):
+    drawn = draw("study_front_speed")
+    runs = drawn.measured["front_speed_springs"]
+    wide = runs[
+        runs["run_flags"].isna()
+        & (runs["pulse_state"] == "steady")
+        & (runs["pulse_width"] >= 4.0 * runs["dx"])
+    ]
+    assert len(wide) >= 20 and (wide["dx"] == 1.0).sum() >= 10 and wide["release"].nunique() == 2
+    assert off(wide, "front_speed_right", "lattice_front_speed_right").max() < 3e-4
+    lines = drawn.table[(drawn.table["panel"] == "springs") & (drawn.table["role"] == "theory")]
+    for _, line in lines.groupby(["left", "damping_ratio"]):
+        assert (np.diff(line.dropna(subset="speed").sort_values("springs")["speed"]) < 0.0).all()
 
 
 def test_refining_at_fixed_ratio_converges_and_at_fixed_beta_does_not(draw):
-    table = draw("study_continuum_limit").table
-    speed = table[(table["quantity"] == "front_speed_right") & (table["role"] == "simulation")]
-    spread = {
-        name: np.ptp(rows.sort_values("dx")["value"]) / rows["value"].iloc[0]
-        for name, rows in speed.groupby("series")
-    }
-    assert spread["fixed ratio, total"] < 0.01
-    assert spread["fixed beta, total"] > 0.5
-    fixed = table[(table["series"] == "fixed ratio, total") & (table["quantity"] == "transition_time")]
-    fixed = fixed.sort_values("dx")
-    error = np.abs(fixed["value"] / fixed["theory"] - 1.0).to_numpy()
-    assert (np.diff(error) > 0.0).all()
+    drawn = draw("study_front_speed")
+    rows = drawn.table[drawn.table["panel"] == "refined"]
+    speeds = rows[rows["role"] == "simulation"].groupby(["held", "release", "fixed"])["speed"]
+    spread = {key: np.ptp(group) / group.max() for key, group in speeds}
+    assert spread["b", "total", 0.1] < 0.01 and spread["beta", "total", 0.01] > 0.35
+    limits = drawn.table[drawn.table["panel"] == "limit"].set_index("fixed")["speed"]
+    for beta, line in rows[(rows["held"] == "beta") & (rows["release"] == "elastic")].groupby("fixed"):
+        gap = limits[beta] - line[line["role"] == "theory"].sort_values("dx")["speed"]
+        assert (gap > 0.0).all() and (np.diff(gap) > 0.0).all(), "from below, ever nearer"
+    line = ["held", "release", "fixed", "dx"]
+    runs, theory = (rows[rows["role"] == role].round({"dx": 9}) for role in ("simulation", "theory"))
+    both = runs.merge(theory, on=line, suffixes=("", "_of_theory"))
+    both = both[both["fixed"] == 0.1]
+    assert len(both) == 6 and off(both, "speed", "speed_of_theory").max() < 3e-4
 
 
-def test_exact_theory_collapses_what_the_paper_scatters(draw):
+def test_pulse_theory_beats_the_paper_where_there_is_damping_and_is_the_limit(draw):
+    table = draw("study_pulse_theory").table
+    runs = table[table["role"] == "simulation"]
+    peaks = runs[(runs["damping_ratio"] > 0.0) & (runs["quantity"] == "peak_velocity")]
+    assert (off(peaks, "value", "theory") < off(peaks, "value", "paper")).all()
+    assert off(peaks, "value", "paper").max() > 0.1
+    for _, line in table[table["role"] == "refined"].groupby("quantity"):
+        error = off(line.sort_values("dx"), "value", "theory")
+        assert (np.diff(error) > 0.0).all() and error.iloc[0] < 0.3 * error.iloc[-1]
+
+
+def test_exact_theory_collapses_what_the_paper_scatters_and_is_the_limit(draw):
     table = draw("study_exact_transition").table
-    rows = table[(table["role"] == "sweep") & table["run_flags"].isna() & table["measured"].notna()]
-    for _, group in rows.groupby(["boundary", "quantity"]):
-        papers = np.abs(group["measured"] / group["paper"] - 1.0).median()
-        exact = np.abs(group["measured"] / group["exact"] - 1.0).median()
-        assert exact < 0.25 * papers
+    sound = table[(table["role"] == "sweep") & table["run_flags"].isna()]
+    refined = table[table["role"] == "refinement"]
+    for number in ("transition_time", "transition_length"):
+        for _, rows in sound.dropna(subset=number).groupby("boundary"):
+            assert (
+                off(rows, number, f"exact_{number}").median()
+                < 0.25 * off(rows, number, f"paper_{number}").median()
+            )
+        largest = off(refined, number, f"exact_{number}").groupby(refined["dx"]).max()
+        assert (np.diff(largest) > 0.0).all() and largest.iloc[-1] < 0.03
 
 
-def test_shares_converge_and_the_last_release_is_beyond_them(draw):
+def test_the_time_of_a_fraction_converges_and_the_last_release_is_beyond_it(draw):
     table = draw("study_arrest").table
-    shares = table[(table["role"] == "share") & (table["share"] <= 0.9) & (table["damping_ratio"] > 0.0)]
-    shares = shares.assign(error=np.abs(shares["y"] / shares["exact"] - 1.0))
-    by_spacing = shares.groupby("dx")["error"].max().sort_index().to_numpy()
-    assert by_spacing[0] == by_spacing.min()
-    arrest = table[table["role"] == "arrest"]
-    assert (arrest["y"] > shares["y"].max()).all()
+    runs = table[(table["role"] == "run") & (table["damping_ratio"] > 0.0)]
+    by_spacing = off(runs, "fraction_time", "exact_fraction_time").groupby(runs["dx"]).max()
+    assert by_spacing.iloc[0] == by_spacing.min()
+    assert (runs["last_release"] > runs["fraction_time"]).all()
+    for _, path in table[table["role"] == "exact_path"].groupby("damping_ratio"):
+        assert (np.diff(path["time"]) > 0.0).all()
 
 
 def test_pulses_settle_or_grow_or_decay_by_sign(draw):
     table = draw("study_stability_of_pulses").table
-    slip = table[table["role"] == "slip"]
-    for _, rows in slip.groupby("level"):
-        last = rows.sort_values("x").iloc[-1]
-        assert last["y"] == pytest.approx(last["steady"], rel=0.05)
-        settled = study_stability_of_pulses.relaxation_length(
-            rows["x"].to_numpy(), rows["y"].to_numpy(), rows["y"].iloc[-1]
-        )
-        assert np.isfinite(settled)
-    velocity = table[(table["role"] == "velocity") & (table["left"] == table["left"].min())]
+    velocity = table[table["role"] == "velocity"]
     for level, rows in velocity.groupby("level"):
-        rows = rows[rows["x"] > rows["place"]].sort_values("x")
-        change = rows["y"].iloc[-1] / rows["y"].iloc[0] - 1.0
+        rows = rows[rows["time"] > rows["step"]].sort_values("time")
+        change = rows["largest_velocity"].iloc[-1] / rows["largest_velocity"].iloc[0] - 1.0
         assert np.sign(change) == np.sign(level) or level == 0.0
+
+
+def test_the_exact_pulse_is_steady_beyond_its_memory_and_not_before_and_the_lattice_follows(draw):
+    table = draw("study_stability_of_pulses").table
+    exact = table[table["role"] == "exact"]
+    assert exact["level"].nunique() >= 4 and exact["slip"].notna().all(), "no construction ends early"
+    for level, rows in exact.groupby("level"):
+        rest, fraction = off(rows, "slip", "steady"), rows["x"] / rows["memory"]
+        assert rest[fraction >= 1.0].max() < 1e-8 and (fraction >= 1.0).sum() >= 10
+        assert rest[(fraction > 0.5) & (fraction < 0.9)].min() > 1e-4
+        assert off(rows[rows["x"] < -5.0], "slip", "steady_before").max() < 1e-8
+        lattice = table[(table["role"] == "lattice") & (table["level"] == level)].sort_values("x")
+        distance = lattice["slip"] / np.interp(lattice["x"], rows["x"], rows["slip"]) - 1.0
+        assert distance.abs().max() < 0.1 and abs(distance.iloc[-1]) < 0.05

@@ -52,8 +52,8 @@ def table(
 
     Returns
     -------
-    DataFrame of role theory (as the study front_law has it) and simulation (speed; theory; undamped: the paper's
-    formula; sound: whether theory should hold), each of panel prestress, springs or refined
+    DataFrame of role theory (as the study front_law has it) and simulation (speed; theory, but for refined; undamped:
+    the paper's formula; sound: whether theory should hold), each of panel prestress, springs or refined
     """
     lines = tables["front_law"].assign(role="theory")
     uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
@@ -67,7 +67,7 @@ def table(
     drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
     runs = pd.concat(
         [
-            uniform.assign(panel="prestress", theory=uniform["exact_front_speed_right"]),
+            uniform.assign(panel="prestress"),
             springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2),
             refined.merge(drawn.drop_duplicates()).assign(panel="refined"),
         ]
@@ -76,7 +76,10 @@ def table(
     runs = runs[COLUMNS].assign(
         role="simulation",
         speed=runs["front_speed_right"],
-        theory=runs["theory"].fillna(runs["lattice_front_speed_right"]),
+        # Refined lattices have theirs in the lines.
+        theory=runs["lattice_front_speed_right"]
+        .fillna(runs["exact_front_speed_right"])
+        .where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
         sound=runs["run_flags"].isna() & (wide | (runs["panel"] == "prestress")),
     )

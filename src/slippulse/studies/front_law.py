@@ -67,7 +67,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         if line["held"] == "beta" and line["release"] == "elastic":
             speed = continuum_front_speed(line["left"], line["gamma"], line["fixed"])
             rows.append(line | {"panel": "limit", "speed": speed})
-        for spacing in np.geomspace(dx.min(), dx.max(), SPACINGS):
+        for spacing in np.union1d(np.geomspace(dx.min(), dx.max(), SPACINGS), dx):
             ratio = line["fixed"] / (1.0 if line["held"] == "b" else spacing)
             speed = _speed(line["left"], line["gamma"], spacing, ratio, line["release"])
             rows.append(line | {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed})
