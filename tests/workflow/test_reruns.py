@@ -175,7 +175,7 @@ SHARED = {
     ),
     "front window": (
         {"measure": {"front_window": 0.4}},
-        {"measure", "study_of_extremes", "fig03_steady_state", "study_stability_of_pulses"},
+        {"measure", "study_of_extremes", "fig03_steady_state"},
         SKETCHES | DATA - {"study_of_extremes", "study_of_accuracy_cost"},
     ),
     "release": ({"model": {"release": "elastic"}}, {"simulate", "draw_scene"}, SKETCHES | set(STUDIED)),

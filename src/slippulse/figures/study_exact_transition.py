@@ -78,7 +78,7 @@ def _draw_ratios(axes, sweep: pd.DataFrame, quantity: str) -> None:
             ratio = measured / runs[f"{reference}_transition_{quantity}"]
             face = "white" if reference == "paper" else colour
             look = {"markersize": 2.5, "markerfacecolor": face, "markeredgewidth": 0.5}
-            name = "the paper's prediction" if reference == "paper" else "exact theory"
+            name = "the paper's value" if reference == "paper" else "the exact one"
             axes.plot(
                 exact,
                 ratio,

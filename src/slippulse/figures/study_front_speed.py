@@ -116,7 +116,7 @@ def _part(table: pd.DataFrame, panel: str, rule: str | None = None) -> pd.DataFr
 
 
 def _colour(ratio: float):
-    return colour_scale("damping_ratio").to_rgba(ratio)
+    return colour_scale("damping_ratio").to_rgba(np.asarray(ratio))
 
 
 def _draw_prestress(axes, rows: pd.DataFrame) -> None:

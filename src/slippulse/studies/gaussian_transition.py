@@ -11,7 +11,7 @@ from ..model.prestress import Prestress
 from ..theory.exact_transition import exact_transition_displacement, uniform_transition_time
 
 # Nothing but the scenes below.
-NEEDS = {"sweeps": []}
+NEEDS = {"sweeps": ()}
 
 LEVELS = np.linspace(0.1, 0.9, 33).round(12)
 GAMMAS = (0.01, 0.1, 0.65)
