@@ -13,7 +13,7 @@ from ..theory.exact_transition import exact_transition_displacement, uniform_tra
 # Nothing but the scenes below.
 NEEDS = {"sweeps": ()}
 
-LEVELS = np.linspace(0.1, 0.9, 33).round(12)
+LEVELS = np.concatenate([np.linspace(0.1, 0.25, 7), np.linspace(0.3, 0.9, 13)]).round(12)
 GAMMAS = (0.01, 0.1, 0.65)
 
 
