@@ -18,7 +18,7 @@ from .style import GREY, PAGE, colour_scale, new_figure, panel_letter
 # What is drawn: data, measured numbers, predictions and studies by name, and keys of the configuration.
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
-# Points of a lattice, of which every so many are marked; and what is left of the exact slip by rounding.
+# Points of a lattice, how many there are to a mark, and what rounding leaves of the exact distance.
 POINTS, MARKED, ROUNDING = 100, 5, 2e-9
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 from ..configuration.expand import expand
 from ..theory.arrest import ArrestingCrack
 
-# The simulation that the path stands beside.
+# The simulation whose parameters the path has.
 NEEDS = {"sweeps": ["arrest"]}
 
 # What is still to go, in units of |x_minus|: denser towards the end, which takes for ever.
@@ -18,7 +18,7 @@ TO_GO = np.geomspace(1.0, 1e-4, 200)[1:]
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """When so much of the way is still to go, in units of |x_minus|, for each damping ratio of the sweep.
+    """When which fraction of the way is still to go, for each damping ratio of the sweep; time in units of |x_minus|.
 
     Parameters
     ----------

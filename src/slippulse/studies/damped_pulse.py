@@ -11,7 +11,7 @@ from ..configuration.expand import expand
 from ..theory.front_law import front_speed
 from ..theory.pulse import paper_pulse, steady_pulse
 
-# Simulations that the curves stand beside.
+# Simulations whose parameters the curves have.
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
 
 QUANTITIES = ("peak_velocity", "width", "slip")

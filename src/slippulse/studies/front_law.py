@@ -10,7 +10,7 @@ import pandas as pd
 from ..configuration.expand import expand
 from ..theory.front_law import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
-# Simulations that the curves stand beside.
+# Simulations whose parameters the curves have.
 NEEDS = {
     "sweeps": [
         "front_speed",

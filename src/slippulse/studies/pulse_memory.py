@@ -13,7 +13,7 @@ from ..theory.front_law import front_speed
 from ..theory.pulse import SteadyPulse, steady_pulse
 from ..theory.rupture import Rupture
 
-# The simulation that the curves stand beside.
+# The simulation whose parameters the curves have.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
 # How far behind the step the slip is wanted, and beyond it in units of the finite memory.
