@@ -15,6 +15,7 @@ rule draw_scene:
         sources("steps.draw_scene"),
         data="results/data/{scene}.nc",
         measured="results/measurements/{scene}.csv",
+        predicted="results/predictions/{scene}.csv",
         uncertainties="results/uncertainties/{scene}.csv",
     output:
         png=report("results/scenes/{scene}.png", category="Scenes", labels={"scene": "{scene}"}),
@@ -30,7 +31,6 @@ rule draw_scene:
         step="draw_scene",
         scene=lambda wildcards: wildcards.scene,
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
-        share=config["measure"]["share"],
         configuration=lambda wildcards: configuration_of_numbers(wildcards.scene),
     message:
         "Drawing scene {wildcards.scene}"
@@ -80,6 +80,7 @@ rule draw_sweep:
     input:
         sources("steps.draw_sweep"),
         measured="results/measurements/{sweep}.csv",
+        predicted="results/predictions/{sweep}.csv",
     output:
         png=report("results/figures/sweep_{sweep}.png", category="Sweeps", labels={"sweep": "{sweep}"}),
         pdf="results/figures/sweep_{sweep}.pdf",
@@ -90,7 +91,6 @@ rule draw_sweep:
         sweep="|".join(config["simulations"]),
     params:
         step="draw_sweep",
-        share=config["measure"]["share"],
         configuration=lambda wildcards: configuration_of_numbers(wildcards.sweep),
     message:
         "Drawing sweep {wildcards.sweep}"

@@ -8,75 +8,44 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .shared.pulses import (
-    displacement_handles,
-    draw_displacement,
-    draw_prestress,
-    draw_stress,
-    prestress_rows,
-    profile_colours,
-    pulse_rows,
-    stress_handles,
-    tau_colours,
-)
-from .style import COLUMN, new_figure, panel_letter
+from .shared.pulses import SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
+from .style import COLUMN, legend_below, new_figure, panel_letter
 
-# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
     "measured": ["steady_displacement", "steady_stress"],
+    "predicted": ["steady_displacement", "steady_stress"],
+    "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }
 
-VELOCITY = ("slip_velocity",)
-
 
 def table(
-    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """Pulses in the frame of their peak, theory beside them, and the pre-stress of the insets."""
-    window = settings["measure"]["front_window"]
-    parts = []
-    for boundary, reach in (("displacement", 6.0), ("stress", 5.0)):
-        sweep = data[f"steady_{boundary}"]
-        parts.append(pulse_rows(sweep, window, VELOCITY).assign(panel=boundary))
-        parts.append(prestress_rows(sweep, reach).assign(panel=boundary))
+    """Slip velocity of the pulses of both sweeps in the frame of its largest value, as `pulse_rows` has it."""
+    names = NEEDS["data"]
+    parts = [pulse_rows(name, data, tables, settings, ("slip_velocity",)) for name in names]
     return pd.concat(parts, ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Left: displacement boundary, on axes where undamped pulses are one. Right: stress boundary. Residuals below."""
-    figure = new_figure(COLUMN, 4.1)
-    grid = figure.subplots(2, 2, height_ratios=(2.6, 1.0), sharex="col")
-    pulses = table[table["role"] != "inset"]
-    insets = table[table["role"] == "inset"]
-    for column, (boundary, title, draw, colours, by) in enumerate(
-        (
-            ("displacement", r"$\Gamma = 1$", draw_displacement, tau_colours, "left"),
-            ("stress", r"$\Gamma = 0$", draw_stress, profile_colours, "run"),
-        )
+    """Left: displacement boundary, on axes where undamped pulses are one. Right: stress boundary."""
+    figure = new_figure(COLUMN, 3.2)
+    panels = figure.subplots(1, 2)
+    left, right = (table[table["panel"] == name] for name in ("displacement", "stress"))
+    for axes, rows, title, widths, letter in zip(
+        panels, (left, right), (r"$\Gamma = 1$", r"$\Gamma = 0$"), (6.0, 5.0), "ab", strict=True
     ):
-        above, strip = grid[:, column]
-        rows = pulses[pulses["panel"] == boundary]
-        draw(above, strip, rows, "slip_velocity")
-        above.set_title(title, fontsize=9)
-        above.set_ylim(-0.05, 1.75)
-        shown = insets[insets["panel"] == boundary]
-        draw_prestress(above.inset_axes([0.6, 0.66, 0.38, 0.26]), shown, by, colours(rows))
-        panel_letter(above, "ab"[column])
-        panel_letter(strip, "cd"[column])
-    gamma = table["gamma"].dropna().iloc[0]
-    grid[0, 0].set_ylabel(r"slip velocity / largest")
-    grid[1, 0].set_ylabel("simulation\n$-$ exact", linespacing=0.9)
-    grid[1, 0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {gamma:g}$)", fontsize=8)
-    grid[1, 1].set_xlabel(r"$\chi/W$")
-    *left, simulation = displacement_handles(pulses[pulses["panel"] == "displacement"])
-    *right, _ = stress_handles(pulses[pulses["panel"] == "stress"])
+        draw_pulses(axes, rows, "slip_velocity")
+        draw_prestress(axes, rows, (0.57, 0.7, 0.38, 0.2), widths)
+        axes.set_title(title, fontsize=9)
+        axes.set_ylim(-0.05, 1.75)
+        panel_letter(axes, letter)
+    panels[0].set_ylabel("slip velocity / largest")
+    panels[0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {left['gamma'].max():g}$)", fontsize=8)
+    panels[1].set_xlabel(r"$\chi/W$")
     # A column a boundary.
-    figure.legend(
-        handles=[*left, *right, simulation],
-        loc="outside lower center",
-        ncols=2,
-        handlelength=1.4,
-    )
+    legend_below(figure, [*handles(left), *handles(right), SIMULATION], 2)
     return figure

@@ -7,108 +7,81 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
 
 from ..model.prestress import Prestress
 from .shared.scaling import (
-    OTHERS,
-    SYMBOLS,
+    LEVEL,
+    OTHER,
     chosen,
-    collapse_rows,
+    colour_bar,
+    colours,
     draw_collapse,
     draw_ratio,
-    exact_rows,
-    level_bar,
-    summaries,
+    transition_rows,
 )
-from .style import BLACK, COLUMN, GREY, colour_scale, new_figure, panel_letter
+from .style import BLACK, COLUMN, GREY, entry, legend_below, new_figure, panel_letter, prestress_inset
 
-# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
-NEEDS = {"measured": ["scaling_displacement", "scaling_stress"], "settings": ["measure.share"]}
-
-INSET_POINTS = 161
+# What is drawn: data, tables and studies by name, and keys of the configuration.
+NEEDS = {
+    "measured": ["scaling_displacement", "scaling_stress"],
+    "predicted": ["scaling_displacement", "scaling_stress"],
+}
+BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 
 def table(
-    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """Every run of both sweeps, exact theory at some of them, the summary of each panel, and pre-stress profiles."""
-    share = settings["measure"]["share"]
-    parts = []
-    # In the continuum the ratios under a stress boundary do not depend on the width: its ends are enough.
-    for boundary, most in (("displacement", {"left": 5, "gamma": 5}), ("stress", {"left": 5, "width": 2})):
-        sweep = measured[f"scaling_{boundary}"]
-        rows = collapse_rows(sweep, boundary)
-        parts += [rows, exact_rows(chosen(sweep, **most), boundary, share), summaries(rows)]
-        parts.append(inset_rows(sweep, boundary))
+    """Every run of both sweeps, as `transition_rows` has it."""
+    parts = [transition_rows(tables[f"scaling_{boundary}"], boundary) for boundary in BOUNDARIES]
     return pd.concat(parts, ignore_index=True)
 
 
-def inset_rows(sweep: pd.DataFrame, boundary: str) -> pd.DataFrame:
-    """Profiles of the lowest, middle and highest level, at the narrowest Gaussian."""
-    width = float(sweep["width"].min())
-    x = np.linspace(-6.0 * width, 6.0 * width, INSET_POINTS)
-    parts = []
-    for level in chosen(sweep, left=3)["left"].unique():
-        right = level if boundary == "displacement" else float(sweep["right"].iloc[0])
-        tau = Prestress(float(level), float(right), width)(x)
-        parts.append(pd.DataFrame({"role": "inset", "x": x, "y": tau, "left": level, "width": width}))
-    return pd.concat(parts).assign(panel=f"{boundary}_inset")
-
-
 def plot(table: pd.DataFrame) -> Figure:
-    """A column a boundary: the collapse, and below it L_trans and T_trans over their predictions."""
-    figure = new_figure(COLUMN, 5.4)
-    grid = figure.subplots(3, 2, height_ratios=(1.25, 1.0, 1.0))
-    markers = table[table["role"] == "marker"]
-    for column, (boundary, title) in enumerate(
-        (("displacement", r"$\Gamma = 1$"), ("stress", r"$\Gamma = 0$"))
+    """A column a boundary: the collapse, and below it measured over predicted against the level."""
+    figure = new_figure(COLUMN, 5.0)
+    grid = figure.subplots(2, 2, height_ratios=(1.2, 1.0))
+    for (above, below), (boundary, title), letters in zip(
+        grid.T, BOUNDARIES.items(), ("ac", "bd"), strict=True
     ):
-        above, below = grid[0, column], grid[1:, column]
-        draw_collapse(above, markers[markers["panel"].str.startswith(boundary)], boundary)
+        runs = table[table["boundary"] == boundary]
+        draw_collapse(above, runs)
         above.set_title(title, fontsize=9)
-        above.set_xlabel(r"predicted $L$, $T$")
-        draw_inset(above, table[table["panel"] == f"{boundary}_inset"], boundary)
-        across, label = OTHERS[boundary]
-        for axes, quantity in zip(below, SYMBOLS, strict=True):
-            draw_ratio(axes, table, f"{boundary}_{quantity}", across)
-            axes.set_xlabel(label)
-        level_bar(figure, list(grid[:, column]), boundary, location="bottom", aspect=25, pad=0.01)
-        for row in range(3):
-            panel_letter(grid[row, column], "abcdef"[2 * row + column])
-    grid[0, 0].set_ylabel(r"measured $L$, $T$")
-    for axes, symbol in zip(grid[1:, 0], SYMBOLS.values(), strict=True):
-        axes.set_ylabel(f"${symbol}$, measured\nover predicted", linespacing=0.9)
-    figure.legend(
-        handles=handles(table), loc="outside lower center", ncols=3, columnspacing=0.9, handletextpad=0.6
-    )
+        above.set_xlabel("predicted $L$, $T$")
+        draw_inset(above, runs)
+        below.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
+        other = OTHER[boundary][0]
+        some = runs[runs[other].isin(chosen(runs[other], 3))]
+        draw_ratio(below, some, "length", "left", other, "o", "-")
+        draw_ratio(below, some, "time", "left", other, "^", "--")
+        below.set_xlabel(LEVEL[boundary][1])
+        bars = {"location": "bottom", "aspect": 25, "pad": 0.02}
+        colour_bar(figure, (above, below), boundary, "left", **bars)
+        colour_bar(figure, (above, below), boundary, other, **bars)
+        for axes, letter in zip((above, below), letters, strict=True):
+            panel_letter(axes, letter)
+    grid[0, 0].set_ylabel("measured $L$, $T$")
+    grid[1, 0].set_ylabel("measured over predicted")
+    marks = [("length", "o"), ("time", "^"), ("literal definition", "x")]
+    handles = [entry(label, marker=marker, color=GREY) for label, marker in marks]
+    handles += [
+        entry(label, color=GREY, linewidth=0.8, linestyle=style)
+        for label, style in (("exact length", "-"), ("exact time", "--"))
+    ]
+    legend_below(figure, [*handles, entry("equality", color=BLACK, linewidth=0.8)], 3)
     return figure
 
 
-def handles(table: pd.DataFrame) -> list[Line2D]:
-    """What markers and lines are."""
-    entries = [
-        ({"marker": "o", "linestyle": "none"}, "length"),
-        ({"marker": "^", "linestyle": "none"}, "time"),
-        ({"marker": "x", "linestyle": "none"}, "literal definition"),
-        ({"color": BLACK, "linewidth": 0.8}, "equality"),
-        ({"linewidth": 0.8}, "exact theory"),
+def draw_inset(axes: Axes, runs: pd.DataFrame) -> None:
+    """Pre-stress of the lowest, middle and highest level, at the narrowest Gaussian."""
+    width = runs["width"].min()
+    some = runs[(runs["width"] == width) & runs["left"].isin(chosen(runs["left"], 3))].drop_duplicates("left")
+    x = np.linspace(-6.0, 6.0, 161) * width
+    symmetric = runs["boundary"].iloc[0] == "displacement"
+    curves = [
+        (x, Prestress(level, level if symmetric else 0.0, width)(x), colour)
+        for level, colour in zip(some["left"], colours(some, "left"), strict=True)
     ]
-    if table["run_flags"].notna().any():
-        entries.append(({"marker": "o", "linestyle": "none", "fillstyle": "none"}, "flagged"))
-    return [
-        Line2D([], [], **({"color": GREY, "markersize": 3.5} | look), label=label) for look, label in entries
-    ]
-
-
-def draw_inset(axes, rows: pd.DataFrame, boundary: str) -> None:
-    """Pre-stress profiles in the lower right corner."""
-    scale = colour_scale("tau_0" if boundary == "displacement" else "tau_l")
-    inset = axes.inset_axes([0.62, 0.16, 0.36, 0.3])
-    for level, group in rows.groupby("left"):
-        inset.plot(group["x"], group["y"], color=scale.to_rgba(level), linewidth=0.8)
-    inset.xaxis.set_major_locator(MaxNLocator(2, integer=True))
-    inset.set_title(r"$\tau(x)$", fontsize=7.0, pad=1.0)
-    inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
+    prestress_inset(axes, (0.62, 0.16, 0.36, 0.26), curves)

@@ -4,29 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
 from ..data.points import point
 from ..model.scene import prestress_from
-from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, entry, legend_below, new_figure, panel_letter
 
-# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
+# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
 
-PANELS = ("displacement", "stress")
+# Panels, and how far apart their rows of blocks are, in spacings.
+PITCH = {"displacement": 1.62, "stress": 0.86}
 # Blocks shown besides the middle one, and blocks shown beyond the one that stops the left front.
 SHOWN, BEYOND = 18, 2
 # Block width and height in spacings, and how far above the ground the plate is.
 BLOCK, HEIGHT, PLATE = 0.5, 0.44, 1.12
-# The drawn displacement: at most this share of a spacing, springs shortened to this share of their length at most.
+# Largest drawn displacement as a fraction of a spacing, and shortest spring as a fraction of its length.
 FARTHEST, SHORTEST = 0.85, 0.35
 # Inches of a spacing's height, and of the strip with the pre-stress.
 UNIT, STRIP = 0.36, 0.42
@@ -40,25 +42,19 @@ TITLES = {
 
 
 def table(
-    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """State of the blocks at a few instants of both runs.
-
-    Parameters
-    ----------
-    data : sweeps burridge_knopoff_displacement and burridge_knopoff_stress, of which the first run is drawn
-    measured : not used
-    settings : not used
+    """State of the blocks at a few instants of the first run of each sweep.
 
     Returns
     -------
-    DataFrame, one row a panel, instant and block: panel, row, instant (its name), time, x (at rest), slip,
-    slip_velocity, prestress, state, arresting_block (the first one that the left front never releases), scale (drawn
-    displacement over slip) and the parameters gamma, left, right, width.
+    one row a panel, instant and block: panel, row, instant (its name), time, x (at rest), slip, slip_velocity,
+    prestress, state, arresting_block (the first one that the left front never releases), scale (drawn displacement
+    over slip) and the parameters gamma, left, right, width
 
     Source: the paper's discussion of the Burridge-Knopoff model.
     """
-    parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PANELS]
+    parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PITCH]
     return pd.concat(parts, ignore_index=True)
 
 
@@ -67,30 +63,18 @@ def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
     low, high = window(run)
     shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
     x = shown["sample_position"].values
-    parts = []
+    tau, parts = prestress_from(run.attrs)(x), []
     for row, (instant, at) in enumerate(instants(run)):
         slip, velocity = shown["sample_slip"].values[at], shown["sample_velocity"].values[at]
         moved = np.where(slip > 0.0, "stuck after sliding", "at rest")
-        parts.append(
-            pd.DataFrame(
-                {
-                    "panel": name,
-                    "row": row,
-                    "instant": instant,
-                    "time": float(run["sample_time"].values[at]),
-                    "x": x,
-                    "slip": slip,
-                    "slip_velocity": velocity,
-                    "prestress": prestress_from(run.attrs)(x),
-                    "state": np.where(velocity > 0.0, "sliding", moved),
-                    "arresting_block": (x == arresting_block(run)) & (name == "stress"),
-                }
-            )
-        )
+        frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity, "prestress": tau})
+        frame["state"] = np.where(velocity > 0.0, "sliding", moved)
+        parts.append(frame.assign(row=row, instant=instant, time=float(run["sample_time"].values[at])))
     rows = pd.concat(parts, ignore_index=True)
     closer = float(-rows.groupby("row")["slip"].diff().min())
     rows["scale"] = min(FARTHEST / rows["slip"].max(), (1.0 - SHORTEST) * (1.0 - BLOCK) / closer)
-    return rows.assign(**{key: run.attrs[key] for key in ("gamma", "left", "right", "width")})
+    rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
+    return rows.assign(panel=name, **{key: run.attrs[key] for key in ("gamma", "left", "right", "width")})
 
 
 def arresting_block(run: xr.Dataset) -> float:
@@ -116,119 +100,81 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     stuck = (slip > 0.0) & (velocity <= 0.0)
     # A run in which nothing sticks stays a crack to the end.
     stick = int(np.argmax(stuck.any(axis=1))) if stuck[: last + 1].any() else last
-    sides = [bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0)]
-    ending = ["arrested", "pulse", "two pulses"][sum(sides)] if stuck[last, x == 0.0].all() else "crack"
-    chosen = [
-        ("start", 0),
-        ("crack", stick // 2),
-        ("first stick", stick),
-        ("later", (stick + last) // 2),
-        (ending, last),
-    ]
-    # The last name wins where two instants are one sample.
-    return [
-        (name, at) for i, (name, at) in enumerate(chosen) if all(at != later for _, later in chosen[i + 1 :])
-    ]
+    sides = sum(bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0))
+    ending = ("arrested", "pulse", "two pulses")[sides] if stuck[last, x == 0.0].all() else "crack"
+    middle = (stick + last) // 2
+    named = {0: "start", stick // 2: "crack", stick: "first stick", middle: "later", last: ending}
+    return [(name, at) for at, name in sorted(named.items())]
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """One panel a boundary condition: its pre-stress, and below it the rows of blocks, time downwards."""
     counts = table.groupby("panel")["row"].nunique()
-    pitches = {"displacement": 1.62, "stress": 0.86}
-    heights = {name: UNIT * (pitches[name] * counts[name] + 0.12) for name in PANELS}
-    ratios = [height for name in PANELS for height in (STRIP, heights[name])]
+    heights = [UNIT * (PITCH[name] * counts[name] + 0.12) for name in PITCH]
+    ratios = [height for rows in heights for height in (STRIP, rows)]
     figure = new_figure(PAGE, sum(ratios) + 1.75)
     grid = figure.add_gridspec(4, 1, height_ratios=ratios)
-    panels = [figure.add_subplot(grid[row]) for row in (1, 3)]
-    for index, (axes, name, letter) in enumerate(zip(panels, PANELS, "ab", strict=True)):
+    for index, (name, letter) in enumerate(zip(PITCH, "ab", strict=True)):
         rows = table[table["panel"] == name]
+        axes = figure.add_subplot(grid[2 * index + 1])
+        draw_rows(axes, rows, name)
         strip = figure.add_subplot(grid[2 * index], sharex=axes)
         draw_prestress(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
-        draw_rows(axes, rows, pitches[name], leaf=name == "displacement")
-    figure.legend(handles=legend_handles(), loc="outside lower center", ncols=4)
+    square: dict[str, Any] = {
+        "marker": "s",
+        "markersize": 6.0,
+        "markeredgecolor": "0.2",
+        "markeredgewidth": 0.5,
+    }
+    handles = [entry(name, **square | {"markerfacecolor": colour}) for name, colour in COLOURS.items()]
+    framed = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
+    legend_below(figure, [*handles, entry("never released: stops the left front", **square | framed)], 4)
     return figure
 
 
-def legend_handles() -> list[Line2D]:
-    """A square for each state, and one for the arresting block."""
-    looks = [
-        {"label": name, "markerfacecolor": colour, "markeredgecolor": "0.2", "markeredgewidth": 0.5}
-        for name, colour in COLOURS.items()
-    ]
-    looks.append(
-        {
-            "label": "never released: stops the left front",
-            "markerfacecolor": "none",
-            "markeredgecolor": "black",
-            "markeredgewidth": 1.8,
-        }
-    )
-    return [Line2D([], [], marker="s", linestyle="none", markersize=6, **look) for look in looks]
-
-
-def draw_prestress(axes, rows: pd.DataFrame) -> None:
+def draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
     """Pre-stress of every block as a bar."""
-    x, level = rows["x"].to_numpy(), rows["prestress"].to_numpy()
-    axes.axhline(0.0, color="black", linewidth=0.6)
-    axes.bar(x, level, width=BLOCK, color=GREY, edgecolor="none")
+    axes.axhline(0.0, color=BLACK, linewidth=0.6)
+    axes.bar(rows["x"], rows["prestress"], width=BLOCK, color=GREY)
     axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    axes.set_ylim(min(0.0, float(level.min())) - 0.15, 1.12)
+    axes.set_ylim(min(0.0, float(rows["prestress"].min())) - 0.15, 1.12)
     axes.set_yticks(sorted({0.0, 1.0, float(rows["left"].iloc[0])}))
     axes.tick_params(axis="x", length=0, labelbottom=False)
     axes.tick_params(axis="y", labelsize=7)
-    for side in ("right", "top", "bottom"):
-        axes.spines[side].set_visible(False)
+    axes.spines[["right", "top", "bottom"]].set_visible(False)
 
 
-def draw_rows(axes, rows: pd.DataFrame, pitch: float, leaf: bool) -> None:
+def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     """Blocks, coil springs and leaf springs of one run, one line an instant."""
-    shown = rows["x"].to_numpy()
-    low, high = shown.min() + 0.35, shown.max() - 0.35
+    low, high = rows["x"].min() + 0.35, rows["x"].max() - 0.35
+    leaf, pitch = name == "displacement", PITCH[name]
     for row, state in rows.groupby("row"):
         state = state.sort_values("x")
-        base = -pitch * row
-        rest = state["x"].to_numpy()
+        base, rest = -pitch * row, state["x"].to_numpy()
         centre = rest + (state["scale"] * state["slip"]).to_numpy()
         coils = [coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT) for a, b in pairwise(centre)]
         axes.add_collection(LineCollection(coils, colors="0.35", linewidths=0.6, gid="coil springs"))
-        axes.plot([low, high], [base, base], color="black", linewidth=0.8)
+        axes.plot([low, high], [base, base], color=BLACK, linewidth=0.8)
         axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
         if leaf:
-            axes.plot([low, high], [base + PLATE] * 2, color="black", linewidth=1.8)
+            axes.plot([low, high], [base + PLATE] * 2, color=BLACK, linewidth=1.8)
             bent = [bow(top, base + PLATE, now, base + HEIGHT) for top, now in zip(rest, centre, strict=True)]
             axes.add_collection(LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs"))
         for now, block in zip(centre, state.itertuples(), strict=True):
-            axes.add_patch(
-                Rectangle(
-                    (now - 0.5 * BLOCK, base),
-                    BLOCK,
-                    HEIGHT,
-                    facecolor=COLOURS[block.state],
-                    edgecolor="black" if block.arresting_block else "0.2",
-                    linewidth=1.8 if block.arresting_block else 0.5,
-                    zorder=3,
-                    gid=block.state,
-                )
-            )
-        axes.text(
-            low - 0.2,
-            base + 0.5 * HEIGHT,
-            rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0],
-            ha="right",
-            va="center",
-            fontsize=8,
-        )
-    axes.set_xlim(low, high)
-    axes.set_ylim(-pitch * rows["row"].max() - 0.2, (PLATE if leaf else HEIGHT) + 0.08)
-    axes.set_yticks([])
-    axes.set_xlabel(
-        rf"position $x$ at rest; displacement drawn: {rows['scale'].iloc[0]:.2g} $\times$ slip $u$"
-    )
+            colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
+            patch = Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)
+            patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
+            axes.add_patch(patch)
+        text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
+        axes.text(low - 0.2, base + 0.5 * HEIGHT, text, ha="right", va="center", fontsize=8)
+    top = (PLATE if leaf else HEIGHT) + 0.08
+    axes.set(xlim=(low, high), ylim=(-pitch * rows["row"].max() - 0.2, top), yticks=[])
+    scale = rf"{rows['scale'].iloc[0]:.2g} $\times$ slip $u$"
+    axes.set_xlabel(f"position $x$ at rest; displacement drawn: {scale}")
     axes.xaxis.set_major_locator(MultipleLocator(2))
-    for side in ("left", "right", "top"):
-        axes.spines[side].set_visible(False)
+    axes.spines[["left", "right", "top"]].set_visible(False)
 
 
 def coil(start: float, end: float, y: float, turns: int = 4, size: float = 0.1) -> np.ndarray:
@@ -241,6 +187,6 @@ def coil(start: float, end: float, y: float, turns: int = 4, size: float = 0.1) 
 
 def bow(x_top: float, y_top: float, x_bottom: float, y_bottom: float) -> np.ndarray:
     """A leaf spring clamped upright at both ends."""
-    share = np.linspace(0.0, 1.0, 15)
-    smooth = share**2 * (3.0 - 2.0 * share)
-    return np.column_stack([x_top + (x_bottom - x_top) * smooth, y_top + (y_bottom - y_top) * share])
+    along = np.linspace(0.0, 1.0, 15)
+    x = x_top + (x_bottom - x_top) * along**2 * (3.0 - 2.0 * along)
+    return np.column_stack([x, y_top + (y_bottom - y_top) * along])

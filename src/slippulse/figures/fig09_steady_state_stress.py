@@ -8,53 +8,38 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from .shared.pulses import (
-    FIELDS,
-    draw_prestress,
-    draw_stress,
-    prestress_rows,
-    profile_colours,
-    pulse_rows,
-    stress_handles,
-)
-from .style import PAGE, new_figure, panel_letter
+from .shared.pulses import FIELDS, SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
+from .style import PAGE, legend_below, new_figure, panel_letter
 
-# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
-NEEDS = {"data": ["steady_stress"], "measured": ["steady_stress"], "settings": ["measure.front_window"]}
-
-# Drawn of the acceleration, in widths of the Gaussian.
-NEAR_THE_FRONT = (-4.0, 4.0)
+# What is drawn: data, tables and studies by name, and keys of the configuration.
+NEEDS = {
+    "data": ["steady_stress"],
+    "measured": ["steady_stress"],
+    "predicted": ["steady_stress"],
+    "studies": ["pulse_profiles"],
+    "settings": ["measure.front_window"],
+}
 
 
 def table(
-    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
+    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
 ) -> pd.DataFrame:
-    """Pulses in the frame of their peak, the exact peak velocities, and the pre-stress of the inset."""
-    sweep = data["steady_stress"]
-    rows = pulse_rows(sweep, settings["measure"]["front_window"], tuple(FIELDS))
-    return pd.concat([rows, prestress_rows(sweep, 5.0)], ignore_index=True)
+    """Pulses in the frame of their peak, as `pulse_rows` has them."""
+    return pulse_rows("steady_stress", data, tables, settings)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Slip with the pre-stress as inset, slip velocity, acceleration near the front; below, simulation less theory."""
-    figure = new_figure(PAGE, 3.9)
-    grid = figure.subplots(2, 3, height_ratios=(2.6, 1.0), sharex="col")
-    pulses = table[table["role"] != "inset"]
-    for (above, strip), (field, label), letter in zip(grid.T, FIELDS.items(), "abc", strict=True):
-        draw_stress(above, strip, pulses, field)
-        above.set_ylabel(f"{label} / scale")
-        strip.set_xlabel(r"$\chi/W$")
-        panel_letter(above, letter)
-    grid[1, 0].set_ylabel("simulation\n$-$ exact", linespacing=0.9)
-    grid[0, 0].set_ylim(-0.04, 1.5)
-    colours = profile_colours(pulses)
-    draw_prestress(
-        grid[0, 0].inset_axes([0.56, 0.66, 0.42, 0.26]), table[table["role"] == "inset"], "run", colours
-    )
+    """Slip with the pre-stress as inset, slip velocity, acceleration near the front."""
+    figure = new_figure(PAGE, 3.0)
+    panels = figure.subplots(1, 3)
+    for axes, (field, label), letter in zip(panels, FIELDS.items(), "abc", strict=True):
+        draw_pulses(axes, table, field)
+        axes.set(xlabel=r"$\chi/W$", ylabel=f"{label} / scale")
+        panel_letter(axes, letter)
+    panels[0].set_ylim(-0.04, 1.6)
+    draw_prestress(panels[0], table, (0.58, 0.7, 0.4, 0.22), 5.0)
+    panels[1].set_title(rf"$\Gamma = 0$, $b = {table['damping_ratio'].max():g}$", fontsize=9)
     # The exact acceleration has no bound at the front.
-    for axes in grid[:, 2]:
-        axes.set_xlim(*NEAR_THE_FRONT)
-    grid[0, 2].set_ylim(-0.3, 3.0)
-    grid[1, 2].set_ylim(-0.5, 0.5)
-    figure.legend(handles=stress_handles(pulses), loc="outside lower center", ncols=3)
+    panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
+    legend_below(figure, [*handles(table), SIMULATION], 3)
     return figure

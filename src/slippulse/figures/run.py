@@ -53,8 +53,7 @@ def plot(run: xr.Dataset) -> Picture:
         profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
         parts.draw_profile(profile, roles["prestress"])
         if "sample_velocity" in run:
-            sampled = parts.velocity_map(run)
-            roles |= {role: rows for role, rows in sampled.groupby("role")}
+            roles |= {str(role): rows for role, rows in parts.velocity_map(run).groupby("role")}
             image = parts.draw_map(times, roles)
             figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
         else:
@@ -62,7 +61,6 @@ def plot(run: xr.Dataset) -> Picture:
         times.legend(loc="upper left")
         slip.plot(run["slip"], run["x"], color=BLUE)
         slip.set_xlabel(r"slip $u$")
-        profile.set_ylabel(r"position $x$")
     return figure
 
 

@@ -8,88 +8,47 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, SubFigure
 
-from ..comparison.scene_numbers import far_pulse
 from ..data.numerals import MOST, number, with_uncertainty
-from .shared.space_time import draw_map, draw_profile, edges, limits, prestress_profile, thin, velocity_map
-from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .shared.numbers import with_symbols
+from .shared.space_time import description, draw_map, draw_profile, limits, run_rows, thin
+from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter, stacked
 
-COLUMNS = ["role", "series", "time", "position", "value", "uncertainty", "theory"]
-PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
-# Blocks drawn of a profile, points of the theory's.
-PROFILE_POINTS, THEORY_POINTS = 1200, 200
+# Blocks drawn of a profile.
+PROFILE_POINTS = 400
+FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
+# The number of a steady pulse that the largest value of each field is.
+LARGEST = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
 
 
-def table(run: xr.Dataset, numbers: pd.DataFrame, settings: Mapping) -> pd.DataFrame:
+def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
     """Everything that the figure draws.
 
     Parameters
     ----------
     run : one run with fronts, fields and samples
-    numbers : `slippulse.comparison.scene_numbers` of it
-    settings : title
+    numbers : `shared.numbers.scene_numbers` of it
+    title : of the scene
 
     Returns
     -------
-    DataFrame with role, series, time, position, value, uncertainty, theory. Roles: map, largest, prestress, front,
-    trailing as in figure 4; profile (series slip or slip_velocity, at the end); theory (the same of the steady pulse,
-    its front where the right front is); number (series: its label); parameter; title and flag (series: the text).
+    role, series, time, position, value, uncertainty, theory: `run_rows`; profile (series slip or slip_velocity, at the
+    end); number (series: its quantity, and label); title (series: the text)
     """
-    texts = [{"role": "title", "series": settings["title"]}]
-    if run.attrs["run_flags"]:
-        texts.append({"role": "flag", "series": run.attrs["run_flags"]})
-    parts = [
-        pd.DataFrame(texts),
-        pd.DataFrame(
-            [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
-        ),
-        pd.DataFrame(
-            [
-                {
-                    "role": "parameter",
-                    "series": "leaf springs",
-                    "value": float(run.attrs["boundary"] == "displacement"),
-                }
-            ]
-        ),
-        velocity_map(run),
-        prestress_profile(run),
-        *edges(run),
-        *_profiles(run),
-        *_theory(run, numbers),
-        numbers.assign(role="number", series=numbers["label"]),
-    ]
-    return pd.concat([part for part in parts if len(part)], ignore_index=True).reindex(columns=COLUMNS)
-
-
-def _profiles(run: xr.Dataset) -> list[pd.DataFrame]:
     lower, upper = limits(run)
     x = run["x"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
-    largest = inside[[int(np.argmax(run["slip_velocity"].values[inside]))]]
-    kept = np.union1d(inside[thin(inside.size, PROFILE_POINTS)], largest)
-    return [
-        pd.DataFrame(
-            {"role": "profile", "series": name, "position": x[kept], "value": run[name].values[kept]}
-        )
-        for name in ("slip_velocity", "slip")
-    ]
-
-
-def _theory(run: xr.Dataset, numbers: pd.DataFrame) -> list[pd.DataFrame]:
-    """The steady pulse behind the right front, where a pulse has formed."""
-    pulse = far_pulse(run.attrs)
-    if pulse is None or "pulse_width" not in set(numbers["quantity"]):
-        return []
-    released = np.flatnonzero(np.isfinite(run["release_time"].values))
-    front = float(run["x"].values[released[-1]])
-    xi = np.linspace(-1.6 * pulse.width, 0.0, THEORY_POINTS)
-    slip, velocity, _ = pulse.profile(xi)
-    return [
-        pd.DataFrame({"role": "theory", "series": name, "position": front + xi, "value": values})
-        for name, values in (("slip_velocity", velocity), ("slip", slip))
-    ]
+    parts = [pd.DataFrame([{"role": "title", "series": title}]), run_rows(run)]
+    for name in FIELDS:
+        values = run[name].values
+        kept = np.union1d(inside[thin(inside.size, PROFILE_POINTS)], inside[np.argmax(values[inside])])
+        rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
+        parts.append(pd.DataFrame(rows))
+    parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
+    columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
+    return pd.concat(parts, ignore_index=True).reindex(columns=columns)
 
 
 def number_text(value: float, uncertainty: float, theory: float) -> str:
@@ -100,88 +59,44 @@ def number_text(value: float, uncertainty: float, theory: float) -> str:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Draw the figure from its table."""
-    roles = {role: rows for role, rows in table.groupby("role")}
-    numbers = list(roles["number"].itertuples()) if "number" in roles else []
-    lines = [
-        f"{row.series}: {number_text(row.value, row.uncertainty, row.theory)}".replace(
-            "|x_minus|", r"$|x_-|$"
-        )
-        .replace("T_trans", r"$T_\mathrm{trans}$")
-        .replace("L_trans", r"$L_\mathrm{trans}$")
-        for row in numbers
-    ]
-    rows = math.ceil(len(lines) / 2)
+    roles = {str(role): rows for role, rows in table.groupby("role")}
+    numbers = roles.get("number", table.iloc[:0])
+    rows = math.ceil(len(numbers) / 2)
     figure = new_figure(PAGE, 4.9 + 0.16 * rows)
-    upper, lower, text = figure.subfigures(3, 1, height_ratios=(3.1, 1.6, 0.2 + 0.16 * rows))
-    _draw_space_time(upper, roles)
-    _draw_end(lower, roles)
-    for index, line in enumerate(lines):
-        text.text(
-            0.06 + 0.48 * (index % 2),
-            1.0 - (index // 2 + 0.6) / (rows + 0.4),
-            line,
-            va="center",
-            fontsize=8.0,
-        )
+    upper, lower, text = stacked(figure, (3.1, 1.6, 0.2 + 0.16 * rows))
+    draw_space_time(upper, roles)
+    for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
+        draw_end(axes, roles["profile"], numbers, field)
+        panel_letter(axes, letter)
+    for index, row in enumerate(numbers.itertuples()):
+        line = f"{with_symbols(row.label)}: {number_text(row.value, row.uncertainty, row.theory)}"
+        height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
+        text.text(0.06 + 0.48 * (index % 2), height, line, va="center", fontsize=8.0)
     return figure
 
 
-def _draw_space_time(figure, roles: Mapping[str, pd.DataFrame]) -> None:
-    profile, space_time = figure.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
+def draw_space_time(figure: SubFigure, roles: Mapping[str, pd.DataFrame]) -> None:
+    """Pre-stress and map, under title and parameters."""
+    profile, axes = figure.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
     draw_profile(profile, roles["prestress"])
-    image = draw_map(space_time, roles)
-    handles = [line for line in space_time.lines if not line.get_label().startswith("_")]
-    space_time.legend(handles=handles, loc="upper left")
-    figure.colorbar(image, ax=space_time, pad=0.015, aspect=25).set_label(r"slip velocity $\dot u$")
-    profile.set_ylabel(r"position $x$")
+    image = draw_map(axes, roles)
+    axes.legend(loc="upper left")
+    figure.colorbar(image, ax=axes, pad=0.015, aspect=25).set_label(r"slip velocity $\dot u$")
     panel_letter(profile, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
-    figure.suptitle(f"{title}\n{_parameters(roles)}", fontsize=9.0)
+    spacing = roles["parameter"].set_index("series").loc["dx", "value"]
+    figure.suptitle(rf"{title}" + "\n" + rf"{description(roles)}, $\Delta x = {spacing:g}$", fontsize=9.0)
 
 
-def _parameters(roles: Mapping[str, pd.DataFrame]) -> str:
-    value = roles["parameter"].set_index("series")["value"]
-    parts = [rf"$\Gamma = {int(value['leaf springs'])}$"]
-    if value["leaf springs"]:
-        parts.append(rf"$\gamma = {value['gamma']:g}$")
-    if value["left"] == value["right"]:
-        parts.append(rf"$\tau_0 = {value['left']:g}$")
-    else:
-        parts += [rf"$\tau_{{0,l}} = {value['left']:g}$", rf"$\tau_{{0,r}} = {value['right']:g}$"]
-    parts += [
-        rf"$W = {value['width']:g}$",
-        rf"$\beta/\Delta x = {value['damping_ratio']:g}$",
-        rf"$\Delta x = {value['dx']:g}$",
-    ]
-    if "flag" in roles:
-        parts.append(f"flagged: {roles['flag']['series'].iloc[0]}".replace("_", " "))
-    return ", ".join(parts)
-
-
-def _draw_end(figure, roles: Mapping[str, pd.DataFrame]) -> None:
-    panels = figure.subplots(1, 2)
-    for axes, letter, series, label in zip(
-        panels,
-        "bc",
-        ("slip_velocity", "slip"),
-        (r"slip velocity $\dot u$ at the end", r"slip $u$ at the end"),
-        strict=True,
-    ):
-        rows = roles["profile"][roles["profile"]["series"] == series]
-        axes.axhline(0.0, color=GREY, linewidth=0.5)
-        axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
-        if "theory" in roles:
-            theory = roles["theory"][roles["theory"]["series"] == series]
-            axes.plot(
-                theory["position"],
-                theory["value"],
-                color=ORANGE,
-                linestyle=(0, (3, 1.5)),
-                label="steady pulse, theory",
-            )
-            if letter == "b":
-                axes.legend(loc="upper center")
-        axes.set_xlabel(r"position $x$")
-        axes.set_ylabel(label)
-        axes.set_xlim(rows["position"].min(), rows["position"].max())
-        panel_letter(axes, letter)
+def draw_end(axes: Axes, profile: pd.DataFrame, numbers: pd.DataFrame, field: str) -> None:
+    """A field at the end, and what exact theory has for its value in the right pulse, where that is steady."""
+    rows = profile[profile["series"] == field]
+    axes.axhline(0.0, color=GREY, linewidth=0.5)
+    theory = numbers.loc[numbers["series"] == LARGEST[field], "theory"].dropna()
+    for value in theory:
+        axes.axhline(value, color=ORANGE, linewidth=0.8, linestyle=(0, (3, 1.5)), label="steady pulse, exact")
+    axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
+    if len(theory):
+        axes.legend(loc="center")
+    axes.set(xlabel=r"position $x$", ylabel=f"{FIELDS[field]} at the end")
+    axes.set_xlim(rows["position"].min(), rows["position"].max())

@@ -30,18 +30,12 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
     figure = new_figure(6.4, 3.6)
     panels = figure.subplots(2, 1, sharex=True)
     lines = []
-    for axes, name, label, colour in zip(
-        panels,
-        ("sample_velocity", "sample_slip"),
-        (r"slip velocity $\dot u$", r"slip $u$"),
-        (BLUE, ORANGE),
-        strict=True,
-    ):
+    fields = {"sample_velocity": (r"slip velocity $\dot u$", BLUE), "sample_slip": (r"slip $u$", ORANGE)}
+    for axes, (name, (label, colour)) in zip(panels, fields.items(), strict=True):
         values = run[name].values[:, inside]
         axes.axhline(0.0, color=GREY, linewidth=0.5)
         (line,) = axes.plot(x[inside], values[0], color=colour)
-        axes.set_ylabel(label)
-        axes.set_ylim(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values))
+        axes.set(ylabel=label, ylim=(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values)))
         lines.append((line, values))
     panels[0].set_xlim(lower, upper)
     panels[1].set_xlabel(r"position $x$")

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
-import matplotlib.mathtext
+import matplotlib.rcsetup
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm, Normalize
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 
 from ..data.files import write_whole
 from ..data.origin import configuration
-from .shared.png import save_png
 
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
@@ -31,14 +35,14 @@ VELOCITY_MAP = "viridis"
 SCALES = {
     "tau_0": ("plasma", (0.0, 0.88), (0.0, 1.0), False),
     "tau_l": ("YlGnBu_r", (0.0, 0.75), (-2.0, 0.0), False),
-    "gamma": ("cividis", (0.0, 0.95), (1e-3, 1.0), True),
+    "gamma": ("cividis", (0.0, 0.9), (1e-3, 1.0), True),
     "damping_ratio": ("viridis", (0.0, 0.92), (5e-3, 5.0), True),
-    "width": ("YlOrBr", (0.35, 1.0), (0.5, 16.0), True),
+    "width": ("YlOrBr", (0.42, 1.0), (0.5, 16.0), True),
 }
 
 # A Times, as the journal has, which Matplotlib brings along; the report has the same.
 FAMILY = "STIXGeneral"
-RC = {
+RC: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.labelsize": 9.0,
     "axes.titlesize": 9.0,
@@ -56,8 +60,8 @@ RC = {
     "ytick.direction": "in",
     "font.family": [FAMILY, "DejaVu Sans"],
     "mathtext.fontset": "stix",
-    "axes.prop_cycle": matplotlib.cycler(color=CYCLE),
-    # The layout is found at the resolution of the PNG, which then meets its formulas already set.
+    "axes.prop_cycle": matplotlib.rcsetup.cycler(color=CYCLE),
+    # The layout is found at the resolution of the PNG, so that the formulas are set once.
     "figure.dpi": 300,
     "savefig.dpi": "figure",
     # Smaller files in half of the time that TrueType takes.
@@ -66,14 +70,17 @@ RC = {
     "svg.hashsalt": "slippulse",
 }
 matplotlib.rcParams.update(RC)
-# Scripts of a label of 7 points have 6, not 5. There is no public setting; a test looks at what is drawn.
-SCRIPTS = 6.0 / 7.0
-matplotlib.mathtext._mathtext.SHRINK_FACTOR = SCRIPTS
 
 
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure in the house style, ``width`` by ``height`` inches."""
     return Figure(figsize=(width, height), layout="constrained")
+
+
+def stacked(figure: Figure, heights: Sequence[float]) -> list[SubFigure]:
+    """Parts of a figure one above the other, with the ratios of their heights."""
+    grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
+    return [figure.add_subfigure(grid[row]) for row in range(len(heights))]
 
 
 def colour_scale(quantity: str) -> ScalarMappable:
@@ -84,17 +91,50 @@ def colour_scale(quantity: str) -> ScalarMappable:
     return ScalarMappable(norm, ListedColormap(colours))
 
 
-def panel_letter(axes, letter: str) -> None:
+def panel_letter(axes: Axes, letter: str) -> None:
     """Mark a panel (a), (b), ... above its upper left corner."""
     axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9.0)
 
 
+def entry(label: str, **look: Any) -> Line2D:
+    """An entry of a legend: a line, or a marker without a line."""
+    return Line2D([], [], label=label, **({"linestyle": "none"} if "marker" in look else {}) | look)
+
+
+def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
+    """One legend for all panels, below them."""
+    look = {"columnspacing": 1.0, "handlelength": 1.6, "handletextpad": 0.6}
+    figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
+
+
+def prestress_inset(
+    axes: Axes, box: tuple[float, float, float, float], curves: Iterable[tuple[np.ndarray, np.ndarray, Any]]
+) -> None:
+    """Profiles of pre-stress in a corner of a panel.
+
+    Parameters
+    ----------
+    axes : the panel
+    box : left, bottom, width, height as fractions of it
+    curves : position, pre-stress and colour of each
+    """
+    inset = axes.inset_axes(box)
+    for x, tau, colour in curves:
+        inset.plot(x, tau, color=colour, linewidth=0.8)
+    inset.locator_params(nbins=3, integer=True)
+    inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=1.0)
+    inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
+
+
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
     """Write PNG and PDF with no clock in them; the layout is found once, which is most of the work."""
-    figure.get_layout_engine().execute(figure)
-    # With an engine, a mere stand-in too, each file would be drawn twice.
+    layout = figure.get_layout_engine()
+    if layout is not None:
+        layout.execute(figure)
+    # With an engine each file would be drawn twice.
     figure.set_layout_engine(None)
     made_by = f"configuration {configuration()}" if configuration() else None
+    picture = {"Software": None, "Comment": made_by}
     vectors = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": made_by}
-    save_png(figure, png, made_by)
+    write_whole(png, lambda part: figure.savefig(part, format="png", metadata=picture))
     write_whole(pdf, lambda part: figure.savefig(part, format="pdf", metadata=vectors))

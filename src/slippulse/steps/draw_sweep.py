@@ -1,4 +1,4 @@
-"""Write the table of a sweep of one's own and draw it."""
+"""Write the table of a user-defined sweep and draw it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ..figures.style import save_figure
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: measured. Outputs: csv, png, pdf. Settings: share."""
-    save_table(own_sweep.table(load_table(files["measured"]), settings["share"]), outputs["csv"])
+    """Files: measured, predicted. Outputs: csv, png, pdf."""
+    runs = load_table(files["measured"]).join(load_table(files["predicted"]))
+    save_table(own_sweep.table(runs), outputs["csv"])
     save_figure(own_sweep.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])

@@ -1,190 +1,142 @@
-"""T_trans and L_trans of every run beside the paper's predictions and exact theory: rows, and how they are drawn."""
+"""T_trans and L_trans of every run over the paper's predictions, with exact theory as lines."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 import pandas as pd
-from matplotlib.lines import Line2D
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from ...comparison.exact_transition import exact_transition
-from ..style import BLACK, GREY, colour_scale, panel_letter
+from ..style import BLACK, GREY, colour_scale, entry, legend_below, panel_letter
 
-QUANTITIES = {
-    "length": ("transition_length", "paper_transition_length"),
-    "time": ("transition_time", "paper_transition_time"),
-}
-# The literal definition of the paper's text, or what its figure shows, per boundary and quantity.
-PAPER_DEFINITION = {
-    ("displacement", "length"): "slip_length_background",
-    ("displacement", "time"): "slip_time_background",
-    ("stress", "length"): "last_release_length",
-    ("stress", "time"): "last_release_time",
-}
 SYMBOLS = {"length": r"L_\mathrm{trans}", "time": r"T_\mathrm{trans}"}
-# What colours and markers tell: the level, and what else varies.
-LEVELS = {"displacement": ("tau_0", r"$\tau_0$"), "stress": ("tau_l", r"$\tau_{0,l}$")}
-OTHERS = {"displacement": ("gamma", r"$\gamma$"), "stress": ("width", r"$W$")}
+# The paper's definitions read literally, which are measured beside those used here.
+LITERAL = {
+    "displacement": {"length": "slip_length_background", "time": "slip_time_background"},
+    "stress": {"length": "last_release_length", "time": "last_release_time"},
+}
+# What varies beside the level: column, and its symbol.
+OTHER = {"displacement": ("gamma", r"$\gamma$"), "stress": ("width", r"$W$")}
+LEVEL = {"displacement": ("tau_0", r"$\tau_0$"), "stress": ("tau_l", r"$\tau_{0,l}$")}
 MARKERS = "os^Dv<>pP*hX"
 
 
-def collapse_rows(measured: pd.DataFrame, boundary: str) -> pd.DataFrame:
-    """One row a run and quantity: prediction x, measurement y and the paper's literal definition beside it.
+def transition_rows(runs: pd.DataFrame, boundary: str) -> pd.DataFrame:
+    """One row a run: parameters, and length and time as measured, by the paper, exact, and by the literal definition.
 
     Parameters
     ----------
-    measured : measured table of a sweep, one row a run
+    runs : measured and predicted numbers of a sweep, one row a run
     boundary : "displacement" or "stress"
     """
-    kept = ["left", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
-    parts = []
-    for quantity, (column, prediction) in QUANTITIES.items():
-        rows = pd.DataFrame({"panel": f"{boundary}_{quantity}", "role": "marker", "x": measured[prediction]})
-        rows["y"], rows["paper_definition"] = measured[column], measured[PAPER_DEFINITION[boundary, quantity]]
-        parts.append(rows.join(measured[kept]))
-    return pd.concat(parts, ignore_index=True)
+    kept = ["boundary", "left", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
+    found = runs[kept].copy()
+    for quantity in SYMBOLS:
+        found[quantity] = runs[f"transition_{quantity}"]
+        found[f"paper_{quantity}"] = runs[f"paper_transition_{quantity}"]
+        found[f"exact_{quantity}"] = runs[f"exact_transition_{quantity}"]
+        found[f"literal_{quantity}"] = runs[LITERAL[boundary][quantity]]
+    return found
 
 
-def exact_rows(measured: pd.DataFrame, boundary: str, share: float = 1.0) -> pd.DataFrame:
-    """Rows of role "exact" for runs of a sweep: the paper's prediction x, and exact theory y.
-
-    Parameters
-    ----------
-    measured : the runs wanted, as rows of a measured table
-    boundary : "displacement" or "stress"
-    share : under a stress boundary, that of |x_minus| which the left front covers at T_trans
-    """
-    rows = []
-    for _, run in measured.iterrows():
-        found = exact_transition(run, share)
-        for quantity, (_, prediction) in QUANTITIES.items():
-            row = {"panel": f"{boundary}_{quantity}", "role": "exact"}
-            row |= {"x": run[prediction], "y": getattr(found, quantity)}
-            rows.append(row | {name: run[name] for name in ("left", "width", "gamma", "damping_ratio")})
-    return pd.DataFrame(rows)
+def chosen(values: pd.Series, count: int) -> np.ndarray:
+    """Some of the values of a column, evenly from the smallest to the largest."""
+    every = np.sort(values.unique())
+    return every[np.unique(np.linspace(0, every.size - 1, count).round().astype(int))]
 
 
-def chosen(measured: pd.DataFrame, **most: int) -> pd.DataFrame:
-    """Runs at so many values of a column at most, from the smallest to the largest."""
-    for column, count in most.items():
-        values = np.sort(measured[column].unique())
-        kept = values[np.unique(np.linspace(0, values.size - 1, count).round().astype(int))]
-        measured = measured[measured[column].isin(kept)]
-    return measured
+def colours(runs: pd.DataFrame, column: str) -> np.ndarray:
+    """The colour of each run by its level (column left), gamma or width."""
+    quantity = LEVEL[runs["boundary"].iloc[0]][0] if column == "left" else column
+    return colour_scale(quantity).to_rgba(runs[column].to_numpy())
 
 
-def deviations(rows: pd.DataFrame) -> tuple[int, float, float]:
-    """Number of sound runs, median and largest relative deviation from the prediction."""
-    sound = rows[rows["run_flags"].isna() & rows["y"].notna()]
-    if sound.empty:
-        return 0, float("nan"), float("nan")
-    relative = np.abs(sound["y"] / sound["x"] - 1.0)
-    return len(sound), float(relative.median()), float(relative.max())
-
-
-def summaries(rows: pd.DataFrame, by: tuple[str, ...] = ("panel",)) -> pd.DataFrame:
-    """Rows of role "summary": number of runs, median and largest deviation of each group of markers."""
-    found = []
-    for key, group in rows.groupby(list(by), sort=False):
-        count, median, largest = deviations(group)
-        found.append(
-            dict(zip(by, key, strict=True))
-            | {"role": "summary", "runs": count, "median": median, "largest": largest}
-        )
-    return pd.DataFrame(found)
-
-
-def draw_collapse(axes, rows: pd.DataFrame, boundary: str) -> None:
-    """The paper's collapse: measured against predicted on logarithmic axes, lengths as circles, times as triangles."""
-    scale = colour_scale(LEVELS[boundary][0])
-    for quantity, marker in (("length", "o"), ("time", "^")):
-        part = rows[rows["panel"] == f"{boundary}_{quantity}"]
-        axes.scatter(
-            part["x"], part["paper_definition"], marker="x", s=5.0, linewidths=0.4, color="0.7", zorder=1,
-            gid="paper definition",
-        )  # fmt: skip
-        _scatter(axes, part, part["x"], part["y"], marker, scale)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    values = rows[["x", "y", "paper_definition"]].to_numpy(float).ravel()
-    ends = np.array([np.nanmin(values) / 1.4, np.nanmax(values) * 1.4])
-    axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="one to one")
-    axes.set_xlim(*ends)
-    axes.set_ylim(*ends)
-
-
-def draw_ratio(axes, table: pd.DataFrame, panel: str, across: str, several: str | None = None) -> None:
-    """Measured over predicted on a linear axis, with exact theory as a line for each level.
+def draw_ratio(
+    axes: Axes, runs: pd.DataFrame, quantity: str, across: str, colour: str, marker: str, line: str = "-"
+) -> None:
+    """Measured over predicted, and exact theory over predicted.
 
     Parameters
     ----------
     axes : where to draw
-    table : rows of role marker and exact
-    panel : such as "stress_time"
-    across : column of the horizontal axis, on a logarithmic scale that has a place for 0
-    several : column that markers tell; one marker where there is none
+    runs : rows of `transition_rows`
+    quantity : "length" or "time"
+    across, colour : columns of the horizontal axis and of the colours
+    marker, line : of the runs, open and grey if flagged, and of exact theory
     """
-    boundary = panel.split("_")[0]
-    scale = colour_scale(LEVELS[boundary][0])
-    rows = table[table["panel"] == panel]
-    axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0, gid="one to one")
-    for level, line in rows[rows["role"] == "exact"].groupby("left"):
-        line, colour = line.sort_values(across), scale.to_rgba(level)
-        axes.plot(
-            line[across], line["y"] / line["x"], color=colour, linewidth=0.8, zorder=2, gid=f"exact {level:g}"
-        )
-    markers = rows[rows["role"] == "marker"]
-    groups = markers.groupby(several) if several else [(None, markers)]
-    for marker, (_, part) in zip(MARKERS, groups, strict=False):
-        _scatter(axes, part, part[across], part["y"] / part["x"], marker, scale)
-    values = np.sort(markers[across].unique())
-    if values[0] == 0.0:
-        axes.set_xscale("symlog", linthresh=values[1], linscale=0.5)
-        axes.set_xticks(values, [f"{value:g}" for value in values])
-        axes.set_xlim(-0.3 * values[1], 1.5 * values[-1])
-    else:
-        axes.set_xscale("log")
-    axes.minorticks_off()
+    for _, group in runs.groupby(colour):
+        group = group.sort_values(across)
+        exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
+        axes.plot(group[across], exact, line, color=colours(group, colour)[0], linewidth=0.8, gid="exact")
+    _scatter(axes, runs, runs[across], runs[quantity] / runs[f"paper_{quantity}"], marker, colour, zorder=3)
 
 
-def _scatter(axes, rows: pd.DataFrame, x: pd.Series, y: pd.Series, marker: str, scale) -> None:
-    """Runs in the colour of their level, flagged ones open and grey."""
-    sound = rows["run_flags"].isna()
-    axes.scatter(
-        x[sound], y[sound], s=9.0, marker=marker, c=scale.to_rgba(rows.loc[sound, "left"]), linewidths=0.0, zorder=3,
-        alpha=0.85, gid="runs",
-    )  # fmt: skip
-    if not sound.all():
-        axes.scatter(
-            x[~sound], y[~sound], s=9.0, marker=marker, facecolors="none", edgecolors=GREY, linewidths=0.6, zorder=2,
-            gid="flagged",
-        )  # fmt: skip
+def draw_collapse(axes: Axes, runs: pd.DataFrame) -> None:
+    """Measured against predicted: lengths as circles, times as triangles, the level as face, gamma or W as rim."""
+    rim = OTHER[runs["boundary"].iloc[0]][0]
+    ends = [np.inf, 0.0]
+    for quantity, marker in (("length", "o"), ("time", "^")):
+        x, y, literal = runs[f"paper_{quantity}"], runs[quantity], runs[f"literal_{quantity}"]
+        axes.scatter(x, literal, marker="x", s=5.0, linewidths=0.4, color="0.7", zorder=1, gid="literal")
+        _scatter(axes, runs, x, y, marker, "left", rim, s=11.0, linewidths=0.8, zorder=3)
+        ends = [min(ends[0], x.min(), y.min(), literal.min()), max(ends[1], x.max(), y.max(), literal.max())]
+    ends = [ends[0] / 1.4, ends[1] * 1.4]
+    axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
+    axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
 
 
-def level_bar(figure, axes, boundary: str, **options) -> None:
-    """The colours of the levels."""
-    quantity, label = LEVELS[boundary]
-    figure.colorbar(colour_scale(quantity), ax=axes, **options).set_label(label)
+def _scatter(
+    axes: Axes,
+    runs: pd.DataFrame,
+    x: pd.Series,
+    y: pd.Series,
+    marker: str,
+    face: str,
+    rim: str = "",
+    **look: Any,
+) -> None:
+    """Runs with their colours, flagged ones open and grey."""
+    flagged = runs["run_flags"].notna()
+    sound = runs[~flagged]
+    own: dict[str, Any] = {"s": 9.0, "linewidths": 0.0, "marker": marker} | look
+    if flagged.any():
+        grey = own | {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
+        axes.scatter(x[flagged], y[flagged], gid="flagged", **grey)
+    own |= {"c": colours(sound, face), "edgecolors": colours(sound, rim) if rim else "none"}
+    axes.scatter(x[~flagged], y[~flagged], gid="runs", **own)
 
 
-def draw_damping(figure, table: pd.DataFrame, boundary: str) -> None:
-    """L_trans and T_trans over the paper's predictions against beta/dx."""
-    several, label = OTHERS[boundary]
+def colour_bar(figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any) -> None:
+    """The colours of the levels, or of gamma or W, as a column of runs."""
+    quantity, label = LEVEL[boundary] if column == "left" else OTHER[boundary]
+    figure.colorbar(colour_scale(quantity), ax=list(axes), **options).set_label(label)
+
+
+def damping_figure(figure: Figure, runs: pd.DataFrame) -> None:
+    """Figures 10 and 11: L_trans and T_trans over the paper's predictions against the damping ratio."""
+    boundary = runs["boundary"].iloc[0]
+    other, symbol = OTHER[boundary]
+    values = np.sort(runs[other].unique())
     panels = figure.subplots(1, 2)
-    for axes, quantity, letter in zip(panels, QUANTITIES, "ab", strict=True):
-        draw_ratio(axes, table, f"{boundary}_{quantity}", "damping_ratio", several)
+    for axes, quantity, letter in zip(panels, SYMBOLS, "ab", strict=True):
+        axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
+        for marker, value in zip(MARKERS, values, strict=False):
+            draw_ratio(axes, runs[runs[other] == value], quantity, "damping_ratio", "left", marker)
+        ratios = np.sort(runs["damping_ratio"].unique())
+        axes.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
+        axes.set_xticks(ratios, [f"{ratio:g}" for ratio in ratios])
+        axes.set_xlim(-0.3 * ratios[1], 1.5 * ratios[-1])
+        axes.minorticks_off()
+        axes.set(xlabel=r"damping ratio $b$", ylabel=f"measured over predicted ${SYMBOLS[quantity]}$")
         panel_letter(axes, letter)
-        axes.set_xlabel(r"damping ratio $b$")
-        axes.set_ylabel(f"measured over predicted ${SYMBOLS[quantity]}$")
-    level_bar(figure, list(panels), boundary, pad=0.01, aspect=30)
-    values = np.sort(table.loc[table["role"] == "marker", several].unique())
+    panels[0].set_title(rf"$\Gamma = {int(boundary == 'displacement')}$", fontsize=9)
+    colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
     handles = [
-        Line2D(
-            [], [], color=GREY, marker=marker, linestyle="none", markersize=3.5, label=f"{label} = {value:g}"
-        )
+        entry(f"{symbol} = {value:g}", marker=marker, color=GREY)
         for marker, value in zip(MARKERS, values, strict=False)
     ]
-    shown = table.loc[table["role"] == "exact", several].iloc[0]
-    handles.append(Line2D([], [], color=GREY, linewidth=0.8, label=f"exact theory, {label} = {shown:g}"))
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=len(handles), columnspacing=0.9, handletextpad=0.6
-    )
+    handles.append(entry("exact theory", color=GREY, linewidth=0.8))
+    legend_below(figure, handles, len(handles))

@@ -8,28 +8,63 @@ import matplotlib
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
 from ..style import BLACK, GREY, VELOCITY_MAP
 
 # Samples kept along each axis of a map, and blocks along each front.
-MAP_SAMPLES, FRONT_POINTS = 201, 300
-# Share of the slipped length that is drawn beyond it on each side: room for an arrow.
+MAP_SAMPLES, FRONT_POINTS = 121, 400
+# What is drawn beyond the slipped part on each side, as a fraction of it: room for an arrow.
 MARGIN = 0.12
 STUCK = "#cfcfcf"
-# Width of a label on the axis of the narrow pre-stress panel, as a share of the axis.
+# Width of a label on the axis of the narrow pre-stress panel, as a fraction of the axis.
 LABEL = 0.5
+PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
+
+
+def run_rows(run: xr.Dataset) -> pd.DataFrame:
+    """Everything that a map of a run shows.
+
+    Parameters
+    ----------
+    run : with fronts and samples
+
+    Returns
+    -------
+    role, series, time, position, value. Roles: parameter (series: its name), flag (series: the flags), map (value: slip
+    velocity where it is not 0) and largest (value: the largest of them), prestress, front and trailing (time of first
+    release and of last stick, NaN where never)
+    """
+    rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
+    if run.attrs["run_flags"]:
+        rows.append({"role": "flag", "series": run.attrs["run_flags"]})
+    return pd.concat([pd.DataFrame(rows), velocity_map(run), prestress_profile(run), *edges(run)])
+
+
+def description(roles: Mapping[str, pd.DataFrame]) -> str:
+    """Boundary, pre-stress and damping of a run, and its flags."""
+    value = roles["parameter"].set_index("series")["value"]
+    parts = [rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$" if value["gamma"] > 0.0 else r"$\Gamma = 0$"]
+    if value["left"] == value["right"]:
+        parts.append(rf"$\tau_0 = {value['left']:g}$")
+    else:
+        parts.append(rf"$\tau_{{0,l}} = {value['left']:g}$, $\tau_{{0,r}} = {value['right']:g}$")
+    parts.append(rf"$W = {value['width']:g}$, $b = {value['damping_ratio']:g}$")
+    if "flag" in roles:
+        parts.append(f"flagged: {roles['flag']['series'].iloc[0]}".replace("_", " "))
+    return ", ".join(parts)
 
 
 def limits(run: xr.Dataset) -> tuple[float, float]:
     """Positions that are drawn: what slips and a margin, or as far as samples go where slip goes farther."""
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
+    margin = MARGIN * (slipped[-1] - slipped[0])
     if "sample_position" not in run:
-        margin = MARGIN * (slipped[-1] - slipped[0])
         return float(slipped[0] - margin), float(slipped[-1] + margin)
     first, last = run["sample_position"].values[[0, -1]]
-    spacing = (last - first) / max(1, run.sizes["sample_position"] - 1)
-    margin = max(MARGIN * (slipped[-1] - slipped[0]), 3.0 * spacing)
+    margin = max(margin, 3.0 * (last - first) / max(1, run.sizes["sample_position"] - 1))
     lower = slipped[0] - margin if slipped[0] > first else first
     upper = slipped[-1] + margin if slipped[-1] < last else last
     return float(lower), float(upper)
@@ -41,27 +76,20 @@ def thin(size: int, most: int) -> np.ndarray:
 
 
 def velocity_map(run: xr.Dataset) -> pd.DataFrame:
-    """Sampled slip velocity, role "map", and the largest sample, role "largest"."""
+    """Sampled slip velocity where it is not 0, role "map", and the largest sample, role "largest"."""
     lower, upper = limits(run)
-    x, times = run["sample_position"].values, run["sample_time"].values
-    velocity = run["sample_velocity"].values
+    x, times, velocity = (run[name].values for name in ("sample_position", "sample_time", "sample_velocity"))
     inside = np.flatnonzero((x >= lower) & (x <= upper))
     columns, rows = inside[thin(inside.size, MAP_SAMPLES)], thin(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
-    kept = velocity[np.ix_(rows, columns)]
     # Four digits of the largest velocity are more than a colour shows, and keep the table small.
-    digits = 4 - int(np.floor(np.log10(np.max(velocity))))
-    grid = pd.DataFrame(
-        {
-            "role": "map",
-            "time": time.ravel(),
-            "position": position.ravel(),
-            "value": kept.ravel().round(digits),
-        }
-    )
-    at = np.unravel_index(int(np.argmax(velocity)), velocity.shape)
-    largest = {"role": "largest", "time": times[at[0]], "position": x[at[1]], "value": velocity[at]}
-    return pd.concat([grid, pd.DataFrame([largest])])
+    kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.max(velocity)))))
+    # What is left out is 0; the first of each row and column says where it is.
+    written = kept != 0.0
+    written[0], written[:, 0] = True, True
+    grid = {"time": time[written], "position": position[written], "value": kept[written]}
+    largest = pd.DataFrame([{"role": "largest", "value": np.max(velocity)}])
+    return pd.concat([pd.DataFrame({"role": "map", **grid}), largest])
 
 
 def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
@@ -69,7 +97,7 @@ def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
     lower, upper = limits(run)
     x, tau = run["x"].values, run["prestress"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
-    kept = np.union1d(inside[thin(inside.size, 2 * FRONT_POINTS)], np.argmax(tau))
+    kept = np.union1d(inside[thin(inside.size, FRONT_POINTS)], np.argmax(tau))
     # The levels go on beyond the lattice, which ends where the fronts do.
     x = np.concatenate([[lower], x[kept], [upper]])
     tau = np.concatenate([[tau[kept[0]]], tau[kept], [tau[kept[-1]]]])
@@ -80,39 +108,36 @@ def edges(run: xr.Dataset) -> list[pd.DataFrame]:
     """Times of first release (role "front") and last stick (role "trailing", NaN where none) over position."""
     x = run["x"].values
     slipped = np.flatnonzero(np.isfinite(run["release_time"].values))
-    kept = np.union1d(slipped[thin(slipped.size, 2 * FRONT_POINTS)], slipped[-1:])
+    kept = np.union1d(slipped[thin(slipped.size, FRONT_POINTS)], slipped[-1:])
     return [
         pd.DataFrame({"role": role, "position": x[kept], "time": run[edge].values[kept]})
         for role, edge in (("front", "release_time"), ("trailing", "stick_time"))
     ]
 
 
-def draw_profile(axes, rows: pd.DataFrame) -> None:
+def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
     """Pre-stress to the right, position upwards."""
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
-    axes.set_xlabel(r"$\tau$")
-    lower, upper = rows["value"].min(), rows["value"].max()
-    axes.set_xlim(min(0.0, lower) - 0.15, upper + 0.15)
+    lower, upper = min(0.0, rows["value"].min()), rows["value"].max()
     # The peak and the levels far away, the right one only where its label has room.
     left, right = rows["value"].iloc[[0, -1]]
-    shown = [upper, left] if abs(right - left) < LABEL * (upper - min(0.0, lower)) else [upper, left, right]
+    shown = [upper, left] if abs(right - left) < LABEL * (upper - lower) else [upper, left, right]
     ticks = sorted({round(float(value), 2) for value in shown})
     axes.set_xticks(ticks, [setting(value) for value in ticks])
-    axes.set_ylim(rows["position"].min(), rows["position"].max())
+    axes.set(xlabel=r"$\tau$", xlim=(lower - 0.15, upper + 0.15))
+    axes.set(ylabel=r"position $x$", ylim=(rows["position"].min(), rows["position"].max()))
 
 
-def draw_map(axes, roles: Mapping[str, pd.DataFrame]):
+def draw_map(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> AxesImage:
     """Slip velocity in colour, cut along the front and the trailing edge. Returns the image."""
-    rows = roles["map"]
-    grid = rows.pivot(index="position", columns="time", values="value")
+    grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
     times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
     dt, dx = np.diff(times)[0], np.diff(positions)[0]
-    extent = (times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2)
     image = axes.imshow(
         grid.to_numpy(),
         origin="lower",
-        extent=extent,
+        extent=(times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2),
         aspect="auto",
         interpolation="bilinear",
         cmap=matplotlib.colormaps[VELOCITY_MAP],
@@ -123,37 +148,21 @@ def draw_map(axes, roles: Mapping[str, pd.DataFrame]):
     return image
 
 
-def draw_edges(axes, roles: Mapping[str, pd.DataFrame], end: float) -> None:
+def draw_edges(axes: Axes, roles: Mapping[str, pd.DataFrame], end: float) -> None:
     """The front and the trailing edge, known to a block and a fraction of a step; what is stuck is hidden."""
     beyond = 0.01 * end
     front, trailing = roles["front"].sort_values("position"), roles["trailing"].sort_values("position")
     x, release = front["position"].to_numpy(), front["time"].to_numpy()
-    low, high = roles["prestress"]["position"].min(), roles["prestress"]["position"].max()
-    around = np.concatenate([[low, x[0]], x, [x[-1], high]])
+    around = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
+    around = np.clip(around, roles["prestress"]["position"].min(), roles["prestress"]["position"].max())
     before = np.concatenate([[end, end], release, [end, end]])
-    axes.fill_betweenx(
-        around, np.full_like(around, -beyond), before, color="white", linewidth=0.0, zorder=1.5
-    )
+    axes.fill_betweenx(around, -beyond, before, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(release, x, color=BLACK, linewidth=0.8, zorder=2.0, label="front")
-    stick = trailing["time"].to_numpy()
+    x, stick = trailing["position"], trailing["time"].to_numpy()
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
-        axes.fill_betweenx(
-            trailing["position"],
-            stick,
-            np.full_like(stick, end + beyond),
-            color=STUCK,
-            linewidth=0.0,
-            zorder=1.4,
-        )
-        axes.plot(
-            stick,
-            trailing["position"],
-            color=BLACK,
-            linewidth=0.8,
-            linestyle=(0, (3, 1.5)),
-            label="trailing edge",
-        )
-    axes.set_xlim(0.0, end)
-    axes.set_xlabel(r"time $t$")
+        axes.fill_betweenx(x, stick, end + beyond, color=STUCK, linewidth=0.0, zorder=1.4)
+        dashes = (0, (3, 1.5))
+        axes.plot(stick, x, color=BLACK, linewidth=0.8, linestyle=dashes, label="trailing edge")
+    axes.set(xlim=(0.0, end), xlabel=r"time $t$")
     axes.tick_params(labelleft=False)

@@ -1,0 +1,85 @@
+"""The main numbers of a run: what they are called, as measured, and exact theory."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from ...model.scene import prestress_from
+
+LABELS = {
+    "displacement": {
+        "front_speed_left": "front speed, left",
+        "front_speed_right": "front speed, right",
+        "transition_time": "T_trans",
+        "transition_length": "L_trans",
+        "first_stick_time": "first stick",
+        "pulse_width": "pulse width, right",
+        "pulse_peak_velocity": "peak velocity, right",
+        "pulse_slip": "final slip, right",
+    },
+    "stress": {
+        "front_speed_left": "front speed, left",
+        "front_speed_right": "front speed, right",
+        "transition_time": "T_trans",
+        "transition_length": "L_trans",
+        "balance_distance": "|x_minus|",
+        "largest_velocity": "largest velocity",
+    },
+}
+
+
+def with_symbols(label: str) -> str:
+    """A label of LABELS with its symbol as a formula."""
+    symbols = {"|x_minus|": "|x_-|", "T_trans": r"T_\mathrm{trans}", "L_trans": r"L_\mathrm{trans}"}
+    return f"${symbols[label]}$" if label in symbols else label
+
+
+def main_numbers(run: pd.Series) -> pd.DataFrame:
+    """The main numbers that a run has.
+
+    Parameters
+    ----------
+    run : a row of measured and predicted numbers
+
+    Returns
+    -------
+    one row a number: quantity, label, value, theory (NaN where there is none)
+    """
+    rows = [
+        {
+            "quantity": quantity,
+            "label": label,
+            "value": run[quantity],
+            "theory": run.get(f"exact_{quantity}", np.nan),
+        }
+        for quantity, label in LABELS[run["boundary"]].items()
+        if np.isfinite(run.get(quantity, np.nan))
+    ]
+    return pd.DataFrame(rows, columns=["quantity", "label", "value", "theory"])
+
+
+def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
+    """The main numbers of a scene with their uncertainty.
+
+    Parameters
+    ----------
+    run : its measured and predicted numbers; the theory of steady pulses applies to a steady one alone (pulse_state)
+    study : its grid study
+
+    Returns
+    -------
+    as `main_numbers`, with uncertainty, and promised and kept where an accuracy is promised
+    """
+    found = main_numbers(run)
+    quantity = found["quantity"]
+    if run["pulse_state"] != "steady":
+        found.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
+    # The balance of the pre-stress is computed for the Gaussian and its levels alone.
+    if prestress_from(run).bumps and run["boundary"] == "stress":
+        found = found[~quantity.str.startswith("transition")]
+    if (quantity == "transition_time").any():
+        found = found[quantity != "first_stick_time"]
+    promise = [name for name in ("promised", "kept") if name in study]
+    found = found.merge(study[["quantity", "uncertainty", *promise]], on="quantity")
+    return found[["quantity", "label", "value", "uncertainty", "theory", *promise]]

@@ -1,0 +1,31 @@
+"""Arrows and words of a sketch."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.patches import FancyArrowPatch
+from matplotlib.text import Text
+
+from ..style import BLACK
+
+Point = tuple[float, float]
+
+
+def arrow(
+    axes: Axes, start: Point, end: Point, colour: str, style: str = "-|>", gid: str | None = None
+) -> None:
+    """An arrow from one point to another, which it touches."""
+    look: dict[str, Any] = {"mutation_scale": 7.0, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
+    axes.add_patch(FancyArrowPatch(start, end, arrowstyle=style, color=colour, gid=gid, **look))
+
+
+def double_arrow(axes: Axes, start: Point, end: Point, colour: str) -> None:
+    """An arrow with two heads, as of a dimension."""
+    arrow(axes, start, end, colour, "<|-|>")
+
+
+def label(axes: Axes, x: float, y: float, text: str, colour: str = BLACK, **look: Any) -> Text:
+    """A word, centred if nothing else is said."""
+    return axes.text(x, y, text, color=colour, **{"ha": "center", "va": "center"} | look)

@@ -1,0 +1,37 @@
+"""Exact fronts and trailing edges of the two runs of the space-time figure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+from ..configuration.expand import expand
+from ..theory.rupture import Rupture
+
+NEEDS = {"sweeps": ["space_time_displacement", "space_time_stress"]}
+
+# Positions on each side, most of them close to where the front is at the end: it may have become slow.
+FRACTIONS = 1.0 - np.linspace(1.0, 0.0, 121)[:-1] ** 3
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """When each position is released, and when it sticks, in the continuum limit.
+
+    Returns
+    -------
+    simulation, position, release_time, stick_time (NaN where it slides on)
+
+    Source: `Rupture`.
+    """
+    parts = []
+    for name, sweep in settings["sweeps"].items():
+        scenes, _ = expand(sweep)
+        scene = scenes[0]
+        rupture = Rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
+        ends = rupture.front_ends
+        x = np.concatenate([ends[0][0].x * FRACTIONS[:0:-1], ends[-1][1].x * FRACTIONS])
+        edges = {"release_time": rupture.release_time(x), "stick_time": rupture.stick_time(x)}
+        parts.append(pd.DataFrame({"simulation": name, "position": x, **edges}))
+    return pd.concat(parts, ignore_index=True)
