@@ -27,7 +27,7 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
     ----------
     name, title : of the scene
     png : its figure
-    numbers : measured, with uncertainty and theory, as `slippulse.comparison.scene_numbers.scene_numbers`; a promised
+    numbers : measured, with uncertainty and theory, as `slippulse.figures.shared.numbers.scene_numbers`; a promised
         accuracy, where there is one, is stated with whether it is kept
     attributes : of the run's data, with the state of its leading pulse
     """
