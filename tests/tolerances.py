@@ -162,8 +162,3 @@ DRAFT_TRANSITION = 0.05
 EXPLORER = 1e-3
 # Cubics in a table of the front law; v follows ln(v - 1), so that fast fronts have the largest error.
 EXPLORER_SPEED = 1e-4
-
-# --- Pictures -------------------------------------------------------------------------------------------------
-
-# Levels of 255 in each colour: less than is seen between neighbours of a map.
-SHADE = 5

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
@@ -34,10 +36,8 @@ def lab(colour, vision: str) -> np.ndarray:
 
 @pytest.mark.parametrize("vision", ["usual", "deuteranopia", "protanopia"])
 def test_colours_of_the_cycle_are_apart(vision):
-    seen = [lab(colour, vision) for colour in CYCLE]
-    for k, one in enumerate(seen):
-        for other in seen[k + 1 :]:
-            assert np.linalg.norm(one - other) > APART
+    for one, other in combinations([lab(colour, vision) for colour in CYCLE], 2):
+        assert np.linalg.norm(one - other) > APART
 
 
 @pytest.mark.parametrize("vision", VISION)

@@ -35,7 +35,9 @@ def rows(data, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def panels(rows):
-    return dict(zip(figure.PANELS, figure.plot(rows).axes, strict=False))
+    """Blocks and pre-stress of each panel."""
+    axes = figure.plot(rows).axes
+    return {name: axes[2 * index : 2 * index + 2] for index, name in enumerate(figure.PITCH)}
 
 
 def segments(axes, name):
@@ -43,89 +45,67 @@ def segments(axes, name):
     return [line for group in axes.collections if group.get_gid() == name for line in group.get_segments()]
 
 
-def test_blocks_stand_at_rest_position_plus_scaled_slip(rows, panels):
-    for name, axes in panels.items():
-        blocks = [patch for patch in axes.patches if patch.get_gid() in figure.COLOURS]
-        part = rows[rows["panel"] == name]
-        centres = np.array([block.get_x() + 0.5 * block.get_width() for block in blocks])
-        assert np.sort(centres) == pytest.approx(np.sort(part["x"] + part["scale"] * part["slip"]))
-        for state in figure.COLOURS:
-            assert sum(block.get_gid() == state for block in blocks) == (part["state"] == state).sum()
-        for height in {block.get_y() for block in blocks}:
-            line = np.sort([block.get_x() for block in blocks if block.get_y() == height])
-            assert (np.diff(line) > figure.BLOCK).all(), "blocks overlap"
+@pytest.mark.parametrize("name", figure.PITCH)
+def test_blocks_and_springs_stand_where_the_slip_puts_them(rows, panels, name):
+    axes, strip = panels[name]
+    part = rows[rows["panel"] == name].sort_values(["row", "x"])
+    moved = part["x"] + part["scale"] * part["slip"]
+    blocks = [patch for patch in axes.patches if patch.get_gid() in figure.COLOURS]
+    assert np.sort([block.get_x() + 0.5 * figure.BLOCK for block in blocks]) == pytest.approx(np.sort(moved))
+    for state in figure.COLOURS:
+        assert sum(block.get_gid() == state for block in blocks) == (part["state"] == state).sum()
+    gaps = np.concatenate([np.diff(centres) - figure.BLOCK for _, centres in moved.groupby(part["row"])])
+    coils = segments(axes, "coil springs")
+    assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
+    assert 0.0 < gaps.min() < 1.0 - figure.BLOCK < gaps.max(), "no blocks overlap, some springs are stretched"
+    leaves = segments(axes, "leaf springs")
+    if name == "displacement":
+        assert np.sort([leaf[0, 0] for leaf in leaves]) == pytest.approx(np.sort(part["x"]))
+        lean = np.sort([leaf[-1, 0] - leaf[0, 0] for leaf in leaves])
+        assert lean == pytest.approx(np.sort(part["scale"] * part["slip"]))
+    else:
+        assert leaves == []
+    first = part[part["row"] == 0]
+    assert [bar.get_height() for bar in strip.patches] == pytest.approx(first["prestress"].to_list())
+    assert (
+        f"{first['scale'].iloc[0]:.2g}" in axes.get_xlabel()
+        and f"{first['left'].iloc[0]:g}" in strip.get_title()
+    )
 
 
-def test_coils_are_as_long_as_the_gaps(rows, panels):
-    for name, axes in panels.items():
-        part = rows[rows["panel"] == name].sort_values(["row", "x"])
-        drawn = (part["x"] + part["scale"] * part["slip"]).groupby(part["row"])
-        gaps = np.concatenate([np.diff(centres) - figure.BLOCK for _, centres in drawn])
-        coils = segments(axes, "coil springs")
-        assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
-        assert gaps.min() < 1.0 - figure.BLOCK < gaps.max(), "some shortened, some stretched"
+@pytest.mark.parametrize("name", figure.PITCH)
+def test_instants_are_the_start_a_crack_the_first_stick_and_later(data, rows, name):
+    run = point(data[f"burridge_knopoff_{name}"], 0)
+    (start, first), (crack, _), (stick, at), *_, (_, last) = figure.instants(run)
+    assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
+    slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
+    stuck = (slip > 0.0) & (velocity <= 0.0)
+    assert not stuck[:at].any() and stuck[at].any()
+    times = rows[rows["panel"] == name].groupby("row")["time"].first()
+    assert (np.diff(times) > 0.0).all() and times.iloc[-1] == pytest.approx(run["sample_time"].values[last])
+    low, high = figure.window(run)
+    slipped = run["sample_position"].values[slip[last] > 0.0]
+    assert low < slipped.min() and slipped.max() < high
 
 
-def test_leaf_springs_hang_above_the_rest_position_under_a_displacement_boundary_only(rows, panels):
-    part = rows[rows["panel"] == "displacement"]
-    leaves = segments(panels["displacement"], "leaf springs")
-    assert len(leaves) == len(part)
-    assert np.sort([leaf[0, 0] for leaf in leaves]) == pytest.approx(np.sort(part["x"]))
-    lean = np.sort([leaf[-1, 0] - leaf[0, 0] for leaf in leaves])
-    assert lean == pytest.approx(np.sort(part["scale"] * part["slip"]))
-    assert segments(panels["stress"], "leaf springs") == []
-
-
-def test_instants_are_the_start_a_crack_the_first_stick_and_later(data, rows):
-    for name in figure.PANELS:
-        run = point(data[f"burridge_knopoff_{name}"], 0)
-        (start, first), (crack, _), (stick, at), *_, (_, last) = figure.instants(run)
-        assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
-        slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
-        assert not ((slip[:at] > 0.0) & (velocity[:at] <= 0.0)).any()
-        assert ((slip[at] > 0.0) & (velocity[at] <= 0.0)).any()
-        times = rows[rows["panel"] == name].groupby("row")["time"].first()
-        assert (np.diff(times) > 0.0).all() and times.iloc[-1] == pytest.approx(
-            run["sample_time"].values[last]
-        )
-        low, high = figure.window(run)
-        slipped = run["sample_position"].values[slip[last] > 0.0]
-        assert low < slipped.min() and slipped.max() < high
-
-
-def test_two_pulses_leave_the_held_plate(rows):
+def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_released(rows, panels):
     last = rows[(rows["panel"] == "displacement") & (rows["instant"] == "two pulses")]
     assert np.array_equal(last["slip"], last["slip"].to_numpy()[::-1])
-    sliding = last.loc[last["state"] == "sliding", "x"].abs()
-    stuck = last.loc[last["state"] == "stuck after sliding", "x"].abs()
+    sliding, stuck = (
+        last.loc[last["state"] == state, "x"].abs() for state in ("sliding", "stuck after sliding")
+    )
     assert stuck.size and sliding.min() > stuck.max()
-
-
-def test_one_pulse_leaves_the_block_that_is_never_released(rows, panels):
+    assert not rows.loc[rows["panel"] == "displacement", "arresting_block"].any()
     part = rows[rows["panel"] == "stress"]
-    last = part[part["instant"] == "pulse"]
+    last, framed = part[part["instant"] == "pulse"], part[part["arresting_block"]]
     sliding, stuck = (last.loc[last["state"] == state, "x"] for state in ("sliding", "stuck after sliding"))
     assert stuck.size and stuck.max() < sliding.min() and sliding.min() > 0.0
-    framed = part[part["arresting_block"]]
-    assert framed["x"].nunique() == 1 and (framed["slip"] == 0.0).all()
+    assert framed["x"].nunique() == 1 and (framed["slip"] == 0.0).all() and (framed["prestress"] < 0.0).all()
     assert stuck.min() == framed["x"].iloc[0] + 1.0
-    assert (framed["prestress"] < 0.0).all()
-    assert sum(patch.get_linewidth() > 1.0 for patch in panels["stress"].patches) == part["row"].nunique()
-    assert not rows.loc[rows["panel"] == "displacement", "arresting_block"].any()
+    assert sum(patch.get_linewidth() > 1.0 for patch in panels["stress"][0].patches) == part["row"].nunique()
 
 
 def test_a_run_without_a_stick_is_called_a_crack():
     scene = Scene(boundary="stress", prestress=Prestress(0.3, 0.3), duration=4.0, **LATTICE)
     names = [name for name, _ in figure.instants(point(sweep(scene, 21), 0))]
     assert names == ["start", "crack", "crack"]
-
-
-def test_scale_and_parameters_are_written(rows, panels):
-    for name, axes in panels.items():
-        assert f"{rows.loc[rows['panel'] == name, 'scale'].iloc[0]:.2g}" in axes.get_xlabel()
-    strips = figure.plot(rows).axes[2:]
-    for strip, name in zip(strips, figure.PANELS, strict=True):
-        part = rows[(rows["panel"] == name) & (rows["row"] == 0)]
-        assert f"{part['left'].iloc[0]:g}" in strip.get_title()
-        heights = [bar.get_height() for bar in strip.patches]
-        assert heights == pytest.approx(part["prestress"].to_list())

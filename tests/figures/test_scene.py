@@ -10,7 +10,6 @@ import pytest
 import tolerances as tol
 from PIL import Image
 
-from slippulse.comparison.scene_numbers import scene_numbers
 from slippulse.configuration.expand import expand, resolve
 from slippulse.configuration.scenes import scene_problems, scene_simulation
 from slippulse.data.points import point
@@ -19,10 +18,13 @@ from slippulse.figures import own_sweep
 from slippulse.figures import scene as figure
 from slippulse.figures.scene import number_text
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
+from slippulse.figures.shared.numbers import scene_numbers
 from slippulse.figures.style import save_figure
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
+from slippulse.model.scene import Scene
 from slippulse.predict.measured import measured_table
+from slippulse.predict.table import predictions
 from slippulse.report.scene_page import scene_page
 from slippulse.simulation.sweep import run_sweep
 
@@ -58,8 +60,11 @@ def drawn(project, tmp_path_factory):
         tables = tuple(measured_table(run, config["measure"]) for run in runs)
         study = grid_tables(tables, tuple(accuracy["coarser"]), PARAMETERS)
         run = point(runs[0], 0)
-        numbers = scene_numbers(run.attrs, study, config["measure"]["share"])
-        save_table(figure.table(run, numbers, {"title": TITLE}), folder / f"{name}.csv")
+        predicted = predictions(
+            [Scene.from_attributes(run.attrs)], *(config["measure"][k] for k in ("share", "still"))
+        )
+        numbers = scene_numbers(tables[0].join(predicted).iloc[0], study)
+        save_table(figure.table(run, numbers, TITLE), folder / f"{name}.csv")
         table = load_table(folder / f"{name}.csv")
         made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, folder=folder)
     return made
@@ -149,33 +154,24 @@ def test_the_animation_runs_from_rest_to_the_end(drawn, tmp_path):
     assert np.any(np.asarray(first) != np.asarray(last))
 
 
+HELD = {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.65]}
 SWEEPS = {
-    "over gamma": {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.3, 0.65]},
-    "over levels": {"boundary": "stress", "left": [-1.0, -0.5], "right": [0.0]},
-    "one run": {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.65]},
-    "over both": {"boundary": "displacement", "left": [0.4, 0.5], "right": "same", "gamma": [0.3, 0.65]},
-    "over three": {
-        "boundary": "displacement", "left": [0.4, 0.5], "right": "same", "gamma": [0.3, 0.65],
-        "damping_ratio": [0.0, 0.1],
-    },
+    "over gamma": (HELD | {"gamma": [0.3, 0.65]}, 1, 2),
+    "over levels": ({"boundary": "stress", "left": [-1.0, -0.5], "right": [0.0]}, 1, 2),
+    "one run": (HELD, 1, 1),
+    "over both": (HELD | {"left": [0.4, 0.5], "gamma": [0.3, 0.65]}, 2, 2),
+    "over three": (HELD | {"left": [0.4, 0.5], "gamma": [0.3, 0.65], "damping_ratio": [0.0, 0.1]}, 4, 2),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("name", "lines", "runs"),
-    [
-        ("over gamma", 1, 2),
-        ("over levels", 1, 2),
-        ("one run", 1, 1),
-        ("over both", 2, 2),
-        ("over three", 4, 2),
-    ],
-)
-def test_a_sweep_of_ones_own_is_drawn_whatever_varies(config, tmp_path, name, lines, runs):
-    sweep = SWEEPS[name] | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
+@pytest.mark.parametrize("name", SWEEPS)
+def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
+    varied, lines, runs = SWEEPS[name]
+    sweep = varied | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
     measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
-    save_table(own_sweep.table(measured, config["measure"]["share"]), tmp_path / "sweep.csv")
+    predicted = predictions(scenes, config["measure"]["share"], config["measure"]["still"])
+    save_table(own_sweep.table(measured.join(predicted)), tmp_path / "sweep.csv")
     drawn = own_sweep.plot(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
     # Of each line, theory and markers full and open.

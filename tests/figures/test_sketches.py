@@ -1,55 +1,70 @@
-"""Figures 1, 6 and 7: the sketches show what was computed."""
+"""Figures 1 and 7: the sketches show what was computed."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-
-def test_the_strip_spans_the_layer(draw):
-    drawn = draw("fig01_system_sketch")
-    for axes in drawn.figure.axes:
-        boxes = {patch.get_gid(): patch for patch in axes.patches if patch.get_gid()}
-        assert boxes["strip"].get_height() == boxes["layer"].get_height() == drawn.settings["thickness"]
-        assert boxes["substrate"].get_y() + boxes["substrate"].get_height() == pytest.approx(0.0)
-    assert len(drawn.figure.axes) == 2
+from slippulse.figures import fig01_system_sketch, fig07_damage_zone
+from slippulse.studies import damage_zone
 
 
-def test_the_held_top_does_not_move(draw):
-    profiles = draw("fig01_system_sketch").table
-    held = profiles[(profiles["panel"] == "displacement") & (profiles["role"] == "profile")]
-    rest = profiles[(profiles["panel"] == "displacement") & (profiles["role"] == "rest")]["x"].iloc[0]
-    assert held["x"].iloc[-1] == pytest.approx(rest)
-    assert held["x"].iloc[0] > rest
+def named(axes, gid: str) -> list:
+    """What is drawn under one name."""
+    return [artist for artist in (*axes.patches, *axes.lines) if artist.get_gid() == gid]
 
 
-def test_blocks_slide_where_the_run_slides(draw):
-    drawn = draw("fig06_burridge_knopoff")
-    rows = drawn.table
-    last = rows[(rows["panel"] == "displacement") & (rows["row"] == rows["row"].max())]
-    sliding = last[last["state"] == "sliding"]["x"].to_numpy()
-    assert (sliding > 0.0).any() and (sliding < 0.0).any(), "two pulses"
-    assert last[last["x"] == 0.0]["state"].iloc[0] == "stuck after sliding"
-    assert np.allclose(np.sort(sliding), -np.sort(sliding)[::-1])
-
-    last = rows[(rows["panel"] == "stress") & (rows["row"] == rows["row"].max())]
-    sliding = last[last["state"] == "sliding"]["x"].to_numpy()
-    assert sliding.size and (sliding > 0.0).all(), "one pulse"
-    arresting = rows[rows["arresting_block"]]
-    assert (arresting["slip"] == 0.0).all() and (arresting["x"] < 0.0).all()
-    drawn_sliding = sum(patch.get_gid() == "sliding" for patch in drawn.figure.axes[1].patches)
-    assert drawn_sliding > 0
+def texts(axes) -> str:
+    return " ".join(text.get_text() for text in axes.texts)
 
 
-def test_the_stress_drop_falls_with_the_stiffness_of_the_zone(draw):
-    drawn = draw("fig07_damage_zone")
-    lines = [line for line in drawn.figure.axes[1].lines if line.get_gid() == "curve"]
-    assert len(lines) == len(drawn.settings["thickness_ratios"])
-    previous = None
-    for line, thickness in zip(lines, drawn.settings["thickness_ratios"], strict=True):
+def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
+    """Under a stress the mean stands for the interface; held, the mean of the displacement is half of the slip."""
+    table = fig01_system_sketch.table({}, {}, {})
+    stress, held = fig01_system_sketch.plot(table).axes
+    assert named(stress, "imposed stress") and not named(stress, "held top")
+    assert named(held, "held top") and not named(held, "imposed stress")
+    for axes, mean in ((stress, 1.0), (held, 0.5)):
+        (line,) = named(axes, "displacement")
+        x, y = line.get_xdata() - fig01_system_sketch.REST, line.get_ydata()
+        assert np.trapezoid(x, y) == pytest.approx(mean * x[0]) and list(y) == [0.0, 1.0]
+        (strip,) = named(axes, "strip")
+        assert (strip.get_y(), strip.get_height()) == (0.0, 1.0)
+        (friction,) = named(axes, "friction")
+        assert np.diff(friction.get_path().vertices[:2, 0])[0] < 0.0, "friction opposes sliding"
+        for symbol in ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$", "$y$"):
+            assert symbol in texts(axes)
+    assert r"\tau" in texts(stress) and r"\partial t = 0" in texts(held)
+
+
+@pytest.fixture(scope="module")
+def zone():
+    table = fig07_damage_zone.table({}, {"damage_zone": damage_zone.table({}, {}, {})}, {})
+    return fig07_damage_zone.plot(table).axes
+
+
+def test_one_stress_goes_through_both_layers_of_the_damage_zone(zone):
+    before, after = (named(zone[0], name)[0].get_data() for name in ("before", "after"))
+    for x, y in (before, after):
+        soft, stiff = np.diff(x) / np.diff(y)
+        assert damage_zone.STIFFNESS_RATIO * soft == pytest.approx(stiff)
+    # The fault slips, the far boundary does not, and the drop of stress is the closed form.
+    assert after[0][0] - before[0][0] == pytest.approx(damage_zone.SLIP)
+    assert after[0][-1] == pytest.approx(before[0][-1])
+    drop = (np.diff(before[0]) - np.diff(after[0]))[0]
+    assert drop == pytest.approx(damage_zone.SLIP / (1.0 + damage_zone.STIFFNESS_RATIO * damage_zone.ROCK))
+    for symbol in (r"\delta", r"\hat u", "$H$", "$H_r$", "$G$", "G_r", "H + H_r"):
+        assert symbol in texts(zone[0])
+
+
+def test_the_stress_drop_follows_the_closed_form_below_its_limit(zone):
+    lines = named(zone[1], "curve")
+    (limit,) = named(zone[1], "limit")
+    assert set(limit.get_ydata()) == {1.0} and zone[1].get_xscale() == "log"
+    for line, thickness in zip(lines, damage_zone.THICKNESS_RATIOS, strict=True):
         x, y = line.get_data()
-        assert (np.diff(y) < 0.0).all() and y.max() <= 1.0
-        assert y == pytest.approx(1.0 / (1.0 + x * thickness), rel=1e-6)
-        if previous is not None:
-            assert (y <= previous).all()
-        previous = y
+        assert y == pytest.approx(1.0 / (1.0 + thickness * x), rel=1e-6) and y.max() < 1.0
+        assert f"{thickness:g}" in line.get_label()
+    assert all((upper.get_ydata() > lower.get_ydata()).all() for upper, lower in pairwise(lines))

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
-from matplotlib import colormaps
-from matplotlib.colors import to_rgb
 from PIL import Image
 from pypdf import PdfReader
-from tolerances import SHADE
 
 from slippulse.data.origin import configured_by
-from slippulse.figures.style import COLUMN, CYCLE, PAGE, VELOCITY_MAP, new_figure, save_figure
+from slippulse.figures.style import COLUMN, new_figure, save_figure
 
 CONFIGURATION = "0123456789abcdef"
 
@@ -46,21 +42,3 @@ def test_a_figure_of_no_job_names_no_configuration(tmp_path):
     with Image.open(tmp_path / "figure.png") as image:
         assert image.text == {}
     assert not PdfReader(tmp_path / "figure.pdf").metadata
-
-
-def test_a_picture_keeps_the_colours_of_its_legend(tmp_path):
-    """Small fills and whole maps, with steps too small to be seen."""
-    figure = new_figure(PAGE, 2.0)
-    lines, shades = figure.subplots(1, 2)
-    for place, colour in enumerate(CYCLE):
-        lines.plot([place], [0.0], "s", color=colour, markersize=6.0)
-    shades.imshow(np.linspace(0.0, 1.0, 256)[None, :], aspect="auto", cmap=VELOCITY_MAP)
-    save_figure(figure, tmp_path / "figure.png", tmp_path / "figure.pdf")
-    with Image.open(tmp_path / "figure.png") as image:
-        assert image.mode == "P" and image.width == PAGE * 300
-        assert image.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
-        found = np.array([colour for _, colour in image.convert("RGB").getcolors(1 << 24)])
-    for colour in CYCLE:
-        assert np.abs(found - 255 * np.array(to_rgb(colour))).max(axis=1).min() < 1.0
-    for colour in colormaps[VELOCITY_MAP](np.linspace(0.0, 1.0, 256)):
-        assert np.abs(found - 255 * colour[:3]).max(axis=1).min() <= SHADE

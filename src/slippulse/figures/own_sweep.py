@@ -53,7 +53,7 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """One panel a quantity; markers are runs (open: flagged), lines exact theory."""
-    table = table.assign(series=table["series"].fillna(""))
+    table = table.assign(series=table["series"].astype(object).fillna(""))
     quantities = list(dict.fromkeys(table["quantity"]))[:PANELS]
     figure = new_figure(PAGE, 4.2)
     grid = figure.subplots(ROWS, PANELS // ROWS).ravel()
@@ -63,7 +63,7 @@ def plot(table: pd.DataFrame) -> Figure:
         colours = CYCLE if 1 < groups.ngroups <= len(CYCLE) else [GREY] * groups.ngroups
         for colour, (series, group) in zip(colours, groups, strict=False):
             group = group.sort_values("x")
-            flagged = group["run_flags"].fillna("") != ""
+            flagged = group["run_flags"].notna()
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
             for some, face, label in ((group[~flagged], colour, series), (group[flagged], "none", "")):
                 axes.plot(

@@ -92,10 +92,10 @@ def draw_end(axes: Axes, profile: pd.DataFrame, numbers: pd.DataFrame, field: st
     """A field at the end, and what exact theory has for its value in the right pulse, where that is steady."""
     rows = profile[profile["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
+    axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
     theory = numbers.loc[numbers["series"] == LARGEST[field], "theory"].dropna()
     for value in theory:
         axes.axhline(value, color=ORANGE, linewidth=0.8, linestyle=(0, (3, 1.5)), label="steady pulse, exact")
-    axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
     if len(theory):
         axes.legend(loc="center")
     axes.set(xlabel=r"position $x$", ylabel=f"{FIELDS[field]} at the end")

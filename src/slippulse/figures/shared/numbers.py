@@ -73,7 +73,7 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     """
     found = main_numbers(run)
     quantity = found["quantity"]
-    if run["pulse_state"] != "steady":
+    if run.get("pulse_state") != "steady":
         found.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
     # The balance of the pre-stress is computed for the Gaussian and its levels alone.
     if prestress_from(run).bumps and run["boundary"] == "stress":
