@@ -1,1 +1,1 @@
-"""One module a figure: ``table(data, measured, settings)`` collects what is drawn, ``plot(table)`` draws it."""
+"""Figures: `table` makes the numbers that one draws of what its NEEDS name (`steps.inputs`), `plot` draws them."""

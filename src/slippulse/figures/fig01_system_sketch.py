@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -15,7 +14,6 @@ from matplotlib.patches import Rectangle
 from .shared.sketch import arrow, double_arrow, label
 from .style import BLACK, BLUE, COLUMN, ORANGE, new_figure, panel_letter
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {"data": ()}
 
 TITLES = {"stress": r"$\Gamma = 0$: stress imposed", "displacement": r"$\Gamma = 1$: displacement held"}
@@ -27,9 +25,7 @@ RED, MUTED = "#c00000", "0.25"
 HATCHED: dict[str, Any] = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Displacement over the height since the start, as each condition is reduced with, in thicknesses.
 
     Returns

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
@@ -33,7 +32,6 @@ from .style import (
     panel_letter,
 )
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "measured": [
         "regimes_displacement",
@@ -102,9 +100,7 @@ RING: dict[str, Any] = {
 HATCH = "//////"
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Every run of the sweeps of DIAGRAMS with its regimes.
 
     Returns
@@ -120,9 +116,7 @@ def table(
         at_end = regime_of_run(runs, letter, tolerance)
         exact = runs["exact_regime"].where(runs["exact_regime"].isin(REGIMES))
         lattices = tables[f"coarser/{diagram.sweep}"].groupby("factor")
-        others = [
-            regime_of_run(rows.reset_index(drop=True), letter, tolerance) != at_end for _, rows in lattices
-        ]
+        others = [regime_of_run(rows.reset_index(), letter, tolerance) != at_end for _, rows in lattices]
         found = runs[["left", "right", "beyond", "gamma", "run_flags"]].assign(
             line=runs.groupby(["left", "gamma"]).ngroup(), panel=letter, exact=exact, run=at_end
         )
@@ -175,15 +169,13 @@ def draw_diagram(axes: Axes, runs: pd.DataFrame, letter: str) -> None:
     for (regime, unsaid), some in runs[~runs["flagged"]].groupby(["regime", "unsaid"]):
         edge: dict[str, Any] = {"edgecolor": GREY, "hatch": HATCH} if unsaid else {"edgecolor": "white"}
         corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
-        cells = some[["i", "j"]].to_numpy()[:, None, :] + corners
-        axes.add_collection(
-            PolyCollection(cells, facecolor=tint(LOOKS[regime][0]), linewidth=0.4, gid=regime, **edge)
-        )
+        places = some[["i", "j"]].to_numpy()[:, None, :] + corners
+        cells = PolyCollection(places, facecolor=tint(LOOKS[regime][0]), linewidth=0.4, **edge)
+        axes.add_collection(cells)
     for (regime, flagged, early), some in runs.groupby(["regime", "flagged", "early"]):
-        colour, face = (
-            (GREY, "none") if flagged else (LOOKS[regime][0], "white" if early else LOOKS[regime][0])
-        )
-        look = marker(regime) | {"color": colour, "markerfacecolor": face}
+        look = marker(regime)
+        if flagged or early:
+            look |= {"markerfacecolor": "none", "color": GREY} if flagged else {"markerfacecolor": "white"}
         axes.plot(some["i"], some["j"], linestyle="none", gid="flagged" if flagged else regime, **look)
     ringed = runs[runs["coarser"] > 0]
     axes.plot(ringed["i"], ringed["j"], linestyle="none", gid="ring", **RING)
@@ -225,19 +217,13 @@ def handles(table: pd.DataFrame) -> list:
     flagged = table["run_flags"].notna()
     found: list = [entry(name, **marker(name)) for name in REGIMES if (table["regime"] == name).any()]
     if (~flagged & (table["run"] != table["regime"])).any():
-        look = {
-            "marker": "o",
-            "markersize": 3.8,
-            "markerfacecolor": "white",
-            "color": BLACK,
-            "markeredgewidth": 0.6,
-        }
+        look = marker("pulse, one-way, steady") | {"markerfacecolor": "white", "color": BLACK}
         found.append(entry("open: run ends before", **look))
     if (table["coarser"] > 0).any():
         found.append(entry("ringed: other on a coarser lattice", **RING))
     if (~flagged & table["exact"].isna()).any():
         found.append(Patch(facecolor="white", edgecolor=GREY, hatch=HATCH, label="hatched: by the run alone"))
     if flagged.any():
-        look = {"marker": "s", "markersize": 3.8, "markerfacecolor": "none", "color": GREY}
+        look = marker("crack-like, two-way") | {"markerfacecolor": "none", "color": GREY}
         found.append(entry(f"flagged: open, unshaded ({flagged.sum()})", **look))
     return found

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import pandas as pd
-import xarray as xr
 from matplotlib.figure import Figure
 
 from .shared.pulses import SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
 from .style import COLUMN, legend_below, new_figure, panel_letter
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
     "measured": ["steady_displacement", "steady_stress"],
@@ -21,9 +19,7 @@ NEEDS = {
 }
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Slip velocity of the pulses of both sweeps in the frame of its largest value, as `pulse_rows` has it."""
     names = NEEDS["data"]
     parts = [pulse_rows(name, data, tables, settings, ("slip_velocity",)) for name in names]
@@ -39,7 +35,7 @@ def plot(table: pd.DataFrame) -> Figure:
         panels, (left, right), (r"$\Gamma = 1$", r"$\Gamma = 0$"), (6.0, 5.0), "ab", strict=True
     ):
         draw_pulses(axes, rows, "slip_velocity")
-        draw_prestress(axes, rows, (0.57, 0.7, 0.38, 0.2), widths)
+        draw_prestress(axes, rows, widths)
         axes.set_title(title, fontsize=9)
         axes.set_ylim(-0.05, 1.75)
         panel_letter(axes, letter)

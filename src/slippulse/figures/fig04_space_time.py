@@ -18,7 +18,6 @@ from ..measure.fronts import position_at
 from .shared.space_time import STUCK, description, draw_map, draw_profile, run_rows
 from .style import BLACK, COLUMN, ORANGE, PURPLE, legend_below, new_figure, panel_letter, stacked
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
     "measured": ["space_time_displacement", "space_time_stress"],
@@ -29,9 +28,7 @@ PANELS = {"displacement": "a", "stress": "b"}
 HALO = [effects.withStroke(linewidth=2.2, foreground="white")]
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The first run of both sweeps.
 
     Returns

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 import pandas as pd
-import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..model.prestress import Prestress
 from .shared.scaling import (
     LEVEL,
     OTHER,
@@ -23,7 +19,6 @@ from .shared.scaling import (
 )
 from .style import BLACK, COLUMN, GREY, entry, legend_below, new_figure, panel_letter, prestress_inset
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
     "predicted": ["scaling_displacement", "scaling_stress"],
@@ -31,9 +26,7 @@ NEEDS = {
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Every run of both sweeps, as `transition_rows` has it."""
     parts = [transition_rows(tables[f"scaling_{boundary}"], boundary) for boundary in BOUNDARIES]
     return pd.concat(parts, ignore_index=True)
@@ -50,7 +43,9 @@ def plot(table: pd.DataFrame) -> Figure:
         draw_collapse(above, runs)
         above.set_title(title, fontsize=9)
         above.set_xlabel("predicted $L$, $T$")
-        draw_inset(above, runs)
+        narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
+        narrow = narrow[narrow["left"].isin(chosen(runs["left"], 3))]
+        prestress_inset(above, (0.62, 0.16, 0.36, 0.26), narrow, list(colours(narrow, "left")), 6.0)
         below.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
         other = OTHER[boundary][0]
         some = runs[runs[other].isin(chosen(runs[other], 3))]
@@ -72,16 +67,3 @@ def plot(table: pd.DataFrame) -> Figure:
     ]
     legend_below(figure, [*handles, entry("equality", color=BLACK, linewidth=0.8)], 3)
     return figure
-
-
-def draw_inset(axes: Axes, runs: pd.DataFrame) -> None:
-    """Pre-stress of the lowest, middle and highest level, at the narrowest Gaussian."""
-    width = runs["width"].min()
-    some = runs[(runs["width"] == width) & runs["left"].isin(chosen(runs["left"], 3))].drop_duplicates("left")
-    x = np.linspace(-6.0, 6.0, 161) * width
-    symmetric = runs["boundary"].iloc[0] == "displacement"
-    curves = [
-        (x, Prestress(level, level if symmetric else 0.0, width)(x), colour)
-        for level, colour in zip(some["left"], colours(some, "left"), strict=True)
-    ]
-    prestress_inset(axes, (0.62, 0.16, 0.36, 0.26), curves)

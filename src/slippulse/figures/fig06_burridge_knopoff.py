@@ -19,7 +19,6 @@ from ..data.points import point
 from ..model.scene import prestress_from
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, entry, legend_below, new_figure, panel_letter
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
 
 # Panels, and how far apart their rows of blocks are, in spacings.
@@ -41,9 +40,7 @@ TITLES = {
 }
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """State of the blocks at a few instants of the first run of each sweep.
 
     Returns

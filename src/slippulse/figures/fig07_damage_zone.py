@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -13,7 +12,6 @@ from matplotlib.patches import Rectangle
 from .shared.sketch import arrow, double_arrow, label
 from .style import BLACK, BLUE, COLUMN, CYCLE, GREY, ORANGE, new_figure, panel_letter
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {"studies": ["damage_zone"]}
 
 # Width of the sketch, and where displacements are counted from, in thicknesses of the zone.
@@ -21,9 +19,7 @@ WIDTH, ORIGIN = 4.2, 1.95
 MUTED = "0.25"
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The study of the same name: displacements of the sketch (roles before, after) and stress drops (role curve).
 
     Source: section IV C 2 of the paper.

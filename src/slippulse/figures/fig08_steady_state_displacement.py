@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import pandas as pd
-import xarray as xr
 from matplotlib.figure import Figure
 
 from .shared.pulses import FIELDS, SIMULATION, draw_pulses, handles, pulse_rows
 from .style import PAGE, legend_below, new_figure, panel_letter
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "data": ["steady_displacement"],
     "measured": ["steady_displacement"],
@@ -21,9 +19,7 @@ NEEDS = {
 }
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Pulses in the frame of their peak, as `pulse_rows` has them."""
     return pulse_rows("steady_displacement", data, tables, settings)
 

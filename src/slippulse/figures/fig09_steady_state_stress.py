@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import pandas as pd
-import xarray as xr
 from matplotlib.figure import Figure
 
 from .shared.pulses import FIELDS, SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
 from .style import PAGE, legend_below, new_figure, panel_letter
 
-# What is drawn: data, tables and studies by name, and keys of the configuration.
 NEEDS = {
     "data": ["steady_stress"],
     "measured": ["steady_stress"],
@@ -21,9 +19,7 @@ NEEDS = {
 }
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Pulses in the frame of their peak, as `pulse_rows` has them."""
     return pulse_rows("steady_stress", data, tables, settings)
 
@@ -37,7 +33,7 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set(xlabel=r"$\chi/W$", ylabel=f"{label} / scale")
         panel_letter(axes, letter)
     panels[0].set_ylim(-0.04, 1.6)
-    draw_prestress(panels[0], table, (0.58, 0.7, 0.4, 0.22), 5.0)
+    draw_prestress(panels[0], table, 5.0)
     panels[1].set_title(rf"$\Gamma = 0$, $b = {table['damping_ratio'].max():g}$", fontsize=9)
     # The exact acceleration has no bound at the front.
     panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))

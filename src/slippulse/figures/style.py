@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import matplotlib
 import matplotlib.rcsetup
 import numpy as np
+import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -18,6 +19,7 @@ from matplotlib.lines import Line2D
 
 from ..data.files import write_whole
 from ..data.origin import configuration
+from ..model.prestress import Prestress
 
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
@@ -54,8 +56,6 @@ RC: dict[Any, Any] = {
     "lines.linewidth": 1.1,
     "lines.markersize": 3.5,
     "axes.linewidth": 0.6,
-    "axes.spines.top": True,
-    "axes.spines.right": True,
     "xtick.direction": "in",
     "ytick.direction": "in",
     "font.family": [FAMILY, "DejaVu Sans"],
@@ -108,7 +108,7 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> Non
 
 
 def prestress_inset(
-    axes: Axes, box: tuple[float, float, float, float], curves: Iterable[tuple[np.ndarray, np.ndarray, Any]]
+    axes: Axes, box: tuple[float, float, float, float], runs: pd.DataFrame, colours: Sequence, widths: float
 ) -> None:
     """Profiles of pre-stress in a corner of a panel.
 
@@ -116,10 +116,13 @@ def prestress_inset(
     ----------
     axes : the panel
     box : left, bottom, width, height as fractions of it
-    curves : position, pre-stress and colour of each
+    runs : left, right and width of each, with a colour
+    widths : how far they are drawn, in those of the widest Gaussian
     """
     inset = axes.inset_axes(box)
-    for x, tau, colour in curves:
+    x = np.linspace(-widths, widths, 161) * runs["width"].max()
+    for (_, run), colour in zip(runs.iterrows(), colours, strict=True):
+        tau = Prestress(run["left"], run["right"], run["width"])(x)
         inset.plot(x, tau, color=colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
     inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=1.0)

@@ -7,25 +7,21 @@ import pandas as pd
 
 from ...model.scene import prestress_from
 
+EITHER = {
+    "front_speed_left": "front speed, left",
+    "front_speed_right": "front speed, right",
+    "transition_time": "T_trans",
+    "transition_length": "L_trans",
+}
 LABELS = {
-    "displacement": {
-        "front_speed_left": "front speed, left",
-        "front_speed_right": "front speed, right",
-        "transition_time": "T_trans",
-        "transition_length": "L_trans",
+    "displacement": EITHER
+    | {
         "first_stick_time": "first stick",
         "pulse_width": "pulse width, right",
         "pulse_peak_velocity": "peak velocity, right",
         "pulse_slip": "final slip, right",
     },
-    "stress": {
-        "front_speed_left": "front speed, left",
-        "front_speed_right": "front speed, right",
-        "transition_time": "T_trans",
-        "transition_length": "L_trans",
-        "balance_distance": "|x_minus|",
-        "largest_velocity": "largest velocity",
-    },
+    "stress": EITHER | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
 }
 
 
@@ -46,17 +42,10 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
     -------
     one row a number: quantity, label, value, theory (NaN where there is none)
     """
-    rows = [
-        {
-            "quantity": quantity,
-            "label": label,
-            "value": run[quantity],
-            "theory": run.get(f"exact_{quantity}", np.nan),
-        }
-        for quantity, label in LABELS[run["boundary"]].items()
-        if np.isfinite(run.get(quantity, np.nan))
-    ]
-    return pd.DataFrame(rows, columns=["quantity", "label", "value", "theory"])
+    found = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
+    found["value"] = [run.get(name, np.nan) for name in found["quantity"]]
+    found["theory"] = [run.get(f"exact_{name}", np.nan) for name in found["quantity"]]
+    return found[np.isfinite(found["value"].astype(float))]
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:

@@ -13,7 +13,6 @@ from matplotlib.lines import Line2D
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
-from ...model.prestress import Prestress
 from ..style import BLACK, CYCLE, colour_scale, entry, prestress_inset
 
 FIELDS = {
@@ -101,18 +100,11 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
         axes.plot(exact["x"], exact[field], style, color=colour, linewidth=0.8, gid=f"exact {run}")
 
 
-def draw_prestress(
-    axes: Axes, table: pd.DataFrame, box: tuple[float, float, float, float], widths: float
-) -> None:
+def draw_prestress(axes: Axes, table: pd.DataFrame, widths: float) -> None:
     """The pre-stress of the runs in an inset, over some widths of the widest Gaussian."""
-    runs = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"])
-    x = np.linspace(-widths, widths, 161) * runs["width"].max()
-    colours = looks(table)
-    curves = [
-        (x, Prestress(row["left"], row["right"], row["width"])(x), colours[row["run"]][0])
-        for _, row in runs.iterrows()
-    ]
-    prestress_inset(axes, box, curves)
+    runs, look = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"]), looks(table)
+    colours = [look[run][0] for run in runs["run"]]
+    prestress_inset(axes, (0.57, 0.7, 0.4, 0.2), runs, colours, widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:

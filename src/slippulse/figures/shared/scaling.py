@@ -32,7 +32,7 @@ def transition_rows(runs: pd.DataFrame, boundary: str) -> pd.DataFrame:
     runs : measured and predicted numbers of a sweep, one row a run
     boundary : "displacement" or "stress"
     """
-    kept = ["boundary", "left", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
+    kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
     found = runs[kept].copy()
     for quantity in SYMBOLS:
         found[quantity] = runs[f"transition_{quantity}"]
@@ -89,14 +89,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame) -> None:
 
 
 def _scatter(
-    axes: Axes,
-    runs: pd.DataFrame,
-    x: pd.Series,
-    y: pd.Series,
-    marker: str,
-    face: str,
-    rim: str = "",
-    **look: Any,
+    axes: Axes, runs: pd.DataFrame, x: pd.Series, y: pd.Series, marker: str, face: str, rim: str = "", **look
 ) -> None:
     """Runs with their colours, flagged ones open and grey."""
     flagged = runs["run_flags"].notna()
