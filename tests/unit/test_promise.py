@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import slippulse as sp
-from slippulse.comparison.scene_numbers import scene_numbers
+from slippulse.figures.shared.numbers import scene_numbers
 from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
@@ -121,9 +121,8 @@ def test_a_spacing_of_its_own_promises_nothing(tables):
 
 def test_the_numbers_of_a_scene_carry_the_verdict(tables):
     study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
-    attributes = sp.simulate(sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.05, gamma=0.3)).attrs
     plain, with_promise = (
-        scene_numbers(attributes, part[part["point"] == 0], SHARE)
+        scene_numbers(tables[0].iloc[0], part[part["point"] == 0])
         for part in (study, judged(study, tables[0], 10.0, SHARE))
     )
     assert set(with_promise.columns) - set(plain.columns) == {"promised", "kept"}

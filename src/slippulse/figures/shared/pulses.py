@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -30,9 +30,8 @@ PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
 def pulse_rows(
-    name: str, data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping,
-    fields: tuple[str, ...] = tuple(FIELDS),
-) -> pd.DataFrame:  # fmt: skip
+    name: str, data: Mapping, tables: Mapping, settings: Mapping, fields: Sequence[str] = tuple(FIELDS)
+) -> pd.DataFrame:
     """Simulated pulses of a sweep, and the exact one of each run.
 
     Parameters
@@ -54,9 +53,7 @@ def pulse_rows(
     for index, numbers in runs.iterrows():
         exact = profiles[profiles["run"] == index].assign(role="exact")
         if numbers["boundary"] == "displacement":
-            scale = {
-                field: numbers[f"paper_pulse_{kind}"] for field, kind in zip(FIELDS, SCALES, strict=True)
-            }
+            scale = dict(zip(FIELDS, numbers[[f"paper_pulse_{kind}" for kind in SCALES]], strict=True))
             scale["x"], span, reach = numbers["paper_pulse_width"], numbers["exact_pulse_width"], 1.0 + BEHIND
         else:
             peak, width = numbers["exact_largest_velocity"], numbers["width"]
