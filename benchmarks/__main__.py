@@ -11,7 +11,6 @@ from slippulse.configuration.overlay import read_overlay
 from slippulse.configuration.read import read_config
 from slippulse.data.files import write_whole
 from slippulse.model.checks import ConfigError
-from slippulse.studies import requirements
 
 from . import measure
 
@@ -28,7 +27,6 @@ def main(config_path: str, folder: str) -> None:
         "whole_scene": lambda: measure.whole_scene(accuracy, window),
         "exponents": lambda: measure.exponents(accuracy),
         "settings": lambda: measure.settings_compared(config["presets"], window),
-        "requirements": lambda: requirements.table(config["studies"]["requirements"]).to_dict("records"),
         "pipeline": lambda: measure.pipeline(Path(folder).parent),
     }
     found = {}

@@ -86,13 +86,7 @@ def test_the_exact_solution_is_on_the_curve(trade):
     (row,) = trade[trade["scheme"] == "continuum"].itertuples()
     for name in ("front_speed", "peak_velocity", "width", "final_slip", "transition_time"):
         assert getattr(row, name) < tol.EXACT_RUN
-    assert row.arrest_position < 2.0 * row.dx and row.seconds > 0.0 and np.isnan(row.work)
-
-
-@pytest.mark.slow
-def test_seconds_rise_with_the_work(trade):
-    lattices = trade[trade["scheme"] == "localised"]
-    assert lattices["seconds"].corr(lattices["work"], method="spearman") > 0.9
+    assert row.arrest_position < 2.0 * row.dx and np.isnan(row.work)
 
 
 @pytest.mark.slow

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
-from selection import selected
 
 from slippulse.claims.inference import curve, inference, likely, right_panel
 from slippulse.model.prestress import Prestress
 from slippulse.predict.published_figure import exact_values
 from slippulse.studies import published_figure as study_module
-from slippulse.studies.published_figure import _Panel
+from slippulse.studies.published_figure import BETA, LeftPanel
 from slippulse.theory.rupture import Rupture
 
 
@@ -21,27 +20,20 @@ def table(study):
 
 
 @pytest.fixture
-def settings(config):
-    return selected(config, study_module.SETTINGS, config["studies"]["published_figure"])
-
-
-@pytest.fixture
-def panel(settings):
-    return _Panel(study_module.readings_of(settings["published"], "space_time_displacement"), settings["end"])
+def panel(config):
+    return LeftPanel(study_module.readings_of(config["published"], "space_time_displacement"))
 
 
 @pytest.mark.slow
-def test_it_finds_the_parameters_of_a_lattice_run(settings, panel):
+def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     truth, ratio = np.array([0.3, 0.6]), 0.12
-    for name, value in zip(
-        panel.readings["reading"],
-        panel.lattice(truth, ratio, "total", settings["beta"] / ratio),
-        strict=True,
-    ):
-        settings["published"][name]["value"] = float(value)
-    settings["damping_ratios"] = {"total": [0.08, 0.1, 0.13, 0.17], "elastic": [0.1, 0.15, 0.22, 0.3]}
-    settings["stress"]["damping_ratios"] = [0.1]
-    found = inference(study_module.table({}, {}, settings))
+    values = panel.lattice(truth, ratio, "total", BETA / ratio)
+    for name, value in zip(panel.readings["reading"], values, strict=True):
+        config["published"][name]["value"] = float(value)
+    ratios = {"total": (0.08, 0.1, 0.13, 0.17), "elastic": (0.1, 0.15, 0.22, 0.3)}
+    monkeypatch.setattr(study_module, "DAMPING_RATIOS", ratios)
+    monkeypatch.setattr(study_module, "RIGHT_RATIOS", (0.1,))
+    found = inference(study_module.table({}, {}, config))
     best = found["best"]
     assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
@@ -52,10 +44,10 @@ def test_it_finds_the_parameters_of_a_lattice_run(settings, panel):
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
-def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, panel, settings, release):
+def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, panel, release):
     best = inference(table)[release]
     ratio, dx = best["damping_ratio"], best["dx"]
-    assert dx == pytest.approx(settings["beta"] / ratio, rel=1e-3)
+    assert dx == pytest.approx(BETA / ratio, rel=1e-3)
     found = least_squares(
         lambda trial: (panel.lattice(trial, ratio, release, dx) - panel.drawn) / panel.error,
         [0.25, 0.55], x_scale=[0.25, 0.55], diff_step=0.01, xtol=1e-4,

@@ -36,7 +36,7 @@ def profile(project) -> dict:
 
 def test_the_rules_are_found(rules, drawn):
     assert {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"} <= set(rules)
-    assert {"fig01_system_sketch", "study_extremes"} <= drawn
+    assert {"fig01_system_sketch", "study_barriers"} <= drawn
 
 
 def test_it_names_only_rules_that_exist(profile, rules, drawn):

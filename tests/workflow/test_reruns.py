@@ -158,7 +158,7 @@ def test_another_configuration_runs_only_its_chain(jobs_with, case):
 
 
 # Shared values, with rules that read them and rules that must not run for them.
-SKETCHES = {"fig01_system_sketch", "fig07_damage_zone", "study_stability", "compile_kernels"}
+SKETCHES = {"fig01_system_sketch", "fig07_damage_zone", "study_barriers", "compile_kernels"}
 DATA = {"simulate", "join_data", "animate_scene", "fig06_burridge_knopoff", *STUDIED}
 HELD = {"fig08_steady_state_displacement", "fig10_damping_displacement"}
 SHARED = {

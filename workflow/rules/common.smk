@@ -222,7 +222,7 @@ def settings_of_figure(name):
 def settings_of_study(name):
     """What a study reads of the configuration; under `sweeps` the resolved simulations that it names."""
     needs = STUDY_NEEDS[name]
-    found = selected(needs.get("settings", ()), config["studies"].get(name, {}))
+    found = selected(needs.get("settings", ()), {})
     sweeps = {sweep: sweep_of(sweep) for sweep in needs.get("sweeps", [])}
     return found | ({"sweeps": sweeps} if sweeps else {})
 

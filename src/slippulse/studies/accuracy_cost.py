@@ -1,18 +1,19 @@
 """Error against cost: what each scheme, order, step and spacing buys, and whether a preset could be had cheaper.
 
-The exact solution stands beside the lattices, sampled at the spacing of the textbook scheme. Seconds are those of the
-cost model of `slippulse.configuration.cost`, so that equal inputs give equal tables.
+Cost is counted, not timed: passes of the stencil over a block do not depend on the machine. The exact solution stands
+beside the lattices, sampled at the spacing of the textbook scheme.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
-from ..configuration.cost import expected_seconds
 from ..measure.fronts import arrival, front_speed, path
 from ..measure.pulses import leading_pulse
 from ..model.prestress import Prestress
@@ -25,8 +26,21 @@ from ..theory.front_law import front_speed as exact_speed
 from ..theory.front_law import front_speed_undamped
 from ..theory.pulse import steady_pulse
 
-# What it is made from besides its own section of `studies`.
 NEEDS = {"settings": ["measure.front_window", "presets"]}
+
+# Two pulses, without damping and with that of the paper's figures, long enough to be steady.
+LEVEL, GAMMA, DAMPING_RATIOS, DURATION = 0.55, 0.65, (0.0, 0.1), 20.0
+# A crack that turns into a pulse at Gamma = 0 with pre-stress 0 on the right: its level on the left, the fraction of
+# the way of its left front whose time is compared, its duration in units of that time, and its spacing over that of
+# the pulses, since it is larger.
+NEGATIVE_LEVEL, FRACTION, CRACK_DURATION, CRACK_SPACING = -1.0, 0.95, 3.0, 2.0
+# Every setting; the presets are added. The error of the textbook scheme is that of its step: one spacing is enough.
+SPACINGS, ORDERS, STEPS = (0.08, 0.04, 0.02, 0.01, 0.005), (3, 4, 5, 6, 8), (1.0, 0.5, 0.25)
+TEXTBOOK_SPACING, TEXTBOOK_STEPS = 0.02, (0.5, 0.25, 0.125, 0.0625, 0.03125)
+# Front speed against the step, at a level with an irrational speed: the textbook scheme nearly up to its stability
+# bound, the localised one, which does not depend on it, at some of these steps.
+LOCKING_LEVEL, LOCKING_SPACING, LOCKING_DURATION = 0.5, 0.1, 30.0
+LOCKING_STEPS, EVERY = np.linspace(0.1, 0.98, 67), 4
 
 # Errors of the scenes, relative to exact theory, the largest over the damping ratios.
 QUANTITIES = (
@@ -41,162 +55,111 @@ EQUAL, NEGLIGIBLE = 1.1, 1e-5
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Run the scenes at every setting, and the textbook scheme against its step.
+    """Run the scenes at every setting, and both schemes against their step.
 
     Parameters
     ----------
-    settings : `studies.accuracy_cost` of the configuration, front_window and presets
+    settings : measure (front_window) and presets
 
     Returns
     -------
     rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
-    passes over one block), seconds (expected), block_updates, one error a quantity, and for presets `dominated_by`;
-    rows of part "locking": scheme, step, front_speed, exact
+    passes over one block), block_updates, one error a quantity, and for presets `dominated_by`; rows of part
+    "locking": scheme, step, front_speed, exact
 
     Source: exact speed, pulse and transitions of `slippulse.theory`, all in the continuum limit at fixed beta/dx.
     """
     window = settings["measure"]["front_window"]
-    theory = exact(settings)
-    rows = []
-    for scheme, order, step, dx in ladder(settings):
-        row = {"scheme": scheme, "order": order, "step": step, "dx": dx}
-        rows.append(row | errors(settings, theory, row, window))
-    trade = pd.DataFrame(rows)
-    trade["preset"] = ""
-    for name, preset in settings["presets"].items():
-        is_preset = (
-            (trade["scheme"] == "localised")
-            & np.isclose(trade["dx"], preset["dx"])
-            & (trade["order"] == preset["order"])
-            & np.isclose(trade["step"], preset["max_step"])
-        )
-        trade.loc[is_preset, "preset"] = name
-    trade["dominated_by"] = [
-        dominating(trade, index) if trade["preset"][index] else "" for index in trade.index
-    ]
-    return pd.concat(
-        [trade.assign(part="trade"), locking(settings, window).assign(part="locking")], ignore_index=True
+    presets = {
+        ("localised", p["order"], p["max_step"], p["dx"]): name for name, p in settings["presets"].items()
+    }
+    ladder = [("fixed_step", 1, step, TEXTBOOK_SPACING) for step in TEXTBOOK_STEPS]
+    ladder += [("localised", order, step, dx) for dx, order, step in product(SPACINGS, ORDERS, STEPS)]
+    ladder += [("continuum", 1, 1.0, TEXTBOOK_SPACING)]
+    ladder += [setting for setting in presets if setting not in ladder]
+    trade = pd.DataFrame(
+        [
+            dict(zip(("scheme", "order", "step", "dx"), setting, strict=True))
+            | errors(*setting, window)
+            | {"preset": presets.get(setting, "")}
+            for setting in ladder
+        ]
     )
+    trade["dominated_by"] = [dominating(trade, i) if trade["preset"][i] else "" for i in trade.index]
+    return pd.concat([trade.assign(part="trade"), locking(window).assign(part="locking")], ignore_index=True)
 
 
-def ladder(settings: Mapping) -> list[tuple[str, int, float, float]]:
-    """Every setting: scheme, order, step in units of dx, spacing; presets included."""
-    found = [
-        ("fixed_step", 1, step, dx)
-        for dx in settings["textbook"]["dx"]
-        for step in settings["textbook"]["steps"]
-    ]
-    found += [
-        ("localised", order, step, dx)
-        for dx in settings["dx"]
-        for order in settings["orders"]
-        for step in settings["steps"]
-    ]
-    found += [("continuum", 1, 1.0, dx) for dx in settings["textbook"]["dx"]]
-    presets = [("localised", p["order"], p["max_step"], p["dx"]) for p in settings["presets"].values()]
-    return found + [preset for preset in presets if preset not in found]
-
-
-def exact(settings: Mapping) -> dict:
-    """What the scenes give in the continuum limit, by damping ratio."""
-    level, share = settings["level"], settings["share"]
-    found = {}
-    for ratio in settings["damping_ratios"]:
-        crack = ArrestingCrack(Prestress(settings["negative_level"], 0.0), ratio)
-        transition = exact_transition_displacement(Prestress(level, level), settings["gamma"], ratio)
-        found[ratio] = {
-            "front_speed": float(exact_speed(level, ratio)),
-            "transition_time": transition.time,
-            "share_time": crack.share_time(share),
-            "arrest_position": abs(crack.balance_position),
-        }
-    return found
-
-
-def errors(settings: Mapping, theory: Mapping, row: Mapping, window: float) -> dict:
+def errors(scheme: str, order: int, step: float, dx: float, window: float) -> dict[str, float]:
     """Work of all scenes, and the largest relative error of each quantity over them.
 
-    A pulse at each damping ratio, and at the largest one the crack that turns into a pulse under held stress: without
-    damping the ringing of the lattice decides where its left front stands still. The step is cut where it would not be
-    stable, as the pipeline does.
+    A pulse at each damping ratio, and at the largest one the crack: without damping the ringing of the lattice decides
+    where its left front stands still. The step is cut where it would not be stable, as the pipeline does.
     """
-    found = []
-    for ratio, values in theory.items():
-        pulse_scene, crack_scene = scenes(settings, values, row, ratio)
-        found.append(pulse_errors(settings, values, pulse_scene, window))
-        if ratio == max(theory):
-            found.append(crack_errors(settings, values, crack_scene))
+
+    def scene(
+        boundary: str, profile: Prestress, duration: float, dx: float, gamma: float, ratio: float
+    ) -> Scene:
+        # The textbook scheme and the exact solution have no order to choose.
+        known = max(order, 3)
+        bound = math.inf if scheme == "continuum" else largest_step(scheme, known, ratio, gamma * dx**2)
+        return Scene(
+            boundary, profile, duration, dx, gamma, ratio * dx, scheme=scheme, order=known,
+            max_step=min(step, MARGIN * bound),
+        )  # fmt: skip
+
+    pulse = Prestress(LEVEL, LEVEL)
+    found = [
+        pulse_errors(scene("displacement", pulse, DURATION, dx, GAMMA, ratio), ratio, window)
+        for ratio in DAMPING_RATIOS
+    ]
+    profile, ratio = Prestress(NEGATIVE_LEVEL, 0.0), max(DAMPING_RATIOS)
+    crack = ArrestingCrack(profile, ratio)
+    time = crack.share_time(FRACTION)
+    of = scene("stress", profile, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, ratio)
+    found.append(crack_errors(of, time, abs(crack.balance_position)))
     out = {name: float(np.max([entry[name] for entry in found if name in entry])) for name in QUANTITIES}
-    return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work", "seconds")}
+    return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
 
 
-def scenes(settings: Mapping, values: Mapping, row: Mapping, ratio: float) -> tuple[Scene, Scene]:
-    """The pulse, and the crack under held stress, of one setting at one damping ratio."""
-    level, gamma, dx = settings["level"], settings["gamma"], row["dx"]
-    coarse = settings["stress_scale"] * dx
-    # The textbook scheme and the exact solution have no order to choose.
-    more = {"scheme": row["scheme"], "order": max(row["order"], 3)}
-
-    def step(gamma_dx2: float) -> float:
-        if row["scheme"] == "continuum":
-            return row["step"]
-        return min(row["step"], MARGIN * largest_step(row["scheme"], more["order"], ratio, gamma_dx2))
-
-    pulse = Scene(
-        "displacement", Prestress(level, level), settings["duration"], dx, gamma=gamma, beta=ratio * dx,
-        max_step=step(gamma * dx**2), **more,
-    )  # fmt: skip
-    profile, duration = (
-        Prestress(settings["negative_level"], 0.0),
-        settings["stress_duration"] * values["share_time"],
-    )
-    crack = Scene("stress", profile, duration, coarse, beta=ratio * coarse, max_step=step(0.0), **more)
-    return pulse, crack
-
-
-def pulse_errors(settings: Mapping, values: Mapping, of: Scene, window: float) -> dict:
+def pulse_errors(of: Scene, ratio: float, window: float) -> dict[str, float]:
     """Relative errors of the pulse and of T_trans, and the work."""
     run = simulate(of)
-    pulse = leading_pulse(run, window)
+    pulse, speed = leading_pulse(run, window), float(exact_speed(LEVEL, ratio))
+    transition = exact_transition_displacement(of.prestress, GAMMA, ratio)
     # At fixed beta/dx damping acts at the front alone in the continuum.
-    beta = 0.0 if of.scheme == "continuum" else of.beta
-    steady = steady_pulse(settings["level"], settings["gamma"], beta, values["front_speed"])
-    return {
-        "front_speed": abs(pulse.speed / values["front_speed"] - 1.0),
+    steady = steady_pulse(LEVEL, GAMMA, 0.0 if of.scheme == "continuum" else of.beta, speed)
+    return costs(run) | {
+        "front_speed": abs(pulse.speed / speed - 1.0),
         "peak_velocity": abs(pulse.peak_velocity / steady.peak_velocity - 1.0),
         "width": abs(pulse.width / steady.width - 1.0),
         "final_slip": abs(pulse.slip / steady.slip - 1.0),
-        "transition_time": abs(run.attrs["first_stick_time"] / values["transition_time"] - 1.0),
-        "energy": run.attrs["energy_residual"],
-        "block_updates": run.attrs["block_updates"],
-        "work": work(run),
-        "seconds": expected_seconds(of),
+        "transition_time": abs(run.attrs["first_stick_time"] / transition.time - 1.0),
     }
 
 
-def crack_errors(settings: Mapping, values: Mapping, of: Scene) -> dict:
+def crack_errors(of: Scene, time: float, distance: float) -> dict[str, float]:
     """Relative errors of the left front, and the work."""
     run = simulate(of)
-    reached = arrival(run, settings["share"] * values["arrest_position"], "left")
-    return {
-        "share_time": abs(reached / values["share_time"] - 1.0),
-        "arrest_position": abs(path(run, "left")[1][-1] / values["arrest_position"] - 1.0),
-        "energy": run.attrs["energy_residual"],
-        "block_updates": run.attrs["block_updates"],
-        "work": work(run),
-        "seconds": expected_seconds(of),
+    return costs(run) | {
+        "share_time": abs(arrival(run, FRACTION * distance, "left") / time - 1.0),
+        "arrest_position": abs(path(run, "left")[1][-1] / distance - 1.0),
     }
 
 
-def work(run) -> float:
-    """Stencil passes over one block, those of events included: each order is one; the textbook scheme passes once over
-    the whole lattice, the exact solution has none.
+def costs(run: xr.Dataset) -> dict[str, float]:
+    """Residual of the energy balance, block updates, and stencil passes over one block, those of events included.
+
+    Each order is one pass; the textbook scheme passes once over the whole lattice, the exact solution has none.
     """
-    if run.attrs["scheme"] == "continuum":
-        return math.nan
-    if run.attrs["scheme"] == "fixed_step":
-        return float(run.attrs["steps"] * run.sizes["x"])
-    return float((run.attrs["block_updates"] + run.attrs["event_updates"]) * run.attrs["order"])
+    numbers = run.attrs
+    work = float((numbers["block_updates"] + numbers["event_updates"]) * numbers["order"])
+    if numbers["scheme"] == "fixed_step":
+        work = float(numbers["steps"] * run.sizes["x"])
+    return {
+        "energy": numbers["energy_residual"],
+        "block_updates": numbers["block_updates"],
+        "work": math.nan if numbers["scheme"] == "continuum" else work,
+    }
 
 
 def dominating(trade: pd.DataFrame, index: int) -> str:
@@ -214,22 +177,16 @@ def dominating(trade: pd.DataFrame, index: int) -> str:
     return best
 
 
-def locking(settings: Mapping, window: float) -> pd.DataFrame:
+def locking(window: float) -> pd.DataFrame:
     """Front speed against the step, both schemes: a crack without damping or leaf springs, at an irrational speed."""
-    rule = settings["locking"]
-    level = rule["level"]
     rows = []
-    for scheme in ("fixed_step", "localised"):
-        steps = np.linspace(rule["steps"]["from"], rule["steps"]["to"], rule["steps"]["count"])
-        for step in steps if scheme == "fixed_step" else steps[:: rule["every"]]:
-            of = Scene(
-                "stress",
-                Prestress(level, level),
-                rule["duration"],
-                rule["dx"],
-                scheme=scheme,
-                max_step=float(step),
+    for scheme, steps in (("fixed_step", LOCKING_STEPS), ("localised", LOCKING_STEPS[::EVERY])):
+        for step in map(float, steps):
+            scene = Scene(
+                "stress", Prestress(LOCKING_LEVEL, LOCKING_LEVEL), LOCKING_DURATION, LOCKING_SPACING, scheme=scheme,
+                max_step=step,
+            )  # fmt: skip
+            rows.append(
+                {"scheme": scheme, "step": step, "front_speed": front_speed(simulate(scene), window)[0]}
             )
-            speed, _, _ = front_speed(simulate(of), window)
-            rows.append({"scheme": scheme, "step": step, "front_speed": speed})
-    return pd.DataFrame(rows).assign(exact=float(front_speed_undamped(level)), dx=rule["dx"])
+    return pd.DataFrame(rows).assign(exact=float(front_speed_undamped(LOCKING_LEVEL)), dx=LOCKING_SPACING)

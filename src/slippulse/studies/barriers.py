@@ -17,9 +17,19 @@ from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse
 
-# What it is made from besides its own section of `studies`.
-NEEDS = {}
+NEEDS = {}  # type: dict[str, list[str]]
 
+# Without damping, and that of the paper's figures.
+DAMPING_RATIOS = (0.0, 0.1)
+# Every pair of levels before and in the barrier, each with one of the gammas as in a Latin square.
+LEVELS, BARRIERS, GAMMAS = (0.3, 0.5, 0.65, 0.8), (-0.2, -0.5, -1.0), (0.3, 0.65, 1.0)
+# Three spacings show the order of convergence.
+SPACINGS = (0.04, 0.02, 0.01)
+# Of the map of exact depths, the barriers about evenly in their logarithm.
+MAP_LEVELS = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9)
+MAP_BARRIERS = (-1.3, -0.85, -0.55, -0.36, -0.23, -0.15, -0.1)
+# Lengths of barriers over the exact depth, about it; and a spacing at which a block is less than the difference.
+LENGTHS, PASSING_SPACING = (0.8, 0.95, 1.05, 1.2), 0.0125
 # Widths of the Gaussian after which the pre-stress is its level, and a width small enough for every pulse.
 TAIL, WIDTH = 5.0, 1.0
 # A pulse dies or passes before a wave would have gone so many times as deep.
@@ -29,20 +39,15 @@ CROSSINGS = 4.0
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Exact depths, lattice depths at each spacing, and barriers shorter and longer than the depth.
 
-    Parameters
-    ----------
-    settings : `studies.barriers` of the configuration
-
     Returns
     -------
-    rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1; it scales like 1/sqrt(gamma));
-    "depth": gamma and dx too, measured, exact, paper (the later estimate); "passing": length (of the barrier,
-    over the exact depth), measured (1 where the front went past, 0 where it did not)
+    rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1; it scales like 1/sqrt(gamma)) and paper
+    (the later estimate; it scales like 1/gamma); "depth": gamma and dx too, measured, exact, paper; "passing": length
+    (of the barrier, over the exact depth), measured (1 where the front went past, 0 where it did not)
 
     Source: `barrier_depth`; lattice runs whose barrier lies where the pulse is steady, by its finite memory.
     """
-    rows = [*_map(settings), *_depths(settings), *_passing(settings)]
-    return pd.DataFrame(rows)
+    return pd.DataFrame([*_map(), *_lattices()])
 
 
 @lru_cache(maxsize=512)
@@ -51,45 +56,37 @@ def _depth(tau0: float, barrier: float, ratio: float) -> float:
     return barrier_depth(tau0, barrier, 1.0, ratio)
 
 
-def _map(settings: Mapping) -> Iterator[dict]:
-    rule = settings["map"]
-    for ratio, tau0, barrier in product(settings["damping_ratios"], rule["levels"], rule["barriers"]):
-        row = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": 1.0, "damping_ratio": ratio}
-        yield row | {"exact": _depth(tau0, barrier, ratio)}
+def _map() -> Iterator[dict]:
+    for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):
+        yield {
+            "part": "map", "tau0": tau0, "barrier": barrier, "gamma": 1.0, "damping_ratio": ratio,
+            "exact": _depth(tau0, barrier, ratio), "paper": barrier_depth_estimate(tau0, barrier, 1.0),
+        }  # fmt: skip
 
 
-def _pairs(settings: Mapping) -> Iterator[tuple[float, float, float, float]]:
-    """tau0, barrier, gamma and damping ratio: every pair of levels, with gammas as in a Latin square."""
-    for row, tau0 in enumerate(settings["levels"]):
-        for column, barrier in enumerate(settings["barriers"]):
-            for ratio in settings["damping_ratios"]:
-                yield tau0, barrier, settings["gamma"][(row + column) % len(settings["gamma"])], ratio
-
-
-def _depths(settings: Mapping) -> Iterator[dict]:
-    for tau0, barrier, gamma, ratio in _pairs(settings):
+def _lattices() -> Iterator[dict]:
+    """Depths for every pair of levels, then who passes."""
+    passing = []
+    for (row, tau0), (column, barrier), ratio in product(
+        enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS
+    ):
+        gamma = GAMMAS[(row + column) % len(GAMMAS)]
         exact = _depth(tau0, barrier, ratio) / math.sqrt(gamma)
-        for dx in settings["dx"]:
-            place = edge(tau0, gamma, ratio, dx)
-            yield {
-                "part": "depth", "tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "dx": dx,
-                "measured": reach(tau0, gamma, ratio, dx, ((place, barrier),), exact) - place, "exact": exact,
-                "paper": barrier_depth_estimate(tau0, barrier, gamma),
-            }  # fmt: skip
-
-
-def _passing(settings: Mapping) -> Iterator[dict]:
-    rule = settings["passing"]
-    for tau0, barrier, gamma, ratio in _pairs(settings):
-        exact = _depth(tau0, barrier, ratio) / math.sqrt(gamma)
-        for share in rule["shares"]:
-            place = edge(tau0, gamma, ratio, rule["dx"])
-            steps = ((place, barrier), (place + share * exact, tau0))
-            far = reach(tau0, gamma, ratio, rule["dx"], steps, exact) - place
-            yield {
-                "part": "passing", "tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio,
-                "dx": rule["dx"], "length": share, "exact": exact, "measured": float(far > share * exact + 0.5 * exact),
-            }  # fmt: skip
+        pair = {"tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "exact": exact}
+        for dx in SPACINGS:
+            start = edge(tau0, gamma, ratio, dx)
+            depth = reach(tau0, gamma, ratio, dx, ((start, barrier),), exact) - start
+            estimate = barrier_depth_estimate(tau0, barrier, gamma)
+            yield {"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate}
+        start = edge(tau0, gamma, ratio, PASSING_SPACING)
+        for length in LENGTHS:
+            steps = (start, barrier), (start + length * exact, tau0)
+            far = reach(tau0, gamma, ratio, PASSING_SPACING, steps, exact) - start
+            passed = float(far > (length + 0.5) * exact)
+            passing.append(
+                {"part": "passing", **pair, "dx": PASSING_SPACING, "length": length, "measured": passed}
+            )
+    yield from passing
 
 
 def edge(tau0: float, gamma: float, ratio: float, dx: float) -> float:
@@ -104,13 +101,9 @@ def reach(
 ) -> float:
     """How far the right front of a lattice comes, half a block beyond the last released one.
 
-    Parameters
-    ----------
-    tau0, gamma, ratio, dx : the scene, with a Gaussian of width WIDTH
-    steps : of the pre-stress on the right; the left has the same
-    beyond : about how far it comes beyond the first step
+    The pre-stress has the steps on both sides; ``beyond`` is about how far the front comes beyond the first.
     """
-    mirrored = tuple((-place, level) for place, level in steps)
+    mirrored = tuple((-position, level) for position, level in steps)
     profile = Prestress(tau0, tau0, WIDTH, steps=steps + mirrored)
     width = steady_pulse(tau0, gamma, 0.0, float(front_speed(tau0, ratio))).width
     duration = steps[0][0] + CROSSINGS * beyond + width

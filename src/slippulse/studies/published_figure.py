@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -18,12 +19,25 @@ from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
 from ..theory.transition import paper_transition_displacement
 
-# What it is made from besides its own section of `studies`.
 NEEDS = {"settings": ["published"]}
 
+# As the paper states for the figure; where its left panel ends, as read off; and tau_0 and gamma from
+# which the fit converges.
+BETA, END, NEAR = 1.0e-3, 10.8, np.array([0.25, 0.55])
+# Evenly in their logarithm about the best fit of each rule, as far as a fit is accepted and beyond.
+DAMPING_RATIOS = {
+    "total": (0.04, 0.055, 0.075, 0.1, 0.135, 0.18),
+    "elastic": (0.075, 0.105, 0.145, 0.2, 0.28, 0.39),
+}
+# Damping ratio, release rule and spacing of the authors' public notebook for the paper.
+NOTEBOOK = 0.2, "total", 0.05005
+# The right panel: its pre-stress as read off, damping ratios about the best fit, and a duration that covers the panel.
+RIGHT_PANEL, RIGHT_RATIOS, RIGHT_DURATION = Prestress(-0.75, 0.0, 5.0), (0.05, 0.1, 0.2), 30.0
+# Where the arrows end that are drawn for T_trans and L_trans, and for T_trans in the right panel.
+ARROWS = {"time": 4.16, "length": 10.4, "stress_time": 30.9}
 # Lattice: order, step in dx, times at which the largest velocity is looked for, reach of the samples over the duration.
 ORDER, STEP, TIMES, REACH = 8, 1.0, 109, 1.5
-# Shares of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
+# Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
 DIFFERENCE, FIRST = 0.01, 2
 
 
@@ -32,7 +46,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Parameters
     ----------
-    settings : `studies.published_figure`, and `published`
+    settings : `published` of the configuration
 
     Returns
     -------
@@ -43,23 +57,22 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Source: `claims.inference`.
     """
-    panel = _Panel(readings_of(settings["published"], "space_time_displacement"), settings["end"])
-    start = np.array([settings["near"]["tau0"], settings["near"]["gamma"]])
+    panel = LeftPanel(readings_of(settings["published"], "space_time_displacement"))
     parts = []
     for release in RELEASES:
         trials: list[tuple[float, np.ndarray]] = []
-        for ratio in settings["damping_ratios"][release]:
+        for ratio in DAMPING_RATIOS[release]:
             if len(trials) < 2:
-                guess, steps = trials[-1][1] if trials else start, FIRST
+                guess, steps = trials[-1][1] if trials else NEAR, FIRST
             else:
                 guess, steps = _ahead(trials, ratio), 1
-            trial, rows = panel.fitted(ratio, release, settings["beta"] / ratio, guess, steps)
+            trial, rows = panel.fitted(ratio, release, BETA / ratio, guess, steps)
             trials.append((ratio, trial))
             parts.append(rows.assign(part="profile"))
-    notebook = settings["notebook"]
-    _, rows = panel.fitted(notebook["damping_ratio"], notebook["release"], notebook["dx"], start, FIRST)
-    parts += [rows.assign(part="notebook"), _stress(settings)]
-    parts.append(pd.DataFrame(_arrows(settings, inference(pd.concat(parts))["best"])))
+    _, rows = panel.fitted(*NOTEBOOK, NEAR, FIRST)
+    right = readings_of(settings["published"], "space_time_stress")
+    parts += [rows.assign(part="notebook"), _right_panel(right[right["quantity"] == "largest_velocity"])]
+    parts.append(pd.DataFrame(_arrows(inference(pd.concat(parts))["best"])))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -69,30 +82,28 @@ def _ahead(trials: list[tuple[float, np.ndarray]], ratio: float) -> np.ndarray:
     return second + (second - first) * np.log(ratio / other) / np.log(other / one)
 
 
-class _Panel:
-    """The left panel: its readings, and when it ends."""
+class LeftPanel:
+    """The left panel: its readings, and what a trial (tau_0 and gamma) gives for them."""
 
-    def __init__(self, readings: pd.DataFrame, end: float) -> None:
-        self.readings, self.end = readings, end
+    def __init__(self, readings: pd.DataFrame) -> None:
+        self.readings = readings
         self.quantities = readings["quantity"].tolist()
         self.drawn, self.error = readings["drawn"].to_numpy(), readings["reading_error"].to_numpy()
 
     def exact(self, trial: np.ndarray, ratio: float, release: str) -> np.ndarray:
         tau0, gamma = map(float, trial)
-        return exact_values(Rupture(Prestress(tau0, tau0), gamma, ratio, release, self.end), self.quantities)
+        return exact_values(Rupture(Prestress(tau0, tau0), gamma, ratio, release, END), self.quantities)
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
         tau0, gamma = map(float, trial)
-        scene = Scene(
-            "displacement", Prestress(tau0, tau0), self.end, dx, gamma, ratio * dx, release,
-            max_step=STEP, order=ORDER,
-        )  # fmt: skip
-        return lattice_values(simulate(scene, _every_block(scene, 0.0)), self.quantities)
+        return _lattice(
+            "displacement", Prestress(tau0, tau0), END, dx, gamma, ratio, release, 0.0, self.quantities
+        )
 
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
     ) -> tuple[np.ndarray, pd.DataFrame]:
-        """tau_0 and gamma that fit best, by so many steps of Gauss and Newton, and their rows."""
+        """tau_0 and gamma that fit best, by some steps of Gauss and Newton, and their rows."""
         trial = guess
         exact = self.exact(trial, ratio, release)
         correction = self.lattice(trial, ratio, release, dx) - exact
@@ -115,52 +126,48 @@ class _Panel:
         return trial, rows
 
 
-def _every_block(scene: Scene, left: float) -> Samples:
-    """Samples at the blocks from x = left on."""
-    positions = scene.dx * np.arange(round(left / scene.dx), round(REACH * scene.duration / scene.dx))
-    return Samples(np.linspace(0.0, scene.duration, TIMES), positions)
+def _lattice(boundary, prestress, duration, dx, gamma, ratio, release, left, quantities) -> np.ndarray:
+    """Readings of a lattice run, with samples at its blocks from x = left on."""
+    scene = Scene(
+        boundary, prestress, duration, dx, gamma, ratio * dx, release, max_step=STEP, order=ORDER
+    )  # fmt: skip
+    positions = dx * np.arange(round(left / dx), round(REACH * duration / dx))
+    return lattice_values(simulate(scene, Samples(np.linspace(0.0, duration, TIMES), positions)), quantities)
 
 
-def _stress(settings: Mapping) -> pd.DataFrame:
+def _right_panel(readings: pd.DataFrame) -> pd.DataFrame:
     """The largest velocity of the right panel: half the integral of tau in the limit, whatever the damping ratio."""
-    readings = readings_of(settings["published"], "space_time_stress")
-    readings = readings[readings["quantity"] == "largest_velocity"]
-    right = settings["stress"]
-    profile = Prestress(right["left"], 0.0, right["width"])
     parts = []
-    for release in RELEASES:
-        for ratio in right["damping_ratios"]:
-            crack, dx = ArrestingCrack(profile, ratio, release), settings["beta"] / ratio
-            scene = Scene(
-                "stress", profile, right["duration"], dx, 0.0, ratio * dx, release, max_step=STEP, order=ORDER
-            )
-            run = simulate(scene, _every_block(scene, crack.balance_position))
-            found = lattice_values(run, ["largest_velocity"])[0]
-            rows = readings.assign(
-                part="stress", release=release, damping_ratio=ratio, dx=dx, left=profile.left, width=profile.width,
-                exact=crack.peak_velocity, correction=found - crack.peak_velocity,
-                pull=(found - readings["drawn"]) / readings["reading_error"],
-            )  # fmt: skip
-            parts.append(rows)
+    for release, ratio in product(RELEASES, RIGHT_RATIOS):
+        crack, dx = ArrestingCrack(RIGHT_PANEL, ratio, release), BETA / ratio
+        (found,) = _lattice(
+            "stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, ratio, release, crack.balance_position,
+            ["largest_velocity"],
+        )  # fmt: skip
+        rows = readings.assign(
+            part="stress", release=release, damping_ratio=ratio, dx=dx, left=RIGHT_PANEL.left, width=RIGHT_PANEL.width,
+            exact=crack.peak_velocity, correction=found - crack.peak_velocity,
+            pull=(found - readings["drawn"]) / readings["reading_error"],
+        )  # fmt: skip
+        parts.append(rows)
     return pd.concat(parts)
 
 
-def _arrows(settings: Mapping, best: Mapping) -> Iterator[dict]:
+def _arrows(best: Mapping) -> Iterator[dict]:
     """Where the drawn arrows end; they have no reading error and do not enter the fit."""
-    tau0, gamma, drawn = best["tau0"], best["gamma"], settings["arrows"]
-    rupture = Rupture(Prestress(tau0, tau0), gamma, best["damping_ratio"], best["release"], settings["end"])
+    tau0, gamma = best["tau0"], best["gamma"]
+    rupture = Rupture(Prestress(tau0, tau0), gamma, best["damping_ratio"], best["release"], END)
     time, length = paper_transition_displacement(tau0, gamma)
-    left, right = rupture.fronts_at(drawn["time"])
-    profile = Prestress(settings["stress"]["left"], 0.0, settings["stress"]["width"])
-    crack = ArrestingCrack(profile, best["damping_ratio"], best["release"])
-    # The left front never arrives: how much of its way it has made at the arrow.
-    late = drawn["stress_time"]
-    share = root_between(lambda s: crack.share_time(s) - late, 0.5, 0.999, xtol=1e-9)
-    for name, shown, estimate, exact in (
-        ("time", drawn["time"], time, rupture.transition_time),
-        ("length", drawn["length"], length, rupture.transition_length),
-        ("length_at_drawn_time", drawn["length"], np.nan, right - left),
+    left, right = rupture.fronts_at(ARROWS["time"])
+    crack = ArrestingCrack(RIGHT_PANEL, best["damping_ratio"], best["release"])
+    # The left front never arrives: which fraction of its way it has made at the arrow.
+    late = ARROWS["stress_time"]
+    fraction = root_between(lambda part: crack.share_time(part) - late, 0.5, 0.999, xtol=1e-9)
+    for name, drawn, estimate, exact in (
+        ("time", ARROWS["time"], time, rupture.transition_time),
+        ("length", ARROWS["length"], length, rupture.transition_length),
+        ("length_at_drawn_time", ARROWS["length"], np.nan, right - left),
         ("stress_time", late, -crack.balance_position, np.nan),
-        ("stress_share", 1.0, np.nan, share),
+        ("stress_share", 1.0, np.nan, fraction),
     ):
-        yield {"part": "arrow", "reading": name, "drawn": shown, "paper": estimate, "exact": exact}
+        yield {"part": "arrow", "reading": name, "drawn": drawn, "paper": estimate, "exact": exact}
