@@ -29,8 +29,9 @@ def test_lattices_tend_to_the_exact_depth(table):
     assert 0.85 < np.median(orders) < 1.15
 
 
-def test_a_barrier_is_passed_if_and_only_if_it_is_shorter(table):
-    rows = table[table["part"] == "passing"]
+def test_a_barrier_is_passed_if_and_only_if_it_is_shorter(study):
+    rows = study("barriers")
+    rows = rows[rows["part"] == "passing"]
     assert (rows["length"] < 1.0).sum() == (rows["length"] > 1.0).sum() >= 24
     assert ((rows["measured"] == 1.0) == (rows["length"] < 1.0)).all()
 

@@ -7,72 +7,50 @@ import pandas as pd
 import pytest
 import tolerances as tol
 
-from slippulse.studies.accuracy_cost import JUDGED, QUANTITIES, dominating
+pytestmark = pytest.mark.slow
+
+# By which one setting is better than another. The energy balance is a check, not a result, and the arrest is never
+# reached in the continuum.
+JUDGED = ["front_speed", "peak_velocity", "width", "final_slip", "transition_time", "share_time"]
+# Errors, and work, this close to each other are equal, since what the spacing sets does not depend on the step; so are
+# errors below the second.
+EQUAL, NEGLIGIBLE = 1.1, 1e-5
 
 
 @pytest.fixture(scope="module")
-def trade(study) -> pd.DataFrame:
-    table = study("accuracy_cost")
+def table(study) -> pd.DataFrame:
+    return study("accuracy_cost")
+
+
+@pytest.fixture(scope="module")
+def trade(table) -> pd.DataFrame:
     return table[table["part"] == "trade"]
 
 
-def setting(work: float, **errors) -> dict:
-    """One row of a made-up trade, every error a thousandth unless said."""
-    return (
-        {"scheme": "localised", "order": 4, "step": 0.5, "dx": 0.01, "work": work}
-        | dict.fromkeys(QUANTITIES, 1e-3)
-        | errors
+@pytest.fixture(scope="module")
+def locking(table) -> pd.DataFrame:
+    return table[table["part"] == "locking"].set_index("scheme")
+
+
+@pytest.mark.parametrize("preset", ["draft", "paper", "reference"])
+def test_no_setting_is_cheaper_and_better_than_a_preset(trade, preset):
+    """Nowhere less accurate and somewhere more."""
+    (own,) = trade[trade["preset"] == preset].index
+    cheaper = trade[(trade["scheme"] != "continuum") & (EQUAL * trade["work"] <= trade["work"][own])]
+    errors = cheaper[JUDGED].clip(lower=NEGLIGIBLE) / trade.loc[own, JUDGED].astype(float).clip(
+        lower=NEGLIGIBLE
     )
+    better = (errors <= EQUAL).all(axis=1) & (EQUAL * errors < 1.0).any(axis=1)
+    assert len(cheaper) >= 10 and not better.any(), cheaper[better].to_string()
 
 
-@pytest.mark.parametrize(
-    ("other", "dominates"),
-    [
-        (setting(0.5, front_speed=1e-4), True),
-        (setting(2.0, front_speed=1e-4), False),
-        (setting(0.5), False),
-        (setting(0.5, front_speed=1e-4, width=2e-3), False),
-        (setting(0.5, front_speed=1e-4, width=1.05e-3), True),
-        (setting(0.5, front_speed=1e-4, width=np.nan), False),
-        (setting(0.5, front_speed=1e-4, energy=1.0), True),
-    ],
-)
-def test_what_dominates_a_preset(other, dominates):
-    rows = pd.DataFrame([setting(1.0), other])
-    assert bool(dominating(rows, 0)) is dominates
-    assert "energy" not in JUDGED
-
-
-@pytest.mark.slow
-def test_every_preset_is_on_the_curve_and_compared(trade, config):
-    presets = trade[trade["preset"].notna()]
-    assert set(presets["preset"]) == set(config["presets"])
-    # Recomputed from the table: the check names the cheapest better setting, or none.
-    for index in presets.index:
-        found = dominating(trade, index)
-        assert found == (
-            presets["dominated_by"][index] if isinstance(presets["dominated_by"][index], str) else ""
-        )
-
-
-@pytest.mark.parametrize("preset", ["draft", "paper"])
-@pytest.mark.slow
-def test_no_measured_setting_is_cheaper_and_better_than_a_preset(trade, preset):
-    (row,) = trade[trade["preset"] == preset].itertuples()
-    assert not isinstance(row.dominated_by, str), row.dominated_by
-
-
-@pytest.mark.slow
 def test_front_speed_is_set_by_the_order(trade):
     """At one spacing and step, each two orders buy at least a factor of four."""
-    rows = trade[(trade["scheme"] == "localised") & (trade["dx"] == 0.01) & (trade["step"] == 0.5)].set_index(
-        "order"
-    )
-    assert rows["front_speed"][4] > 4.0 * rows["front_speed"][6]
-    assert rows["front_speed"][3] > 4.0 * rows["front_speed"][5]
+    rows = trade[(trade["scheme"] == "localised") & (trade["dx"] == 0.01) & (trade["step"] == 0.5)]
+    speed = rows.set_index("order")["front_speed"]
+    assert speed[4] > 4.0 * speed[6] and speed[3] > 4.0 * speed[5]
 
 
-@pytest.mark.slow
 def test_transitions_are_set_by_the_spacing(trade):
     """First order in dx, whatever the step."""
     rows = trade[(trade["order"] == 8) & (trade["step"] == 0.5)].sort_values("dx")
@@ -80,8 +58,7 @@ def test_transitions_are_set_by_the_spacing(trade):
     assert np.all(np.abs(np.log2(ratio) - 1.0) < tol.ORDER_BAND)
 
 
-@pytest.mark.slow
-def test_the_exact_solution_is_on_the_curve(trade):
+def test_the_exact_solution_is_beside_the_lattices(trade):
     """Fronts and sticks owe nothing to the spacing; where a front stands is read at its multiples."""
     (row,) = trade[trade["scheme"] == "continuum"].itertuples()
     for name in ("front_speed", "peak_velocity", "width", "final_slip", "transition_time"):
@@ -89,7 +66,6 @@ def test_the_exact_solution_is_on_the_curve(trade):
     assert row.arrest_position < 2.0 * row.dx and np.isnan(row.work)
 
 
-@pytest.mark.slow
 def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):
     """Halving its step makes the front speed worse as often as better."""
     rows = trade[trade["scheme"] == "fixed_step"].sort_values("step", ascending=False)
@@ -97,17 +73,11 @@ def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):
     assert rows["front_speed"].min() > 5e-4
 
 
-@pytest.mark.slow
-def test_the_textbook_front_locks_on_whole_steps_a_block(study):
-    table = study("accuracy_cost")
-    rows = table[(table["part"] == "locking") & (table["scheme"] == "fixed_step") & (table["step"] > 0.72)]
+def test_the_textbook_front_locks_on_whole_steps_a_block_and_the_localised_does_not(locking):
+    fixed = locking.loc["fixed_step"]
+    rows = fixed[fixed["step"] > 0.72]
     assert len(rows) > 10
     assert np.allclose(rows["front_speed"] * rows["step"], 1.0, atol=tol.LOCKED)
     assert np.ptp(rows["front_speed"]) > 0.2
-
-
-@pytest.mark.slow
-def test_the_localised_front_does_not(study):
-    table = study("accuracy_cost")
-    rows = table[(table["part"] == "locking") & (table["scheme"] == "localised")]
-    assert rows["front_speed"].to_numpy() == pytest.approx(rows["exact"].to_numpy(), rel=tol.FRONT_SPEED)
+    local = locking.loc["localised"]
+    assert local["front_speed"].to_numpy() == pytest.approx(local["exact"].to_numpy(), rel=tol.FRONT_SPEED)

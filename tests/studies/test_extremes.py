@@ -8,7 +8,7 @@ import pytest
 
 from slippulse.report.accuracy import edges
 from slippulse.simulation.simulate import UnstableRun
-from slippulse.studies.extremes import Edge, Found, row
+from slippulse.studies import extremes
 
 # Each family, its number of edges, and the value at its last edge.
 FAMILIES = {
@@ -21,33 +21,32 @@ FAMILIES = {
 }  # fmt: skip
 
 
-def judged(found) -> dict:
-    """Row of an edge whose run gives, or raises, this; tolerance one per cent."""
+@pytest.mark.parametrize(
+    ("expected", "found", "verdict"),
+    [
+        (2.0, (2.01, "", 1), "right"),
+        (2.0, (2.03, "", 1), "WRONG WITHOUT A FLAG"),
+        (2.0, (2.03, "energy", 1), "flagged"),
+        (math.nan, (2.0, "", 1), "WRONG WITHOUT A FLAG"),
+        (2.0, (math.nan, "", 1), "no number"),
+        (2.0, (math.inf, "", 1), "WRONG WITHOUT A FLAG"),
+        (0.0, (0.005, "", 1), "right"),
+        (0.0, (0.02, "", 1), "WRONG WITHOUT A FLAG"),
+        (2.0, ValueError("dx: -1; allowed: > 0"), "refused"),
+        (2.0, UnstableRun("at t = 1"), "stopped"),
+    ],
+)
+def test_the_verdict_is_computed(monkeypatch, expected, found, verdict):
+    """Tolerance one per cent."""
 
-    def run() -> Found:
+    def measured(edge, window):
         if isinstance(found, Exception):
             raise found
         return found
 
-    return row(Edge("family", "value", "quantity", "right", run, 0.01))
-
-
-@pytest.mark.parametrize(
-    ("found", "verdict"),
-    [
-        (Found(2.0, 2.01), "right"),
-        (Found(2.0, 2.03), "WRONG WITHOUT A FLAG"),
-        (Found(2.0, 2.03, "energy"), "flagged"),
-        (Found(math.nan, 2.0), "WRONG WITHOUT A FLAG"),
-        (Found(2.0, math.nan), "no number"),
-        (Found(0.0, 0.005), "right"),
-        (Found(0.0, 0.02), "WRONG WITHOUT A FLAG"),
-        (ValueError("dx: -1; allowed: > 0"), "refused"),
-        (UnstableRun("at t = 1"), "stopped"),
-    ],
-)
-def test_the_verdict_is_computed(found, verdict):
-    assert judged(found)["verdict"] == verdict
+    monkeypatch.setattr(extremes, "measured", measured)
+    edge = extremes.Edge("family", "value", "front speed", "right", expected, {})
+    assert extremes.row(edge, 0.3)["verdict"] == verdict
 
 
 def test_every_edge_ends_as_it_should(study):

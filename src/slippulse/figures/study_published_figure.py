@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import matplotlib
 import numpy as np
 import pandas as pd
-import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from ..claims.inference import curve, likely
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
-# What is drawn: data, measured numbers and studies by name, and keys of the configuration.
 NEEDS = {
     "studies": ["published_figure"],
     "settings": ["simulations.space_time_displacement", "model.damping_ratio"],
@@ -22,25 +20,19 @@ NEEDS = {
 
 LOOKS = {"total": (BLUE, "o", "total force"), "elastic": (ORANGE, "s", "elastic stress")}
 LEVELS = (0.68, 0.95)
-# Points kept of each curve.
-KEPT = 161
+# Every how many points of each curve are kept.
+KEPT = 5
 NAMES = {
-    "front_speed": "front slope",
-    "intercept": "intercept",
-    "centre_stick": "centre stops",
+    "front_speed": "front slope", "intercept": "intercept", "centre_stick": "centre stops",
     "velocity_displacement": r"largest $\dot u$",
-}
+}  # fmt: skip
 
 
-def table(
-    data: Mapping[str, xr.Dataset], measured: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The study with smooth curves of the best trials.
 
     Parameters
     ----------
-    data : not used
-    measured : published_figure
     settings : simulations (space_time_displacement) and model (damping_ratio): the scene of our space-time figure
 
     Returns
@@ -49,41 +41,31 @@ def table(
     chi2) and part "best" (one row a reading: pull, with the parameters that fit best); part "ours" (the scene of our
     figure: damping_ratio, tau0, gamma)
     """
-    study = measured["published_figure"]
-    parts = [study]
+    study = tables["published_figure"]
+    parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
     for release, profile in study[study["part"] == "profile"].groupby("release", sort=False):
         line = curve(profile)
-        best = line.loc[line["chi2"].idxmin()]
-        names = ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
-        readings = profile["reading"].drop_duplicates()
-        thin = line.iloc[:: len(line) // (KEPT - 1)]
-        parts.append(thin[[*names, "tau0_error", "gamma_error"]].assign(part="curve", release=release))
+        best, readings = line.loc[line["chi2"].idxmin()], profile["reading"].drop_duplicates()
+        rows = pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)})
         parts.append(
-            pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)}).assign(
-                part="best", release=release, **{name: best[name] for name in names}
-            )
+            line[::KEPT][[*names, "tau0_error", "gamma_error"]].assign(part="curve", release=release)
         )
+        parts.append(rows.assign(part="best", release=release, **best[names]))
     scene = settings["simulations"]["space_time_displacement"]
-    ours = {
-        "damping_ratio": settings["model"]["damping_ratio"],
-        "tau0": scene["left"][0],
-        "gamma": scene["gamma"][0],
-    }
-    parts.append(pd.DataFrame([{"part": "ours", **ours}]))
-    return pd.concat(parts, ignore_index=True)
+    ours = {"tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
+    return pd.concat([*parts, pd.DataFrame([{"part": "ours", **ours}])], ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Above: chi-square and regions over the damping ratio. Below: what is left of each reading, the right panel."""
+    """Above: chi-square and regions over the damping ratio. Below: what is left of each reading."""
     figure = new_figure(PAGE, 4.7)
-    axes = figure.subplot_mosaic("abc;ddE", height_ratios=(1.0, 0.9))
+    axes = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.8))
     _draw_chi2(axes["a"], table)
     _draw_region(axes["b"], table, "tau0", r"pre-stress $\tau_0$")
     _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\gamma$")
-    _draw_pulls(axes["d"], table)
-    _draw_right_panel(axes["E"], table[table["part"] == "stress"])
-    for name, letter in zip("abcdE", "abcde", strict=True):
-        panel_letter(axes[name], letter)
+    _draw_pulls(axes["d"], table[table["part"] == "best"])
+    for name in "abcd":
+        panel_letter(axes[name], name)
     return figure
 
 
@@ -92,13 +74,13 @@ def _curves(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
     return [(release, rows[rows["release"] == release]) for release in LOOKS]
 
 
-def _ratio_axis(axes) -> None:
+def _ratio_axis(axes: Axes) -> None:
     axes.set(xscale="log", xlabel=r"damping ratio $b$")
     axes.set_xticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-def _draw_chi2(axes, table: pd.DataFrame) -> None:
+def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
     """Smallest chi-square over the damping ratio, as far as a fit is accepted."""
     best = table[table["part"] == "best"]
     dof = best["reading"].nunique() - 3
@@ -130,7 +112,7 @@ def _draw_chi2(axes, table: pd.DataFrame) -> None:
     axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
 
 
-def _draw_region(axes, table: pd.DataFrame, name: str, label: str) -> None:
+def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None:
     """The region of the damping ratio and another parameter, the third being what fits best."""
     for release, line in _curves(table):
         colour, marker, _ = LOOKS[release]
@@ -157,49 +139,15 @@ def _draw_region(axes, table: pd.DataFrame, name: str, label: str) -> None:
     axes.set_ylabel(label)
 
 
-def _draw_pulls(axes, table: pd.DataFrame) -> None:
-    readings = table.loc[table["part"] == "best", "reading"].drop_duplicates().tolist()
+def _draw_pulls(axes: Axes, best: pd.DataFrame) -> None:
+    """What the best fits leave of each reading, in units of its error."""
     axes.axhspan(-1.0, 1.0, color="0.92")
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     for release, shift in zip(LOOKS, (-0.12, 0.12), strict=True):
         colour, marker, label = LOOKS[release]
-        rows = (
-            table[(table["part"] == "best") & (table["release"] == release)]
-            .set_index("reading")
-            .loc[readings]
-        )
-        axes.plot(
-            np.arange(len(readings)) + shift, rows["pull"], marker, color=colour, label=label, gid=release,
-        )  # fmt: skip
-    labels = [NAMES.get(name, _edge(name)) for name in readings]
-    axes.set_xticks(np.arange(len(readings)), labels, rotation=35, ha="right", rotation_mode="anchor")
+        rows = best[best["release"] == release]
+        axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label, gid=release)
+    labels = [NAMES.get(name, rf"edge, $t = {name.rpartition('_')[2]}$") for name in rows["reading"]]
+    axes.set_xticks(np.arange(len(labels)), labels, rotation=35, ha="right", rotation_mode="anchor")
     axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
     axes.legend(title="released by", loc="upper right", ncols=2)
-
-
-def _edge(name: str) -> str:
-    return rf"edge, $t = {name.rpartition('_')[2]}$"
-
-
-def _draw_right_panel(axes, rows: pd.DataFrame) -> None:
-    """The largest velocity without leaf springs hardly depends on the damping ratio or the rule."""
-    first = rows.iloc[0]
-    axes.axhspan(
-        first["drawn"] - first["reading_error"], first["drawn"] + first["reading_error"], color="0.88", label="drawn"
-    )  # fmt: skip
-    axes.axhline(first["exact"], color=GREEN, label="exact, any $b$")
-    for release, (colour, marker, label) in LOOKS.items():
-        line = rows[rows["release"] == release].sort_values("damping_ratio")
-        axes.plot(
-            line["damping_ratio"],
-            line["exact"] + line["correction"],
-            marker,
-            color=colour,
-            label=f"lattice, {label}",
-        )
-    axes.set(ylim=(first["drawn"] - 0.022, first["drawn"] + 0.012), ylabel=r"largest $\dot u$")
-    axes.set_title(r"$\Gamma = 0$", loc="right")
-    _ratio_axis(axes)
-    axes.set_xlim(0.04, 0.25)
-    axes.yaxis.set_major_locator(matplotlib.ticker.MultipleLocator(0.01))
-    axes.legend(loc="lower left", fontsize=7.0, labelspacing=0.3)

@@ -17,7 +17,6 @@ from ..claims.reading import (
     predicted_text,
 )
 from ..data.numerals import number, percent, setting, with_uncertainty
-from ..studies.outcomes import FLAGGED
 from .texts import ERRATUM
 
 # Wide enough that pandoc takes the dashes as relative widths.
@@ -276,7 +275,7 @@ def edges(study: pd.DataFrame) -> str:
     for row in study.to_dict("records"):
         outcome = str(row["verdict"])
         # Behind a flag its name, which is the first word of the message.
-        if outcome == FLAGGED:
+        if outcome == "flagged":
             outcome += ": " + str(row["message"]).partition(",")[0].replace("_", " ")
         numbers = ["" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance")]
         rows.append([row["family"], plain(row["value"]), plain(row["quantity"]), *numbers, outcome])

@@ -1,4 +1,4 @@
-"""Error against cost: what each scheme, order, step and spacing buys, and whether a preset could be had cheaper.
+"""Error against cost: what each scheme, order, step and spacing buys, the presets among them.
 
 Cost is counted, not timed: passes of the stencil over a block do not depend on the machine. The exact solution stands
 beside the lattices, sampled at the spacing of the textbook scheme.
@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -46,12 +48,6 @@ LOCKING_STEPS, EVERY = np.linspace(0.1, 0.98, 67), 4
 QUANTITIES = (
     "front_speed", "peak_velocity", "width", "final_slip", "transition_time", "share_time", "arrest_position", "energy",
 )  # fmt: skip
-# By which one setting is better than another. The energy balance is a check, not a result, and the arrest is never
-# reached in the continuum.
-JUDGED = ("front_speed", "peak_velocity", "width", "final_slip", "transition_time", "share_time")
-# Errors, and work, this close to each other are equal, since what the spacing sets does not depend on the step; so are
-# errors below the second.
-EQUAL, NEGLIGIBLE = 1.1, 1e-5
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -64,8 +60,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     Returns
     -------
     rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
-    passes over one block), block_updates, one error a quantity, and for presets `dominated_by`; rows of part
-    "locking": scheme, step, front_speed, exact
+    passes over one block), block_updates and one error a quantity; rows of part "locking": scheme, step,
+    front_speed, exact
 
     Source: exact speed, pulse and transitions of `slippulse.theory`, all in the continuum limit at fixed beta/dx.
     """
@@ -77,16 +73,21 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     ladder += [("localised", order, step, dx) for dx, order, step in product(SPACINGS, ORDERS, STEPS)]
     ladder += [("continuum", 1, 1.0, TEXTBOOK_SPACING)]
     ladder += [setting for setting in presets if setting not in ladder]
-    trade = pd.DataFrame(
-        [
-            dict(zip(("scheme", "order", "step", "dx"), setting, strict=True))
-            | errors(*setting, window)
-            | {"preset": presets.get(setting, "")}
-            for setting in ladder
-        ]
-    )
-    trade["dominated_by"] = [dominating(trade, i) if trade["preset"][i] else "" for i in trade.index]
-    return pd.concat([trade.assign(part="trade"), locking(window).assign(part="locking")], ignore_index=True)
+    trade = pd.DataFrame(ladder, columns=["scheme", "order", "step", "dx"])
+    trade = trade.join(pd.DataFrame([errors(*setting, window) for setting in ladder]))
+    trade = trade.assign(preset=[presets.get(setting, "") for setting in ladder], part="trade")
+    return pd.concat([trade, locking(window).assign(part="locking")], ignore_index=True)
+
+
+# The same for every setting.
+transition_of = cache(exact_transition_displacement)
+
+
+@cache
+def crack_of(ratio: float) -> tuple[float, float]:
+    """When the left front has covered the fraction of its way, and that way."""
+    crack = ArrestingCrack(Prestress(NEGATIVE_LEVEL, 0.0), ratio)
+    return crack.share_time(FRACTION), abs(crack.balance_position)
 
 
 def errors(scheme: str, order: int, step: float, dx: float, window: float) -> dict[str, float]:
@@ -96,27 +97,20 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
     where its left front stands still. The step is cut where it would not be stable, as the pipeline does.
     """
 
-    def scene(
-        boundary: str, profile: Prestress, duration: float, dx: float, gamma: float, ratio: float
-    ) -> Scene:
-        # The textbook scheme and the exact solution have no order to choose.
-        known = max(order, 3)
-        bound = math.inf if scheme == "continuum" else largest_step(scheme, known, ratio, gamma * dx**2)
-        return Scene(
-            boundary, profile, duration, dx, gamma, ratio * dx, scheme=scheme, order=known,
-            max_step=min(step, MARGIN * bound),
-        )  # fmt: skip
+    # The textbook scheme and the exact solution have no order to choose.
+    known = max(order, 3)
 
-    pulse = Prestress(LEVEL, LEVEL)
-    found = [
-        pulse_errors(scene("displacement", pulse, DURATION, dx, GAMMA, ratio), ratio, window)
-        for ratio in DAMPING_RATIOS
-    ]
-    profile, ratio = Prestress(NEGATIVE_LEVEL, 0.0), max(DAMPING_RATIOS)
-    crack = ArrestingCrack(profile, ratio)
-    time = crack.share_time(FRACTION)
-    of = scene("stress", profile, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, ratio)
-    found.append(crack_errors(of, time, abs(crack.balance_position)))
+    def scene(profile: Prestress, duration: float, dx: float, gamma: float, ratio: float) -> Scene:
+        boundary = "displacement" if gamma > 0.0 else "stress"
+        bound = math.inf if scheme == "continuum" else largest_step(scheme, known, ratio, gamma * dx**2)
+        of = Scene(boundary, profile, duration, dx, gamma, ratio * dx, scheme=scheme, order=known)
+        return replace(of, max_step=min(step, MARGIN * bound))
+
+    even, uneven = Prestress(LEVEL, LEVEL), Prestress(NEGATIVE_LEVEL, 0.0)
+    found = [pulse_errors(scene(even, DURATION, dx, GAMMA, b), b, window) for b in DAMPING_RATIOS]
+    time, distance = crack_of(max(DAMPING_RATIOS))
+    of = scene(uneven, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
+    found.append(crack_errors(of, time, distance))
     out = {name: float(np.max([entry[name] for entry in found if name in entry])) for name in QUANTITIES}
     return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
 
@@ -125,7 +119,7 @@ def pulse_errors(of: Scene, ratio: float, window: float) -> dict[str, float]:
     """Relative errors of the pulse and of T_trans, and the work."""
     run = simulate(of)
     pulse, speed = leading_pulse(run, window), float(exact_speed(LEVEL, ratio))
-    transition = exact_transition_displacement(of.prestress, GAMMA, ratio)
+    transition = transition_of(of.prestress, GAMMA, ratio)
     # At fixed beta/dx damping acts at the front alone in the continuum.
     steady = steady_pulse(LEVEL, GAMMA, 0.0 if of.scheme == "continuum" else of.beta, speed)
     return costs(run) | {
@@ -162,31 +156,12 @@ def costs(run: xr.Dataset) -> dict[str, float]:
     }
 
 
-def dominating(trade: pd.DataFrame, index: int) -> str:
-    """A setting of a lattice with less work that is nowhere less accurate and somewhere more; "" when there is none."""
-    own = trade.loc[index]
-    best, least = "", math.inf
-    for other in trade[trade["scheme"] != "continuum"].itertuples():
-        if EQUAL * other.work > own["work"] or other.work >= least:
-            continue
-        pairs = [(max(getattr(other, name), NEGLIGIBLE), max(own[name], NEGLIGIBLE)) for name in JUDGED]
-        nowhere_worse = all(theirs <= EQUAL * ours for theirs, ours in pairs)
-        somewhere_better = any(EQUAL * theirs < ours for theirs, ours in pairs)
-        if nowhere_worse and somewhere_better:
-            best, least = f"order {other.order:g}, step {other.step:g}, dx {other.dx:g}", other.work
-    return best
-
-
 def locking(window: float) -> pd.DataFrame:
     """Front speed against the step, both schemes: a crack without damping or leaf springs, at an irrational speed."""
+    of = Scene("stress", Prestress(LOCKING_LEVEL, LOCKING_LEVEL), LOCKING_DURATION, LOCKING_SPACING)
     rows = []
     for scheme, steps in (("fixed_step", LOCKING_STEPS), ("localised", LOCKING_STEPS[::EVERY])):
         for step in map(float, steps):
-            scene = Scene(
-                "stress", Prestress(LOCKING_LEVEL, LOCKING_LEVEL), LOCKING_DURATION, LOCKING_SPACING, scheme=scheme,
-                max_step=step,
-            )  # fmt: skip
-            rows.append(
-                {"scheme": scheme, "step": step, "front_speed": front_speed(simulate(scene), window)[0]}
-            )
+            speed = front_speed(simulate(replace(of, scheme=scheme, max_step=step)), window)[0]
+            rows.append({"scheme": scheme, "step": step, "front_speed": speed})
     return pd.DataFrame(rows).assign(exact=float(front_speed_undamped(LOCKING_LEVEL)), dx=LOCKING_SPACING)

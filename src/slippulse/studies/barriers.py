@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from functools import lru_cache
+from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
@@ -47,66 +46,48 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Source: `barrier_depth`; lattice runs whose barrier lies where the pulse is steady, by its finite memory.
     """
-    return pd.DataFrame([*_map(), *_lattices()])
-
-
-@lru_cache(maxsize=512)
-def _depth(tau0: float, barrier: float, ratio: float) -> float:
-    """Exact depth at gamma = 1."""
-    return barrier_depth(tau0, barrier, 1.0, ratio)
-
-
-def _map() -> Iterator[dict]:
+    rows, passing = [], []
     for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):
-        yield {
-            "part": "map", "tau0": tau0, "barrier": barrier, "gamma": 1.0, "damping_ratio": ratio,
-            "exact": _depth(tau0, barrier, ratio), "paper": barrier_depth_estimate(tau0, barrier, 1.0),
-        }  # fmt: skip
-
-
-def _lattices() -> Iterator[dict]:
-    """Depths for every pair of levels, then who passes."""
-    passing = []
-    for (row, tau0), (column, barrier), ratio in product(
-        enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS
-    ):
+        point = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": 1.0, "damping_ratio": ratio}
+        exact, estimate = barrier_depth(tau0, barrier, 1.0, ratio), barrier_depth_estimate(tau0, barrier, 1.0)
+        rows.append(point | {"exact": exact, "paper": estimate})
+    for (row, tau0), (column, barrier) in product(enumerate(LEVELS), enumerate(BARRIERS)):
         gamma = GAMMAS[(row + column) % len(GAMMAS)]
-        exact = _depth(tau0, barrier, ratio) / math.sqrt(gamma)
-        pair = {"tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "exact": exact}
-        for dx in SPACINGS:
-            start = edge(tau0, gamma, ratio, dx)
-            depth = reach(tau0, gamma, ratio, dx, ((start, barrier),), exact) - start
-            estimate = barrier_depth_estimate(tau0, barrier, gamma)
-            yield {"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate}
-        start = edge(tau0, gamma, ratio, PASSING_SPACING)
-        for length in LENGTHS:
-            steps = (start, barrier), (start + length * exact, tau0)
-            far = reach(tau0, gamma, ratio, PASSING_SPACING, steps, exact) - start
-            passed = float(far > (length + 0.5) * exact)
-            passing.append(
-                {"part": "passing", **pair, "dx": PASSING_SPACING, "length": length, "measured": passed}
-            )
-    yield from passing
+        estimate = barrier_depth_estimate(tau0, barrier, gamma)
+        for ratio in DAMPING_RATIOS:
+            exact = barrier_depth(tau0, barrier, 1.0, ratio) / math.sqrt(gamma)
+            pair = {"tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "exact": exact}
+            for dx in SPACINGS:
+                depth = entered(tau0, gamma, ratio, dx, exact, ((0.0, barrier),))
+                rows.append({"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate})
+            for length in LENGTHS:
+                steps = ((0.0, barrier), (length * exact, tau0))
+                passed = entered(tau0, gamma, ratio, PASSING_SPACING, exact, steps) > (length + 0.5) * exact
+                passing.append(
+                    {
+                        "part": "passing",
+                        **pair,
+                        "dx": PASSING_SPACING,
+                        "length": length,
+                        "measured": float(passed),
+                    }
+                )
+    return pd.DataFrame(rows + passing)
 
 
-def edge(tau0: float, gamma: float, ratio: float, dx: float) -> float:
-    """Where the barrier begins: between two blocks, and farther than the pulse remembers its nucleation."""
-    speed = float(front_speed(tau0, ratio))
-    memory = steady_pulse(tau0, gamma, 0.0, speed).width / (speed - 1.0)
-    return (math.floor((TAIL * WIDTH + memory) / dx) + 0.5) * dx
-
-
-def reach(
-    tau0: float, gamma: float, ratio: float, dx: float, steps: tuple[tuple[float, float], ...], beyond: float
+def entered(
+    tau0: float, gamma: float, ratio: float, dx: float, exact: float, steps: tuple[tuple[float, float], ...]
 ) -> float:
-    """How far the right front of a lattice comes, half a block beyond the last released one.
+    """How far the right front of a lattice enters a barrier, to half a block beyond the last released one.
 
-    The pre-stress has the steps on both sides; ``beyond`` is about how far the front comes beyond the first.
+    The pre-stress has ``steps``, counted from where the barrier begins, on both sides: between two blocks, and farther
+    out than the pulse remembers its nucleation. ``exact`` is about how far the front comes.
     """
-    mirrored = tuple((-position, level) for position, level in steps)
-    profile = Prestress(tau0, tau0, WIDTH, steps=steps + mirrored)
-    width = steady_pulse(tau0, gamma, 0.0, float(front_speed(tau0, ratio))).width
-    duration = steps[0][0] + CROSSINGS * beyond + width
+    speed = float(front_speed(tau0, ratio))
+    width = steady_pulse(tau0, gamma, 0.0, speed).width
+    start = (math.floor((TAIL * WIDTH + width / (speed - 1.0)) / dx) + 0.5) * dx
+    both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
+    profile, duration = Prestress(tau0, tau0, WIDTH, steps=both), start + CROSSINGS * exact + width
     scene = Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4)
     run = run_scene(scene)
-    return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx
+    return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

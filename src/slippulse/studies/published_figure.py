@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from itertools import product
 
 import numpy as np
 import pandas as pd
 
-from ..claims.inference import inference, readings_of
+from ..claims.inference import readings_of
 from ..model.prestress import Prestress
-from ..model.roots import root_between
 from ..model.samples import Samples
 from ..model.scene import RELEASES, Scene
 from ..predict.published_figure import exact_values, lattice_values
 from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
-from ..theory.transition import paper_transition_displacement
 
 NEEDS = {"settings": ["published"]}
 
@@ -33,8 +31,6 @@ DAMPING_RATIOS = {
 NOTEBOOK = 0.2, "total", 0.05005
 # The right panel: its pre-stress as read off, damping ratios about the best fit, and a duration that covers the panel.
 RIGHT_PANEL, RIGHT_RATIOS, RIGHT_DURATION = Prestress(-0.75, 0.0, 5.0), (0.05, 0.1, 0.2), 30.0
-# Where the arrows end that are drawn for T_trans and L_trans, and for T_trans in the right panel.
-ARROWS = {"time": 4.16, "length": 10.4, "stress_time": 30.9}
 # Lattice: order, step in dx, times at which the largest velocity is looked for, reach of the samples over the duration.
 ORDER, STEP, TIMES, REACH = 8, 1.0, 109, 1.5
 # Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
@@ -53,7 +49,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact) and pull. "profile":
     release, damping_ratio, dx = beta/damping_ratio, and tau0 and gamma that fit best with their errors; "notebook":
     the same at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels
-    and width read off it; "arrow": where the arrows end, the paper's estimate, and the exact value at the best fit
+    and width read off it
 
     Source: `claims.inference`.
     """
@@ -72,7 +68,6 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     _, rows = panel.fitted(*NOTEBOOK, NEAR, FIRST)
     right = readings_of(settings["published"], "space_time_stress")
     parts += [rows.assign(part="notebook"), _right_panel(right[right["quantity"] == "largest_velocity"])]
-    parts.append(pd.DataFrame(_arrows(inference(pd.concat(parts))["best"])))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -96,9 +91,18 @@ class LeftPanel:
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
         tau0, gamma = map(float, trial)
-        return _lattice(
-            "displacement", Prestress(tau0, tau0), END, dx, gamma, ratio, release, 0.0, self.quantities
+        scene = Scene(
+            "displacement",
+            Prestress(tau0, tau0),
+            END,
+            dx,
+            gamma,
+            ratio * dx,
+            release,
+            max_step=STEP,
+            order=ORDER,
         )
+        return _readings(scene, 0.0, self.quantities)
 
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
@@ -126,13 +130,11 @@ class LeftPanel:
         return trial, rows
 
 
-def _lattice(boundary, prestress, duration, dx, gamma, ratio, release, left, quantities) -> np.ndarray:
-    """Readings of a lattice run, with samples at its blocks from x = left on."""
-    scene = Scene(
-        boundary, prestress, duration, dx, gamma, ratio * dx, release, max_step=STEP, order=ORDER
-    )  # fmt: skip
-    positions = dx * np.arange(round(left / dx), round(REACH * duration / dx))
-    return lattice_values(simulate(scene, Samples(np.linspace(0.0, duration, TIMES), positions)), quantities)
+def _readings(scene: Scene, left: float, quantities: Iterable[str]) -> np.ndarray:
+    """Of a lattice run with samples at its blocks from x = left on."""
+    positions = scene.dx * np.arange(round(left / scene.dx), round(REACH * scene.duration / scene.dx))
+    samples = Samples(np.linspace(0.0, scene.duration, TIMES), positions)
+    return lattice_values(simulate(scene, samples), quantities)
 
 
 def _right_panel(readings: pd.DataFrame) -> pd.DataFrame:
@@ -140,10 +142,10 @@ def _right_panel(readings: pd.DataFrame) -> pd.DataFrame:
     parts = []
     for release, ratio in product(RELEASES, RIGHT_RATIOS):
         crack, dx = ArrestingCrack(RIGHT_PANEL, ratio, release), BETA / ratio
-        (found,) = _lattice(
-            "stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, ratio, release, crack.balance_position,
-            ["largest_velocity"],
-        )  # fmt: skip
+        scene = Scene(
+            "stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release, max_step=STEP, order=ORDER
+        )
+        (found,) = _readings(scene, crack.balance_position, ["largest_velocity"])
         rows = readings.assign(
             part="stress", release=release, damping_ratio=ratio, dx=dx, left=RIGHT_PANEL.left, width=RIGHT_PANEL.width,
             exact=crack.peak_velocity, correction=found - crack.peak_velocity,
@@ -151,23 +153,3 @@ def _right_panel(readings: pd.DataFrame) -> pd.DataFrame:
         )  # fmt: skip
         parts.append(rows)
     return pd.concat(parts)
-
-
-def _arrows(best: Mapping) -> Iterator[dict]:
-    """Where the drawn arrows end; they have no reading error and do not enter the fit."""
-    tau0, gamma = best["tau0"], best["gamma"]
-    rupture = Rupture(Prestress(tau0, tau0), gamma, best["damping_ratio"], best["release"], END)
-    time, length = paper_transition_displacement(tau0, gamma)
-    left, right = rupture.fronts_at(ARROWS["time"])
-    crack = ArrestingCrack(RIGHT_PANEL, best["damping_ratio"], best["release"])
-    # The left front never arrives: which fraction of its way it has made at the arrow.
-    late = ARROWS["stress_time"]
-    fraction = root_between(lambda part: crack.share_time(part) - late, 0.5, 0.999, xtol=1e-9)
-    for name, drawn, estimate, exact in (
-        ("time", ARROWS["time"], time, rupture.transition_time),
-        ("length", ARROWS["length"], length, rupture.transition_length),
-        ("length_at_drawn_time", ARROWS["length"], np.nan, right - left),
-        ("stress_time", late, -crack.balance_position, np.nan),
-        ("stress_share", 1.0, np.nan, fraction),
-    ):
-        yield {"part": "arrow", "reading": name, "drawn": drawn, "paper": estimate, "exact": exact}

@@ -1,0 +1,64 @@
+"""A scene costs what slides in it, and nothing else: work a sliding block, bytes a block, and how the work grows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
+from slippulse.solver.lattice import Lattice
+from slippulse.solver.run import run_scene
+
+PULSE = Scene("displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, beta=0.1 * 0.04, max_step=0.5)
+CRACK = Scene("stress", Prestress(0.5, 0.5), 50.0, 0.04, beta=0.1 * 0.04, max_step=0.5, half_lattice=False)
+# Scene, expected block updates a step over the mean number of sliding blocks (1: nothing else is touched, 1/2: half of
+# a symmetric scene), most blocks changed by events over block updates, least blocks of the whole lattice over the
+# sliding ones.
+WORK = {
+    "two pulses, by symmetry": (PULSE, 0.5, 0.3, 15.0),
+    "two pulses, whole lattice": (replace(PULSE, half_lattice=False), 1.0, 0.3, 15.0),
+    "crack, whole lattice": (CRACK, 1.0, 0.05, 1.0),
+    "one pulse, whole lattice": (replace(CRACK, prestress=Prestress(-0.5, 0.0)), 1.0, 0.05, 1.0),
+}
+
+
+@pytest.mark.parametrize("name", WORK)
+def test_only_sliding_blocks_are_updated_and_events_change_few(name):
+    """An event changes as many on a side as the order, for a release and a stick; sliding changes all meanwhile."""
+    scene, expected, most, least = WORK[name]
+    run = run_scene(scene)
+    released, end = np.isfinite(run.release_time), run.numbers["end_time"]
+    stopped = np.where(np.isfinite(run.stick_time), run.stick_time, end)
+    sliding = float(np.sum(stopped[released] - run.release_time[released])) / end
+    updates = run.numbers["block_updates"]
+    assert updates / run.numbers["steps"] / sliding == pytest.approx(expected, rel=tol.WORK)
+    assert 0.0 < run.numbers["event_updates"] < most * updates
+    assert released.sum() > least * sliding
+
+
+@pytest.mark.parametrize(
+    ("changes", "exponent"),
+    [
+        ([{"duration": 50.0 * factor} for factor in (1.0, 2.0, 4.0)], 1.0),
+        ([{"dx": dx, "beta": 0.1 * dx} for dx in (0.04, 0.02, 0.01)], -2.0),
+    ],
+)
+def test_a_pulse_costs_linearly_in_time_and_quadratically_in_spacing(changes, exponent):
+    work = [run_scene(replace(PULSE, **change)).numbers["block_updates"] for change in changes]
+    values = [next(iter(change.values())) for change in changes]
+    assert np.polyfit(np.log(values), np.log(work), 1)[0] == pytest.approx(exponent, abs=tol.EXPONENT)
+
+
+def test_a_block_takes_few_bytes_and_an_order_eight_more():
+    def bytes_a_block(order: int) -> float:
+        lattice = Lattice(replace(PULSE, order=order), None, PULSE.beta)
+        lattice.run(None)
+        arrays = (array.nbytes for array in lattice.arrays() if array.size >= lattice.size)
+        return sum(arrays) / lattice.size
+
+    assert bytes_a_block(4) < 200.0
+    assert bytes_a_block(8) - bytes_a_block(4) == pytest.approx(4 * 8.0, rel=tol.WORK)
