@@ -39,7 +39,11 @@ STUDIED = {
 }
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")}
 # Every rule but those that only name targets.
-RULES = (STEPS - {"__init__", "job", "libraries", "reach", "draw_figure", "run_study"}) | DRAWN | set(STUDIED)
+RULES = (
+    (STEPS - {"__init__", "job", "libraries", "reach", "inputs", "draw_figure", "run_study"})
+    | DRAWN
+    | set(STUDIED)
+)
 # Pages, by the rule that writes them: the template that each begins with.
 PAGE_OF = {
     "draw_scene": "scene.html",

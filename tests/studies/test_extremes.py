@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from slippulse.report.accuracy import edges
+from slippulse.report.tables import edges
 from slippulse.simulation.simulate import UnstableRun
 from slippulse.studies import extremes
 

@@ -84,7 +84,15 @@ def test_no_rule_depends_on_another_file_of_the_sources(seen):
 
 def test_what_computes_depends_on_the_packages_it_is_computed_with(seen):
     """The lock of versions; what only draws or measures does not begin anew with each of them."""
-    computing = {"compile_kernels", "simulate", "study_grid", "write_report", "write_provenance", *STUDIED}
+    computing = {
+        "compile_kernels",
+        "simulate",
+        "predict",
+        "study_grid",
+        "write_report",
+        "write_provenance",
+        *STUDIED,
+    }
     assert {rule for rule, inputs in seen.items() if LOCK in inputs} == computing
 
 

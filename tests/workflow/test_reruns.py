@@ -69,7 +69,15 @@ EDITED = {Path(file).parent: file for file in FILES}.values()
 @pytest.mark.slow
 @pytest.mark.parametrize("file", (*EDITED, LOCK))
 def test_an_edit_runs_what_depends_on_the_file(finished, fed_by, file):
-    computing = {"compile_kernels", "simulate", "study_grid", "write_report", "write_provenance", *STUDIED}
+    computing = {
+        "compile_kernels",
+        "simulate",
+        "predict",
+        "study_grid",
+        "write_report",
+        "write_provenance",
+        *STUDIED,
+    }
     path = finished / file
     before, stat = path.read_bytes(), path.stat()
     try:

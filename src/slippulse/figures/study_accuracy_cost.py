@@ -73,13 +73,13 @@ def _handles(rows: pd.DataFrame) -> list[Line2D]:
     """Legend: colours are orders, sizes steps."""
     spacings = ", ".join(f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique())
     orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
-    dot = {"marker": "o", "linestyle": "none"}
+    dots = [(ORDER_COLOURS[order], 3.6, f"order {order:g}") for order in orders]
+    dots += [(GREY, size, f"step {step:g} dx") for step, size in SIZES.items()]
     return [
         Line2D([], [], color=BLACK, marker="x", linewidth=0.6, label=f"textbook, dx = {spacings}"),
-        *(Line2D([], [], color=ORDER_COLOURS[order], label=f"order {order:g}", **dot) for order in orders),
         *(
-            Line2D([], [], color=GREY, markersize=size, label=f"step {step:g} dx", **dot)
-            for step, size in SIZES.items()
+            Line2D([], [], color=colour, marker="o", linestyle="none", markersize=size, label=label)
+            for colour, size, label in dots
         ),
     ]
 

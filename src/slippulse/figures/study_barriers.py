@@ -63,18 +63,16 @@ def plot(table: pd.DataFrame) -> Figure:
     scale = LogNorm(float(smooth["exact"].min()), float(smooth["exact"].max()))
     ratios = np.sort(runs["damping_ratio"].unique())
     for name, ratio in zip("ab", ratios, strict=True):
-        image = _draw_map(
-            axes[name], *(rows[rows["damping_ratio"] == ratio] for rows in (smooth, finest)), scale
-        )
+        at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (smooth, finest))
+        image = _draw_map(axes[name], at, marked, scale)
         axes[name].set_title(rf"$b = {ratio:g}$", loc="right")
     bar = figure.colorbar(image, ax=[axes["a"], axes["b"]], aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     _few_ticks(bar.ax.yaxis, CONTOURS)
-    damped = [
-        rows[rows["damping_ratio"] == ratios.max()] for rows in (table[table["part"] == "curve"], finest)
-    ]
-    _draw_curves(axes["c"], *damped)
-    axes["c"].set_title(rf"$b = {ratios.max():g}$", loc="right")
+    # At the larger damping ratio, which is the last above.
+    curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
+    _draw_curves(axes["c"], curves, marked)
+    axes["c"].set_title(rf"$b = {ratio:g}$", loc="right")
     _draw_convergence(axes["d"], runs)
     for name in "abcd":
         panel_letter(axes[name], name)
