@@ -22,23 +22,16 @@ def test_numbers_are_the_same_from_the_figures_own_table(drawn):
         assert rows.set_index("reading")["pull"].to_dict() == pytest.approx(study[release]["pulls"])
 
 
-def test_regions_are_drawn_around_the_best_fits(drawn):
+def test_regions_are_drawn_around_the_best_fits_and_curves_as_far_as_accepted(drawn):
     axes = drawn.figure.axes
     for panel, name in zip(axes[1:3], ("tau0", "gamma"), strict=True):
         for release in ("total", "elastic"):
             found = inference(drawn.table)[release]
-            wide = {patch.get_gid(): patch for patch in panel.collections}
-            corners = wide[f"{release} 0.95"].get_paths()[0].vertices
-            inner = wide[f"{release} 0.68"].get_paths()[0].vertices
+            patches = {patch.get_gid(): patch for patch in panel.collections}
+            outer, inner = (patches[f"{release} {level}"].get_paths()[0].vertices for level in (0.95, 0.68))
             low, high = found["regions"][0.95][name]
             # A joint region of two parameters is wider than that of one.
-            assert corners[:, 1].min() < low and corners[:, 1].max() > high
-            assert np.ptp(inner[:, 0]) < np.ptp(corners[:, 0])
+            assert outer[:, 1].min() < low and outer[:, 1].max() > high
+            assert np.ptp(inner[:, 0]) < np.ptp(outer[:, 0])
             assert inner[:, 0].min() < found["damping_ratio"] < inner[:, 0].max()
-
-
-def test_curves_end_where_the_fit_is_no_longer_accepted(drawn):
-    axes = drawn.figure.axes[0]
-    for line in axes.lines:
-        if line.get_gid():
-            assert line.get_ydata().max() <= likely(0.95, 7)
+    assert max(line.get_ydata().max() for line in axes[0].lines if line.get_gid()) <= likely(0.95, 7)
