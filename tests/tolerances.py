@@ -12,6 +12,9 @@ JIT = 1e-11
 CSV_DIGITS = 1e-8
 # Profiles and integrals in closed form against adaptive quadrature asked for 1e-12.
 QUADRATURE = 1e-10
+# The same formula twice, each to rounding in about a hundred operations; a limit at a ratio of 1e-9.
+ALGEBRA = 1e-12
+SOFT_DAMAGE_ZONE = 1e-6
 # A root of a polynomial with coefficients near 1: rounding over the slope at the root.
 ROOT = 1e-12
 # Half of a lattice against the whole, or a scene against its mirror image: sums in another order, over all steps.

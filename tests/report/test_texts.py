@@ -83,7 +83,12 @@ def test_a_gap_in_the_map_is_found(changed, problem):
 def test_every_claim_has_a_text_and_a_shipped_verdict(manuscript, shipped, captions):
     texts = read(manuscript / "claims.yaml")
     for text in texts["claims"].values():
-        assert text["statement"].endswith(".") and text["tolerance"] >= 0.0 and text["reason"] and text["kind"] in KINDS
+        assert (
+            text["statement"].endswith(".")
+            and text["tolerance"] >= 0.0
+            and text["reason"]
+            and text["kind"] in KINDS
+        )
         assert text.get("figure", "fig05_scaling") in captions
     assert list(read(manuscript / "shipped_verdicts.yaml")) == list(texts["claims"])
 

@@ -8,6 +8,8 @@ import xarray as xr
 
 from slippulse.measure.pulses import LeadingPulse
 from slippulse.measure.shape import FAR, far_field, half_width, lattice_noise, sliding_at_once
+from slippulse.model.prestress import Prestress
+from slippulse.model.scene import Scene
 
 PULSE = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0)
 
@@ -70,7 +72,7 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
         {"sample_velocity": (("sample_time", "sample_position"), velocity),
          "sample_slip": (("sample_time", "sample_position"), slip)},
         {"sample_time": times, "sample_position": x},
-        {"width": 1.0, "steps_and_bumps": '{"steps": [], "bumps": []}'},
+        Scene("stress", Prestress(-0.5, 0.0), duration=30.0, dx=0.01).attributes(),
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from slippulse.claims.rules import (
     WORST_FIRST,
     approximate,
     arithmetic,
-    at_shares,
+    at_fractions,
     exact,
     existence,
     qualitative,
@@ -86,7 +86,7 @@ def test_an_estimate_is_judged_by_median_and_exponent(median, exponent, verdict)
     ],
 )
 def test_a_time_without_an_end_is_judged_at_several_shares(shares, last, verdict):
-    assert at_shares(shares, last) == verdict
+    assert at_fractions(shares, last) == verdict
 
 
 @pytest.mark.parametrize(
