@@ -20,7 +20,7 @@ NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MOD
 DRAWN = [pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES]
 # Points, at the width of the journal.
 SMALLEST = 7.0
-UNLABELLED = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone", "study_extremes"}
+UNLABELLED = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone"}
 BOUNDARIES = ("displacement", "stress")
 
 
