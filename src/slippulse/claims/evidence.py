@@ -70,14 +70,6 @@ def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     return [bool(one) if one is not None and one == other else None for one, other in pairs]
 
 
-def counts(decided: Sequence[bool | None]) -> dict[str, int]:
-    """How many runs hold, fail and are undecided."""
-    held, failed = (
-        sum(found is not None and bool(found) is want for found in decided) for want in (True, False)
-    )
-    return {"held": held, "failed": failed, "undecided": len(decided) - held - failed}
-
-
 @dataclass(frozen=True)
 class Evidence:
     """What the ledger is computed from.
@@ -152,10 +144,10 @@ class Evidence:
 
     def studied(self, tables: Sequence[pd.DataFrame], number: Callable[[pd.DataFrame], float]) -> GridStudy:
         """Grid study of a number that is computed from a table, as a median is; of one table, no uncertainty."""
-        values = tuple(number(table) for table in tables)
+        values = [number(table) for table in tables]
         if len(tables) == 1:
             return GridStudy(values[0], values[0], NAN, 0.0)
-        return grid_study(values, tuple(float(table["factor"].dropna().iloc[0]) for table in tables[1:]))
+        return grid_study(values, [float(table["factor"].dropna().iloc[0]) for table in tables[1:]])
 
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
@@ -238,11 +230,18 @@ class Evidence:
         condition : whether it needs one that the paper does not state
         """
         decided = list(decided)
-        found = counts(decided)
-        runs, held, failed, undecided = len(decided), *found.values()
-        verdict = rules.qualitative(held, failed, undecided, condition)
-        contradicting = failed / runs if runs else NAN
-        return Claim(id, verdict, runs, held, undecided, contradicting, {"runs": runs, **found})
+        known = [bool(found) for found in decided if found is not None]
+        runs, held, failed, undecided = (
+            len(decided),
+            sum(known),
+            known.count(False),
+            len(decided) - len(known),
+        )
+        return Claim(
+            id, rules.qualitative(held, failed, undecided, condition),
+            predicted=runs, measured=held, uncertainty=undecided, deviation=failed / runs if runs else NAN,
+            numbers={"runs": runs, "held": held, "failed": failed, "undecided": undecided},
+        )  # fmt: skip
 
     def agreed(
         self,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -70,7 +71,7 @@ def region(curve: pd.DataFrame, level: float) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic")) -> dict:
+def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic")) -> dict[str, Any]:
     """What the figure says of its parameters, under each release rule and over both.
 
     Parameters
@@ -87,7 +88,7 @@ def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic"
     Source: profile likelihood; the readings have independent Gaussian errors.
     """
     profile = table[table["part"] == "profile"]
-    found = {}
+    found: dict[str, dict[str, Any]] = {}
     for release in releases:
         rows = profile[profile["release"] == release]
         names = list(rows["reading"].unique())

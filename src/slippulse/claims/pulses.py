@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import combinations, pairwise
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from . import rules
-from .evidence import Claim, Evidence, Where, agreeing, counts
+from .evidence import Claim, Evidence, Where, agreeing
 
 # What a steady pulse of given pre-stress and elasticity ratio is compared by.
 SIZES = ("pulse_peak_velocity", "pulse_width", "pulse_slip")
@@ -59,11 +59,10 @@ EXACTLY = ("pulse_width", "pulse_acceleration")
 
 def pulse_claims(evidence: Evidence) -> list[Claim]:
     """Every claim of this module."""
-    found = [equation(evidence, id) for id in EQUATIONS]
+    found = [equation(evidence, id) for id in EQUATIONS] + [signed(evidence, id) for id in SIGNED]
     others = (
-        moderate_speed, steady_for_any_prestress, widen, unique, settle, damping_reduces_oscillations,
-        wave_equation, zero_net_stress_change, grows, decays, small_perturbation, steady_only_at_zero,
-        not_unique, set_by_prestress,
+        moderate_speed, steady_for_any_prestress, unique, settle, damping_reduces_oscillations,
+        wave_equation, zero_net_stress_change, steady_only_at_zero, not_unique, set_by_prestress,
     )  # fmt: skip
     return [*found, *(judge(evidence) for judge in others)]
 
@@ -76,7 +75,7 @@ def equation(evidence: Evidence, id: str) -> Claim:
     claim = evidence.exact(id, points, predicted)
     if claim.verdict != "inconclusive" or id not in EXACTLY:
         return claim
-    study = exact_pulses(evidence, *runs, quantity).reindex(points.index)
+    study = exact_pulses(evidence, next(iter(runs)), quantity).reindex(points.index)
     exact = pd.DataFrame({"extrapolated": predicted + study["difference"], "uncertainty": study["change"]})
     entry = evidence.entries[id]
     return replace(
@@ -116,19 +115,6 @@ def steady_for_any_prestress(evidence: Evidence) -> Claim:
         lambda t: (t["slip_variation"] < evidence.tolerance(id)) & (t["regime"] == "pulses, two-way"),
     )
     return evidence.qualitative(id, decided)
-
-
-def widen(evidence: Evidence) -> Claim:
-    """Each step up in the pre-stress makes the pulse wider."""
-    points = evidence.points("any_prestress", "pulse_width").sort_values("left")
-    return evidence.qualitative("pulses_widen_with_prestress", steps_up(points))
-
-
-def steps_up(points: pd.DataFrame) -> list[bool | None]:
-    """Whether each value is above the one before; None within their uncertainties."""
-    rows = pairwise(points[["value", "uncertainty"]].to_numpy(float))
-    steps = [(other[0] - one[0], one[1] + other[1]) for one, other in rows]
-    return [bool(change > 0.0) if abs(change) > blur else None for change, blur in steps]
 
 
 Pairs = list[tuple[pd.Series, pd.Series]]
@@ -234,9 +220,9 @@ def zero_net_stress_change(evidence: Evidence) -> Claim:
         lambda t: (t["beyond"] != 0.0) & (t["strain_left"] > evidence.tolerance(id)),
         lambda t: changes(t) != 0,
     )
-    found = counts(decided)
-    verdict = rules.worst([claim.verdict, rules.qualitative(*found.values())])
-    return replace(claim, verdict=verdict, numbers={**claim.numbers, **found})
+    change = evidence.qualitative(id, decided)
+    verdict = rules.worst([claim.verdict, change.verdict])
+    return replace(claim, verdict=verdict, numbers={**change.numbers, **claim.numbers})
 
 
 def changes(table: pd.DataFrame) -> pd.Series:
@@ -247,35 +233,27 @@ def changes(table: pd.DataFrame) -> pd.Series:
     return signs.where(table["regime"] != "arrested", -1.0).astype(int)
 
 
-def signed(evidence: Evidence, id: str, where: Where, sign: Callable) -> Claim:
-    """Whether pulses change by the sign that each should have, beyond the uncertainty of that."""
-    points = evidence.points("regimes_beyond", CHANGE)
-    points = points[where(points)]
-    sure = points["value"].abs() > points["uncertainty"]
-    decided = evidence.agreed("regimes_beyond", where, lambda t: changes(t) == sign(t))
-    return evidence.qualitative(
-        id, [found if known else None for found, known in zip(decided, sure, strict=True)]
-    )
-
-
-def grows(evidence: Evidence) -> Claim:
-    """Above 0 it grows."""
-    return signed(evidence, "grows_above_zero", lambda t: t["beyond"] > 0.0, lambda t: 1)
-
-
-def decays(evidence: Evidence) -> Claim:
-    """Below 0 it decays."""
-    return signed(evidence, "decays_below_zero", lambda t: t["beyond"] < 0.0, lambda t: -1)
-
-
-def small_perturbation(evidence: Evidence) -> Claim:
-    """The smallest levels change it too."""
-    claim = signed(
-        evidence,
-        "small_perturbation_changes_pulse",
+SIGNED: dict[str, tuple[Where, Callable]] = {
+    "grows_above_zero": (lambda t: t["beyond"] > 0.0, lambda t: 1),
+    "decays_below_zero": (lambda t: t["beyond"] < 0.0, lambda t: -1),
+    "small_perturbation_changes_pulse": (
         lambda t: (t["beyond"] != 0.0) & (t["beyond"].abs() <= SMALL),
         lambda t: np.sign(t["beyond"]),
+    ),
+}
+
+
+def signed(evidence: Evidence, id: str) -> Claim:
+    """Whether pulses change by the sign that each should have, beyond the uncertainty of that."""
+    where, sign = SIGNED[id]
+    points = evidence.points("regimes_beyond", CHANGE, where)
+    sure = points["value"].abs() > points["uncertainty"]
+    decided = evidence.agreed("regimes_beyond", where, lambda t: changes(t) == sign(t))
+    claim = evidence.qualitative(
+        id, [found if known else None for found, known in zip(decided, sure, strict=True)]
     )
+    if id != "small_perturbation_changes_pulse":
+        return claim
     levels = evidence.tables["regimes_beyond"]["beyond"].abs()
     return replace(claim, further={"smallest level": float(levels[levels > 0.0].min())})
 

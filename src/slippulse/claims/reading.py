@@ -89,28 +89,20 @@ class Ledger:
 
     def by_kind(self) -> list[tuple[str, list[str]]]:
         """Of each kind how many claims have each verdict, counted ones and, behind a plus, those that follow."""
-        return [
-            (
-                kind,
-                [
-                    _counted([c for c in self if c.kind == kind and c.verdict == name])
-                    for name in FAILURES_FIRST
-                ],
-            )
-            for kind in KINDS
-            if any(claim.kind == kind for claim in self)
-        ]
+        found: dict[str, list[str]] = {}
+        for kind in KINDS:
+            claims = [claim for claim in self if claim.kind == kind]
+            for name in FAILURES_FIRST if claims else ():
+                counted = [claim.counted for claim in claims if claim.verdict == name]
+                follow = f" + {counted.count(False)}" if False in counted else ""
+                found.setdefault(kind, []).append(f"{sum(counted)}{follow}")
+        return [*found.items()]
 
 
 def _known(what: str, id: str, names: Iterable[str]) -> str:
     if id not in names:
         raise ValueError(f"{what}: {id!r}; allowed: {', '.join(names)}")
     return id
-
-
-def _counted(claims: list[SimpleNamespace]) -> str:
-    counted = sum(claim.counted for claim in claims)
-    return f"{counted} + {len(claims) - counted}" if len(claims) > counted else str(counted)
 
 
 def predicted_text(claim: SimpleNamespace) -> str:
@@ -158,20 +150,41 @@ def compared_text(claim: SimpleNamespace) -> str:
     return f"{text}; exponent {exponent}, tolerance {setting(claim.tolerance_exponent)}"
 
 
-def why_text(claim) -> str:
+def why_text(claim: SimpleNamespace) -> str:
     """One sentence on why a claim is not simply reproduced; empty if it is."""
     if claim.verdict == "reproduced" or claim.why:
         return claim.why
     if claim.verdict == "not testable":
         return "This run leaves no number to judge by."
-    return WHY[claim.kind](claim)
-
-
-def _why_number(claim) -> str:
+    match claim.kind:
+        case "arithmetic":
+            return f"Printed over derived is {number(claim.measured, 4)}."
+        case "reading" if claim.verdict == "inconclusive":
+            return "The best fit is not known."
+        case "reading":
+            least = claim.tolerance if claim.verdict == "reproduced with caveat" else EXCLUDED
+            return f"At the best fit p is {number(claim.deviation, 2)}, below {setting(least)}."
+        case "qualitative" if claim.failed:
+            return f"{claim.failed} of {claim.runs} runs contradict it."
+        case "qualitative" if claim.undecided:
+            return f"In {claim.undecided} of {claim.runs} runs the lattices disagree."
+        case "qualitative":
+            return "It needs a condition that the paper does not state."
     relative = claim.predicted != 0.0
-    scale = abs(claim.predicted) if relative else 1.0
     write = percent if relative else number
-    off, blur, allowed = write(claim.deviation), write(claim.uncertainty / scale), write(claim.tolerance)
+    off, allowed = write(claim.deviation), write(claim.tolerance)
+    blur = write(claim.uncertainty / (abs(claim.predicted) if relative else 1.0))
+    if claim.kind == "approximate":
+        if claim.deviation > claim.tolerance:
+            return f"The median run is off by {off}, where {allowed} is allowed."
+        if claim.exponent is not None and (
+            abs(claim.exponent - 1.0) + claim.exponent_uncertainty > claim.tolerance_exponent
+        ):
+            exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
+            return (
+                f"The exponent is {exponent}, where 1 within {setting(claim.tolerance_exponent)} is allowed."
+            )
+        return f"The median run is off by {off}, and the tolerance of {allowed} lies within the uncertainty."
     if claim.verdict == "not reproduced":
         return f"It is off by {off}, where {allowed} is allowed."
     if claim.verdict == "inconclusive":
@@ -179,47 +192,6 @@ def _why_number(claim) -> str:
     return (
         f"It is off by {off} with an uncertainty of {blur}, so that the tolerance of {allowed} lies within."
     )
-
-
-def _why_estimate(claim) -> str:
-    off, allowed = percent(claim.deviation), percent(claim.tolerance)
-    if claim.deviation > claim.tolerance:
-        return f"The median run is off by {off}, where {allowed} is allowed."
-    if (
-        claim.exponent is not None
-        and abs(claim.exponent - 1.0) + claim.exponent_uncertainty > claim.tolerance_exponent
-    ):
-        exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
-        return f"The exponent is {exponent}, where 1 within {setting(claim.tolerance_exponent)} is allowed."
-    return f"The median run is off by {off}, and the tolerance of {allowed} lies within the uncertainty."
-
-
-def _why_always(claim) -> str:
-    if claim.failed:
-        return f"{claim.failed} of {claim.runs} runs contradict it."
-    if claim.undecided:
-        return f"In {claim.undecided} of {claim.runs} runs the lattices disagree."
-    return "It needs a condition that the paper does not state."
-
-
-def _why_reading(claim) -> str:
-    if claim.verdict == "inconclusive":
-        return "The best fit is not known."
-    least = claim.tolerance if claim.verdict == "reproduced with caveat" else EXCLUDED
-    return f"At the best fit p is {number(claim.deviation, 2)}, below {setting(least)}."
-
-
-def _why_formula(claim) -> str:
-    return f"Printed over derived is {number(claim.measured, 4)}."
-
-
-WHY = {
-    "exact": _why_number,
-    "approximate": _why_estimate,
-    "qualitative": _why_always,
-    "reading": _why_reading,
-    "arithmetic": _why_formula,
-}
 
 
 def evidence_text(claim: SimpleNamespace) -> str:

@@ -104,10 +104,9 @@ def no_weakening(evidence: Evidence) -> Claim:
         "with the displacement held": ("any_prestress", "pulses, two-way"),
         "with the stress held": ("stress_pulses", "pulse, one-way, steady"),
     }
-    held = {
-        case: sum(map(bool, evidence.agreed(name, every, lambda t, regime=regime: t["regime"] == regime)))
-        for case, (name, regime) in cases.items()
-    }
+    held = {}
+    for case, (name, regime) in cases.items():
+        held[case] = sum(map(bool, evidence.agreed(name, every, lambda t: t["regime"] == regime)))  # noqa: B023
     return _shown(evidence, "no_weakening_needed", held)
 
 

@@ -10,7 +10,6 @@ import pandas as pd
 
 from . import rules
 from .evidence import NAN, Claim, Evidence, agreeing, compared
-from .pulses import steps_up
 
 # Fractions of |x_minus| at which a time that has no end is judged.
 FRACTIONS = (0.9, 0.95, 0.99)
@@ -21,13 +20,17 @@ SWEEPS = {
     "stress": ("scaling_stress", ("left", "width")),
 }
 ESTIMATES = {"T_trans": "time", "L_trans": "length"}
+RISING = (
+    ("shorter_transition_low_prestress", "scaling_displacement", "transition_length"),
+    ("pulses_widen_with_prestress", "any_prestress", "pulse_width"),
+)
 
 
 def transition_claims(evidence: Evidence) -> list[Claim]:
     """T_trans and L_trans under both boundary conditions, the position of arrest, and how they depend on what."""
     return [
         *(displacement(evidence, name) for name in ESTIMATES), *(stress(evidence, name) for name in ESTIMATES),
-        diverges(evidence), shorter_at_low_prestress(evidence), arrest_position(evidence),
+        diverges(evidence), arrest_position(evidence), *(rises_with_prestress(evidence, *row) for row in RISING),
         speeds_near_one(evidence), underestimate(evidence),
     ]  # fmt: skip
 
@@ -191,8 +194,11 @@ def line_with_error(rows: pd.DataFrame, quantity: str) -> tuple[float, float]:
     return slope, float(np.sqrt((rest**2).sum() / max(len(x) - 2, 1) / scatter))
 
 
-def shorter_at_low_prestress(evidence: Evidence) -> Claim:
-    """Each step down in the pre-stress shortens L_trans."""
-    points = evidence.points("scaling_displacement", "transition_length")
-    decided = [step for _, rows in points.groupby("gamma") for step in steps_up(rows.sort_values("left"))]
-    return evidence.qualitative("shorter_transition_low_prestress", decided)
+def rises_with_prestress(evidence: Evidence, id: str, sweep: str, quantity: str) -> Claim:
+    """Each step up in the pre-stress, at each gamma, makes a number larger; undecided within the uncertainties."""
+    decided: list[bool | None] = []
+    for _, rows in evidence.points(sweep, quantity).groupby("gamma"):
+        rows = rows.sort_values("left")
+        change, blur = rows["value"].diff()[1:], rows["uncertainty"].rolling(2).sum()[1:]
+        decided += [bool(c > 0.0) if abs(c) > b else None for c, b in zip(change, blur, strict=True)]
+    return evidence.qualitative(id, decided)

@@ -32,7 +32,7 @@ class GridStudy:
     uncertainty: float
 
 
-def grid_study(values: tuple[float, float, float], factors: tuple[float, float]) -> GridStudy:
+def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     """Observed order, extrapolation and uncertainty from values at spacings dx, c_1 dx and c_2 dx.
 
     Parameters
@@ -44,9 +44,7 @@ def grid_study(values: tuple[float, float, float], factors: tuple[float, float])
     """
     finest, middle, coarsest = (float(value) for value in values)
     nan = float("nan")
-    if not np.isfinite(finest):
-        return GridStudy(finest, finest, nan, nan)
-    if not np.isfinite([middle, coarsest]).all():
+    if not np.isfinite([finest, middle, coarsest]).all():
         return GridStudy(finest, finest, nan, nan)
     spread = max(finest, middle, coarsest) - min(finest, middle, coarsest)
     first, second = middle - finest, coarsest - finest
@@ -80,7 +78,7 @@ def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
 
 
 def grid_tables(
-    tables: tuple[pd.DataFrame, ...], factors: tuple[float, float], keys: tuple[str, ...]
+    tables: Sequence[pd.DataFrame], factors: Sequence[float], keys: Sequence[str]
 ) -> pd.DataFrame:
     """A grid study of every measured number of a sweep.
 
@@ -99,7 +97,7 @@ def grid_tables(
     studied = {name: np.column_stack([table[name] for table in tables]) for name in quantities(finest, keys)}
     for index, point in enumerate(finest[list(keys)].to_dict("records")):
         for name, values in studied.items():
-            study = grid_study(tuple(values[index].tolist()), factors)
+            study = grid_study(values[index].tolist(), factors)
             rows.append(
                 {"point": index}
                 | point

@@ -265,10 +265,11 @@ def prestress_from(attributes: Mapping) -> Prestress:
         If one is missing.
     """
     steps, bumps = _steps_and_bumps(attributes["steps_and_bumps"])
-    return Prestress(*(attributes[name] for name in ("left", "right", "width", "peak")), steps, bumps)
+    left, right, width, peak = (attributes[name] for name in ("left", "right", "width", "peak"))
+    return Prestress(left, right, width, peak, steps, bumps)
 
 
-def _steps_and_bumps(text: str) -> tuple[list, list]:
+def _steps_and_bumps(text: str) -> tuple[Any, Any]:
     try:
         more = json.loads(text)
         return more["steps"], more["bumps"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -48,10 +48,10 @@ def predictions(scenes: Sequence[Scene], fraction: float, still: float) -> pd.Da
     Source: `theory`. Numbers of the transition are given for a Gaussian of peak 1 without steps and bumps.
     """
     found = pd.concat([_front_speeds(scenes, side) for side in SIDES], axis=1)
-    rows = [_pulse(*row) for row in zip(scenes, found["exact_front_speed_right"], strict=True)]
-    for row, scene in zip(rows, scenes, strict=True):
-        row |= _displacement(scene) if scene.boundary == "displacement" else _stress(scene, fraction)
-        row["exact_regime"] = _regime(scene, still)
+    rows: list[dict[str, float | str]] = []
+    for scene, speed in zip(scenes, found["exact_front_speed_right"], strict=True):
+        numbers = _displacement(scene) if scene.boundary == "displacement" else _stress(scene, fraction)
+        rows.append({**_pulse(scene, speed), **numbers, "exact_regime": _regime(scene, still)})
     return found.join(pd.DataFrame(rows, index=found.index))
 
 
@@ -76,10 +76,9 @@ def _front_speeds(scenes: Sequence[Scene], side: str) -> pd.DataFrame:
         chosen = outruns & [scene.release == release for scene in scenes]
         if chosen.any():
             pairs, back = np.unique([levels[chosen], ratios[chosen]], axis=1, return_inverse=True)
-            exact[chosen] = front_speed(*pairs, release)[back.ravel()]
-    for i in np.flatnonzero(outruns):
-        scene = scenes[i]
-        if scene.gamma > 0.0 and (ratios[i] == 0.0 or scene.gamma * scene.dx**2 >= COARSE):
+            exact[chosen] = front_speed(pairs[0], pairs[1], release)[back.ravel()]
+    for i, scene in enumerate(scenes):
+        if outruns[i] and scene.gamma > 0.0 and (ratios[i] == 0.0 or scene.gamma * scene.dx**2 >= COARSE):
             lattice[i] = _with_springs(levels[i], scene.gamma, scene.dx, ratios[i], scene.release)
     return pd.DataFrame(out)
 
@@ -163,15 +162,15 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
     crack = _known(lambda: ArrestingCrack(Prestress(left, 0.0), ratio, release))
     if crack is None:
         return {}
-    numbers = {
+    numbers: dict[str, Callable[[], float]] = {
         "exact_largest_velocity": lambda: crack.peak_velocity,
         "exact_half_width": lambda: _half_width(crack),
         "exact_transition_time": lambda: crack.share_time(fraction),
         "exact_transition_length": lambda: crack.share_length(fraction),
     }
     for each in ARRESTS:
-        numbers[f"exact_arrest_time_{100.0 * each:g}"] = lambda each=each: crack.share_time(each)
-        numbers[f"exact_arrest_length_{100.0 * each:g}"] = lambda each=each: crack.share_length(each)
+        numbers[f"exact_arrest_time_{100.0 * each:g}"] = partial(crack.share_time, each)
+        numbers[f"exact_arrest_length_{100.0 * each:g}"] = partial(crack.share_length, each)
     # Very near x_minus the front is held by what theory leaves out.
     found = {name: _known(find) for name, find in numbers.items()}
     return {name: NAN if value is None else value for name, value in found.items()}
