@@ -64,7 +64,7 @@ def random_scenes(count: int) -> list[dict]:
 
 
 def from_python(scene: dict, pulse: dict) -> dict[str, float]:
-    """The same numbers by the library, the pulse at the time and place that the page found."""
+    """The same numbers by the library, the pulse at the time and position that the page found."""
     prestress = Prestress(scene["left"], scene["right"], scene["width"])
     rupture = Rupture(prestress, scene["gamma"], scene["ratio"], scene["release"], 1.001 * pulse["time"])
     return {

@@ -14,7 +14,7 @@ from report.conftest import read
 from slippulse.claims.entries import coverage, problems
 from slippulse.claims.rules import KINDS
 from slippulse.configuration.parameters import parameters
-from slippulse.report.gallery import PLACED, Gallery
+from slippulse.report.gallery import NAMED, Gallery
 from slippulse.report.tables import sticking
 from slippulse.report.texts import ERRATUM, PARTS, Caption, read_captions, read_errata
 
@@ -118,7 +118,7 @@ def test_a_text_that_is_not_whole_is_refused(reader, keys, wrap, where, tmp_path
 
 
 def test_every_figure_has_one_position_and_a_caption(source, captions, project, manuscript):
-    placed = PLACED.findall(source)
+    placed = NAMED.findall(source)
     modules = (project / "src/slippulse/figures").glob("*.py")
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert sorted([*placed, "own_sweep"]) == sorted(captions)

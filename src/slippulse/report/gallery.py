@@ -12,8 +12,8 @@ from .texts import Caption
 
 # The number that a figure has in the paper, in its name.
 OF_PAPER = re.compile(r"fig(\d+)_")
-# How the text places a figure.
-PLACED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
+# How the text includes a figure.
+NAMED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
 # Inches across the pages of the journal, and of the report.
 PAGE = 7.0
 
@@ -28,15 +28,15 @@ class Gallery:
     captions : per name, its texts
     folder : where NAME.pdf and NAME.png are
 
-    An included figure that the text does not place comes after those that it does; one without a caption has its name.
+    A figure that the text does not name comes after those that it does; one without a caption has its name.
     """
 
     def __init__(
         self, included: Sequence[str], text: str, captions: Mapping[str, Caption], folder: str | Path
     ) -> None:
-        placed = PLACED.findall(text)
-        self.unplaced = [name for name in included if name not in placed]
-        self.order = [name for name in placed if name in included] + self.unplaced
+        named = NAMED.findall(text)
+        self.unnamed = [name for name in included if name not in named]
+        self.order = [name for name in named if name in included] + self.unnamed
         self.captions = captions
         self.folder = Path(folder)
 
@@ -54,8 +54,8 @@ class Gallery:
         return f"![{text}]({self.folder / name}){{#{name} width={self._width(name):.0f}% alt='{alt}'}}"
 
     def further(self) -> str:
-        """The figures that the text does not place."""
-        return "\n\n".join(self.figure(name) for name in self.unplaced)
+        """The figures that the text does not name."""
+        return "\n\n".join(self.figure(name) for name in self.unnamed)
 
     def _width(self, name: str) -> float:
         """Width of a figure in per cent of the page: a column of the journal stays one."""

@@ -44,7 +44,7 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
 
 
 def scenes_page(scenes: Mapping[str, str]) -> str:
-    """The list of scenes, beside their pages.
+    """The list of scenes, in the folder of their pages.
 
     Parameters
     ----------

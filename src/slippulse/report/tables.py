@@ -99,7 +99,7 @@ def whole_ledger(ledger: Ledger) -> str:
         ]
         for claim in ledger
     ]
-    head = ["claim (place) `id`", "predicted", "measured", "deviation, tolerance", "verdict", "rests on"]
+    head = ["claim (section) `id`", "predicted", "measured", "deviation, tolerance", "verdict", "rests on"]
     return table(head, rows, [32, 8, 12, 14, 9, 29], "lrrlll")
 
 
@@ -165,13 +165,13 @@ def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping
         for entry in sentences
         if "why_none" not in entry
     ]
-    return table(["place", "what it says", "claims"], rows, [22, 45, 33], "lll")
+    return table(["section", "what it says", "claims"], rows, [22, 45, 33], "lll")
 
 
 def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> str:
     """The errata, their expressions evaluated by ``fill``."""
     rows = [[fill(entry[key]) for key in ERRATUM] for entry in entries]
-    return table(["place", "printed", "right", "what shows it"], rows, [14, 27, 33, 26], "llll")
+    return table(["where", "printed", "right", "what shows it"], rows, [14, 27, 33, 26], "llll")
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:

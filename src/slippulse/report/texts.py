@@ -1,4 +1,4 @@
-"""The texts beside the manuscript: captions and errata, refused where they are not whole."""
+"""The texts of the manuscript: captions and errata, refused where they are not whole."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-ERRATUM = ("place", "printed", "right", "shown")
+ERRATUM = ("where", "printed", "right", "shown")
 
 
 @dataclass(frozen=True)

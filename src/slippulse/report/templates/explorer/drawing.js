@@ -1,6 +1,6 @@
 // Pictures as SVG: axes, curves, and the map of slip velocity as an image between them.
 
-const SHARES = 32;
+const PARTS = 32;
 
 function format(value, digits = 4) {
   if (value === null || !Number.isFinite(value)) return "–";
@@ -8,7 +8,7 @@ function format(value, digits = 4) {
   return (Math.abs(short) >= 1e5 ? short.toExponential() : String(short)).replace("-", "−");
 }
 
-// Round values inside a range, about so many.
+// Round values inside a range, about this many.
 function ticks(low, high, count = 5) {
   const rough = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
@@ -17,17 +17,17 @@ function ticks(low, high, count = 5) {
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, k) => (first + k) * step);
 }
 
-// A picture with axes, as wide as its place on the page so that its letters keep their size.
+// A picture with axes, as wide as the page leaves it so that its letters keep their size.
 class Picture {
-  constructor(element, { x, y, labels, height, top: above = 12, xTicks = ticks(...x), place = (value) => value }) {
+  constructor(element, { x, y, labels, height, top: above = 12, xTicks = ticks(...x), position = (value) => value }) {
     this.element = element;
     this.width = Math.max(element.parentElement.clientWidth - 24, 240);
     this.height = height;
     this.box = { left: 58, right: this.width - 10, top: above, bottom: height - 42 };
     this.inside = [];
     const { left, right, top, bottom } = this.box;
-    const [low, high] = x.map(place);
-    this.x = (value) => left + (right - left) * (place(value) - low) / (high - low);
+    const [low, high] = x.map(position);
+    this.x = (value) => left + (right - left) * (position(value) - low) / (high - low);
     this.y = (value) => bottom - (bottom - top) * (value - y[0]) / (y[1] - y[0]);
     const marks = [
       ...xTicks.map((tick) => `<text x="${this.x(tick)}" y="${bottom + 16}" text-anchor="middle">${format(tick)}</text>`
@@ -87,7 +87,7 @@ class Picture {
   }
 }
 
-// At even positions between the fronts of a time: arrival, end of sliding, and slip velocity at even shares between.
+// At even positions between the fronts of a time: arrival, end of sliding, and slip velocity at even steps between.
 function columns(rupture, end, count = 181) {
   const [low, high] = rupture.fronts(end);
   const half = (count - 1) / 2;
@@ -101,8 +101,8 @@ function columns(rupture, end, count = 181) {
     const start = rupture.arrival(y);
     const stick = rupture.stick(y, end);
     const stop = Math.min(stick, end);
-    const velocity = Array.from({ length: SHARES + 1 }, (_, n) => (
-      n === 0 || stop <= start ? 0 : Math.max(rupture.velocity(y, start + (stop - start) * n / SHARES), 0)));
+    const velocity = Array.from({ length: PARTS + 1 }, (_, n) => (
+      n === 0 || stop <= start ? 0 : Math.max(rupture.velocity(y, start + (stop - start) * n / PARTS), 0)));
     found.push({ y, start, stick, stop, velocity });
   }
   return found;
@@ -119,9 +119,9 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
     for (let n = 0; n < pixels; n++) {
       const time = (n + 0.5) * end / pixels;
       if (time < start - margin || time > stop + margin) continue;
-      const share = SHARES * Math.min(Math.max((time - start) / (stop - start), 0), 0.999);
-      const low = Math.floor(share);
-      const value = velocity[low] + (share - low) * (velocity[low + 1] - velocity[low]);
+      const fraction = PARTS * Math.min(Math.max((time - start) / (stop - start), 0), 0.999);
+      const low = Math.floor(fraction);
+      const value = velocity[low] + (fraction - low) * (velocity[low + 1] - velocity[low]);
       const colour = colours[Math.min(Math.floor(colours.length * value / largest), colours.length - 1)];
       image.data.set([...colour, 255], 4 * ((found.length - 1 - k) * pixels + n));
     }

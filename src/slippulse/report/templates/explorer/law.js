@@ -1,12 +1,12 @@
 // The front law: the speed v of a front into pre-stress tau at b = beta/dx, from a table of ln(tau/(1 - tau)).
 
-// A table of numbers on an even grid, which begins at place 0, between its entries: six of them around the place.
-function between(values, place) {
-  const first = Math.min(Math.max(Math.floor(place) - 2, 0), values.length - 6);
+// A table of numbers on an even grid, which begins at position 0, between its entries: six of them around the position.
+function between(values, position) {
+  const first = Math.min(Math.max(Math.floor(position) - 2, 0), values.length - 6);
   let sum = 0;
   for (let i = 0; i < 6; i++) {
     let weight = 1;
-    for (let j = 0; j < 6; j++) if (j !== i) weight *= (place - first - j) / (i - j);
+    for (let j = 0; j < 6; j++) if (j !== i) weight *= (position - first - j) / (i - j);
     sum += weight * values[first + i];
   }
   return sum;
@@ -24,21 +24,21 @@ function cell(values, target, sign = 1) {
   return low;
 }
 
-// A cubic from the values and slopes at the ends of an interval of a length, at a share of it.
-function hermite(share, length, value0, value1, slope0, slope1) {
-  const rest = 1 - share;
-  return rest * rest * ((1 + 2 * share) * value0 + share * length * slope0)
-    + share * share * ((1 + 2 * rest) * value1 - rest * length * slope1);
+// A cubic from the values and slopes at the ends of an interval of a length, at a fraction of it.
+function hermite(fraction, length, value0, value1, slope0, slope1) {
+  const rest = 1 - fraction;
+  return rest * rest * ((1 + 2 * fraction) * value0 + fraction * length * slope0)
+    + fraction * fraction * ((1 + 2 * rest) * value1 - rest * length * slope1);
 }
 
 // 1/v as a function of 1 - tau (which does not cancel near the peak), at one b under one release rule.
 function frontLaw(table, ratio, release) {
   if (ratio === 0) return (rest) => Math.sqrt(rest * (2 - rest));
-  const place = Math.asinh(ratio / table.ratio.scale) / table.ratio.step;
+  const position = Math.asinh(ratio / table.ratio.scale) / table.ratio.step;
   const count = table[release][0].length;
   const { first, step } = table.excess;
   const level = [];
-  for (let k = 0; k < count; k++) level.push(between(table[release].map((row) => row[k]), place));
+  for (let k = 0; k < count; k++) level.push(between(table[release].map((row) => row[k]), position));
   // d ln(v - 1) / d level at the inner nodes, from five of them.
   const slope = level.map((_, k) => 12 * step
     / (level[k - 2] - 8 * level[k - 1] + 8 * level[k + 1] - level[k + 2]));

@@ -4,7 +4,7 @@ const DATA = JSON.parse(document.getElementById("data").textContent);
 const at = (id) => document.getElementById(id);
 const NAMES = ["beta", "dx", "left", "right", "width", "gamma"];
 const SLIDERS = Object.fromEntries(NAMES.map((name) => [name, at(name)]));
-// The map ends at so many times T_trans.
+// The map ends at this many times T_trans.
 const MULTIPLE = 3;
 const RATIO_TICKS = [0, 0.01, 0.1, 1];
 // Exact values: a slider has steps between which a preset or a run may lie.
@@ -17,17 +17,17 @@ function range(slider) {
 
 function valueOf(slider) {
   const [low, high] = range(slider);
-  const share = slider.value / 100;
-  if (slider.dataset.kind === "even") return Number((low + (high - low) * share).toFixed(3));
-  if (slider.dataset.kind.startsWith("zero") && share === 0) return 0;
-  return Number((low * (high / low) ** share).toPrecision(3));
+  const fraction = slider.value / 100;
+  if (slider.dataset.kind === "even") return Number((low + (high - low) * fraction).toFixed(3));
+  if (slider.dataset.kind.startsWith("zero") && fraction === 0) return 0;
+  return Number((low * (high / low) ** fraction).toPrecision(3));
 }
 
 function set(name, value) {
   const slider = SLIDERS[name];
   const [low, high] = range(slider);
-  const share = slider.dataset.kind === "even" ? (value - low) / (high - low) : Math.log(value / low) / Math.log(high / low);
-  slider.value = Math.round(100 * Math.max(share, 0));
+  const fraction = slider.dataset.kind === "even" ? (value - low) / (high - low) : Math.log(value / low) / Math.log(high / low);
+  slider.value = Math.round(100 * Math.max(fraction, 0));
   settings[name] = value;
   note(name);
 }
@@ -121,8 +121,8 @@ function drawPulse(rupture, { pulse, paper }) {
 }
 
 function drawSpeeds(scene, exact, paper) {
-  const place = (b) => Math.asinh(b / 0.02);
-  const ratios = Array.from({ length: 61 }, (_, k) => 0.02 * Math.sinh(place(DATA.largest_ratio) * k / 60));
+  const position = (b) => Math.asinh(b / 0.02);
+  const ratios = Array.from({ length: 61 }, (_, k) => 0.02 * Math.sinh(position(DATA.largest_ratio) * k / 60));
   const speeds = (tau, release) => ratios.map((b) => [b, 1 / frontLaw(DATA.law, b, release)(1 - tau)]);
   const other = scene.release === "total" ? "elastic" : "total";
   const runs = DATA.runs.map(runOf).filter((run) => run.release === scene.release && run.speed !== null);
@@ -133,7 +133,7 @@ function drawSpeeds(scene, exact, paper) {
   // As high as b = 1 reaches, or this b.
   const highest = Math.max(curve.findLast(([b]) => b <= 1)[1], exact.speed);
   const picture = new Picture(at("speeds"), {
-    x: [0, DATA.largest_ratio], y: [1, 1 + 1.1 * (highest - 1)], xTicks: RATIO_TICKS, place,
+    x: [0, DATA.largest_ratio], y: [1, 1 + 1.1 * (highest - 1)], xTicks: RATIO_TICKS, position,
     labels: ["b = β/dx", "front speed v"], height: 260,
   });
   picture.curve([[0, paper.speed], [DATA.largest_ratio, paper.speed]], "paper");

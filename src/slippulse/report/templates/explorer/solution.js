@@ -29,7 +29,7 @@ function integral(integrand, low, high, nodes = NODES) {
   return half * nodes.reduce((sum, node) => sum + node.weight * integrand(low + half * (1 + node.x)), 0);
 }
 
-// The root of a function between two places where its signs differ (secants that keep the bracket).
+// The root of a function between two points where its signs differ (secants that keep the bracket).
 function rootBetween(f, low, high, atLow = f(low), atHigh = f(high)) {
   for (let turn = 0; turn < 60 && Math.abs(high - low) > 1e-10 * (Math.abs(high) + Math.abs(low)); turn++) {
     const middle = (low * atHigh - high * atLow) / (atHigh - atLow);
@@ -58,10 +58,10 @@ for (let z = 0; z <= BESSEL.last; z += BESSEL.step) {
 }
 
 function bessel(z) {
-  const place = Math.min(Math.max(z, 0), BESSEL.last - 1) / BESSEL.step;
-  const k = Math.floor(place);
+  const position = Math.min(Math.max(z, 0), BESSEL.last - 1) / BESSEL.step;
+  const k = Math.floor(position);
   const { step, value, slope } = BESSEL;
-  return hermite(place - k, step, value[k], value[k + 1], slope[k], slope[k + 1]);
+  return hermite(position - k, step, value[k], value[k + 1], slope[k], slope[k + 1]);
 }
 
 // The front on one side, seen going away from x = 0: T by distance, and where T + x or T - x has a value.
@@ -83,8 +83,8 @@ class Front {
 
   within(k, x) {
     const length = this.x[k + 1] - this.x[k];
-    const share = (x - this.x[k]) / length;
-    return hermite(share, length, this.time[k], this.time[k + 1], this.slope[k], this.slope[k + 1]);
+    const fraction = (x - this.x[k]) / length;
+    return hermite(fraction, length, this.time[k], this.time[k + 1], this.slope[k], this.slope[k + 1]);
   }
 
   arrival(x) {
@@ -102,8 +102,8 @@ class Front {
     const [low, high] = [this.x[k], this.x[k + 1]];
     let x = low + (high - low) * (target - sums[k]) / (sums[k + 1] - sums[k]);
     for (let turn = 0; turn < 4; turn++) {
-      const share = (x - low) / (high - low);
-      const slope = this.slope[k] + share * (this.slope[k + 1] - this.slope[k]) + sign;
+      const fraction = (x - low) / (high - low);
+      const slope = this.slope[k] + fraction * (this.slope[k + 1] - this.slope[k]) + sign;
       if (slope === 0) break;
       x = Math.min(Math.max(x - (this.within(k, x) + sign * x - target) / slope, low), high);
     }
