@@ -38,8 +38,8 @@ def read(path: Path):
     return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
-def invented_claims(config: dict, entries: dict, texts: str, scale: float = 1.0) -> list[dict]:
-    """One entry for each claim of the manuscript, each with numbers of its own."""
+def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0) -> list[dict]:
+    """One claim for each entry of the texts, each with its own numbers."""
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
@@ -123,14 +123,15 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
     for name in figures:
         for ending in ("png", "pdf"):
             drawn.savefig(folder / f"{name}.{ending}")
+    entries = read(manuscript / "claims.yaml")
     texts = "\n".join(path.read_text(encoding="utf-8") for path in sorted(manuscript.glob("*.[my]*")))
 
     def make(config: dict = shipped, scale: float = 1.0) -> Inputs:
         return Inputs(
             config=config,
             shipped=shipped,
-            claims=invented_claims(config, read(manuscript / "claims.yaml")["claims"], texts, scale),
-            findings=invented_findings(read(manuscript / "claims.yaml")["findings"], texts),
+            claims=invented_claims(entries["claims"], config, texts, scale),
+            findings=invented_findings(entries["findings"], texts),
             tables=invented_tables(texts),
             figures=figures,
             figures_folder=folder,

@@ -11,7 +11,7 @@ from pathlib import Path
 import jupytext
 import pandas as pd
 
-from ..claims.entries import coverage
+from ..claims.entries import coverage, positions
 from ..claims.reading import Ledger
 from ..configuration.parameters import parameters
 from ..data.alterations import changes
@@ -76,7 +76,8 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     sentences = read_text(folder / "statements.yaml")["statements"]
-    texts = read_text(folder / "claims.yaml")
+    entries = read_text(folder / "claims.yaml")
+    algebra = entries["algebra"]
     verdicts = read_text(folder / "shipped_verdicts.yaml") or {}
     names: dict[str, object] = {
         **FILTERS,
@@ -98,6 +99,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
         "tables": inputs.tables,
         "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
         "sentences": coverage(sentences),
+        "algebra": algebra,
         "figure": lambda name: show(gallery.figure(name)),
         "further": lambda: show(gallery.further()),
         "see": gallery.see,
@@ -109,9 +111,9 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
         "tolerances": partial(tables.tolerances, ledger),
         "published": partial(tables.published, ledger, config["published"]),
         "found_list": partial(tables.found_list, ledger),
+        "algebra_checked": partial(tables.algebra_checked, algebra, positions(algebra, sentences)),
         "sentence_counts": partial(tables.sentence_counts, coverage(sentences)),
-        "tested_sentences": partial(tables.tested_sentences, sentences, texts["claims"] | texts["algebra"]),
-        "algebra": partial(tables.algebra, texts["algebra"]),
+        "tested_sentences": partial(tables.tested_sentences, sentences, entries["claims"] | algebra),
         "errata": lambda: tables.errata(read_errata(folder / "errata.yaml"), filled),
         "grid_studies": partial(tables.grid_studies, inputs.tables),
         "presets": partial(tables.presets, config["presets"], config["preset"]),

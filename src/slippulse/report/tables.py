@@ -107,8 +107,8 @@ def tolerances(ledger: Ledger) -> str:
     """Why each tolerance is what it is: the claims that have kind, tolerance and reason in common together."""
     groups: dict[tuple, list[str]] = {}
     for claim in ledger:
-        exponent = vars(claim).get("tolerance_exponent")
-        key = (claim.kind, claim.tolerance, exponent, claim.reason)
+        exponent = getattr(claim, "tolerance_exponent", None)
+        key = (claim.kind, float(claim.tolerance), exponent, claim.reason)
         groups.setdefault(key, []).append(f"`{claim.id}`")
     rows = [
         [
@@ -120,6 +120,12 @@ def tolerances(ledger: Ledger) -> str:
         for (kind, tolerance, exponent, reason), ids in groups.items()
     ]
     return table(["kind", "tolerance", "reason", "claims"], rows, [11, 11, 42, 36], "lrll")
+
+
+def algebra_checked(algebra: Mapping[str, Mapping], where: Mapping[str, str]) -> str:
+    """Every piece of the paper's algebra that a test checks, with its position in the paper."""
+    rows = [[entry["statement"], where[id], f"`{id}`"] for id, entry in algebra.items()]
+    return table(["what the paper derives", "section", "id"], rows, [60, 20, 20], "lll")
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
@@ -147,14 +153,8 @@ def sentence_counts(numbers: Mapping[str, int]) -> str:
     return table(["sentences", "how many"], [*rows, ["all", str(numbers["all"])]], [60, 15], "lr")
 
 
-def algebra(entries: Mapping[str, Mapping]) -> str:
-    """Formulas of the paper that a test finds equal to the derived ones."""
-    rows = [[entry["statement"], f"`test_algebra[{id}]`"] for id, entry in entries.items()]
-    return table(["what the paper says", "test"], rows, [60, 40], "ll")
-
-
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
-    """Every sentence that is tested, with its position in the paper and its claims, or algebra."""
+    """Every sentence that is tested, with its position in the paper and its claims, among them the algebra."""
     rows = [
         [
             # For a narrow column: paragraph and sentence as numbers.
@@ -163,7 +163,7 @@ def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping
             ", ".join(f"`{claim}`" for claim in claims_of(entries, entry)),
         ]
         for entry in sentences
-        if "why_none" not in entry
+        if claims_of(entries, entry)
     ]
     return table(["section", "what it says", "claims"], rows, [22, 45, 33], "lll")
 

@@ -16,12 +16,7 @@ from ..data.files import write_text
 from ..report.claims_page import claims_page
 from .inputs import given
 
-FILES = (
-    "report/templates/base.html",
-    "report/templates/claims.html",
-    "report/templates/parts.html",
-    "report/templates/style.css",
-)
+FILES = ("report/templates/claims.html", "report/templates/parts.html")
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
