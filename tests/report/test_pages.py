@@ -9,11 +9,10 @@ from itertools import pairwise
 
 import pytest
 import yaml
-from report.conftest import CLAIM
+from PIL import Image
+from report.conftest import CLAIM, read
 
 from slippulse.data.provenance import provenance
-from slippulse.data.records import write_record
-from slippulse.figures.style import new_figure, save_figure
 from slippulse.report.claims_page import claims_page
 from slippulse.report.index_page import index_page
 from slippulse.report.scene_page import scenes_page
@@ -31,6 +30,7 @@ NEVER = CLAIM | {
     "id": "length", "verdict": "not testable", "predicted": None, "measured": None, "uncertainty": None, "runs": None,
     "deviation": None, "note": "",
 }  # fmt: skip
+CLAIMS = [CLAIM, FAILED, NEVER, OPEN]
 NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
 
@@ -57,49 +57,50 @@ class Outline(HTMLParser):
         return [attributes for name, attributes in self.tags if name == tag]
 
 
-@pytest.fixture
-def page(project, config, tmp_path) -> str:
-    """The page of a small run whose preset is not the shipped one."""
-    results = tmp_path / "results"
+@pytest.fixture(scope="module")
+def results(project, tmp_path_factory):
+    """A small run whose preset is not the shipped one, and beside its folder the texts of its page."""
+    results = tmp_path_factory.mktemp("page") / "results"
     for folder in ("figures", "scenes"):
         (results / folder).mkdir(parents=True)
     for name in NAMES:
-        figure = new_figure(3.0, 2.0)
-        figure.subplots().plot([0.0, 1.0])
-        save_figure(figure, results / f"figures/{name}.png", results / f"figures/{name}.pdf")
-        (results / f"figures/{name}.csv").write_text("x\n0\n")
-    claims = [CLAIM, FAILED, NEVER, OPEN]
-    (results / "claims.json").write_text(json.dumps(claims), encoding="utf-8")
-    (results / "findings.json").write_text(json.dumps([FINDING]), encoding="utf-8")
-    (results / "claims.html").write_text(claims_page(claims), encoding="utf-8")
-    write_record("one", {}, {"made": f"{results}/claims.json"}, {}, {"seconds": 1.5})
+        Image.new("1", (900, 600)).save(results / f"figures/{name}.png")
+        for ending in ("pdf", "csv"):
+            (results / f"figures/{name}.{ending}").touch()
+    (results / "claims.html").write_text(claims_page(CLAIMS), encoding="utf-8")
     (results / "scenes/made.html").write_text("<p>")
+    config = read(project / "config/config.yaml")
     facts = provenance(project, config | {"preset": "draft"}, config, results)
-    (results / "provenance.json").write_text(json.dumps(facts), encoding="utf-8")
-
+    facts["times"]["seconds_of_jobs"] = {"one": 1.5}
+    for name, content in {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}.items():
+        (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
     caption = {
-        "alt": "A line <up>",
-        "finding": "Found in {{ claim('speed').runs }} runs.",
-        "caption": "(a) $x$.",
+        "alt": "A line <up>", "caption": "(a) $x$.", "finding": "Found in {{ claim('speed').runs }} runs.",
+    }  # fmt: skip
+    line = {"topic": "Fronts", "claims": ["speed", "width"], "text": "Gap {{ found('ours').gap }}."}
+    texts = {
+        "captions": {name: caption | {"title": title} for name, title in NAMES.items()},
+        "summary": {
+            "picture": "fig01_one",
+            "accuracy": "It took {{ facts['times']['seconds_of_jobs'].values() | sum | number }} s.",
+            "verdict": [line],
+        },
     }
-    captions = {name: caption | {"title": title} for name, title in NAMES.items()}
-    summary = {
-        "picture": "fig01_one",
-        "accuracy": "It took {{ facts['times']['seconds_of_jobs'].values() | sum | number }} s.",
-        "verdict": [
-            {"topic": "Fronts", "claims": ["speed", "width"], "text": "Gap {{ found('ours').gap }}."}
-        ],
-    }
-    texts = {}
-    for name, content in (("captions", captions), ("summary", summary)):
-        texts[name] = tmp_path / f"{name}.yaml"
-        texts[name].write_text(yaml.safe_dump(content), encoding="utf-8")
-    return index_page(
-        results,
-        texts,
-        {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]},
-        {"made": "A scene <that> is there", "not_made": "A scene that is not"},
-    )
+    for name, content in texts.items():
+        (results.parent / f"{name}.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    return results
+
+
+def written(results, captions: str = "captions") -> str:
+    texts = {"captions": results.parent / f"{captions}.yaml", "summary": results.parent / "summary.yaml"}
+    galleries = {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]}
+    scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
+    return index_page(results, texts, galleries, scenes)
+
+
+@pytest.fixture(scope="module")
+def page(results) -> str:
+    return written(results)
 
 
 def check_accessible(text: str) -> Outline:
@@ -135,19 +136,19 @@ def test_it_can_be_read_without_eyes_or_mouse(page):
     assert outline.all("img")[0]["width"] == "900"
 
 
-def test_links_lead_somewhere_and_only_the_paper_is_outside(page, tmp_path):
+def test_links_lead_somewhere_and_only_the_paper_is_outside(page, results):
     outline = Outline(page)
     identifiers = {attributes["id"] for _, attributes in outline.tags if "id" in attributes}
     targets = [a["href"] for a in outline.all("a")] + [image["src"] for image in outline.all("img")]
     assert len(targets) > 20
     outside = [target for target in targets if re.match(r"[a-z]+:|/", target)]
     assert outside == ["https://doi.org/10.1103/PhysRevE.103.052802"]
-    claims = Outline((tmp_path / "results/claims.html").read_text(encoding="utf-8"))
+    claims = Outline((results / "claims.html").read_text(encoding="utf-8"))
     anchors = {attributes["id"] for _, attributes in claims.tags if "id" in attributes}
     for target in set(targets) - set(outside):
         path, _, anchor = target.partition("#")
         if path:
-            assert (tmp_path / "results" / path).exists(), target
+            assert (results / path).exists(), target
         if anchor:
             assert anchor in (anchors if path == "claims.html" else identifiers), target
 
@@ -161,14 +162,12 @@ def test_it_says_what_was_found_and_from_what(page):
     assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
     assert page.index("values differ") < page.index('id="verdict"') < page.index("Figures of the paper</h2>")
     assert "results/scenes/not_made.html" in page
-
-
-def test_a_line_has_the_worst_verdict_of_its_claims(page):
+    # A line has the worst verdict of its claims.
     assert re.search(r'href="claims\.html#width">. not reproduced<', page)
 
 
 def test_the_ledger_has_a_page_with_failures_first():
-    text = claims_page([CLAIM, FAILED, NEVER, OPEN], findings=[FINDING])
+    text = claims_page(CLAIMS, findings=[FINDING])
     outline = check_accessible(text)
     assert [row["id"] for row in outline.all("tr") if "id" in row] == ["width", "always", "length", "speed"]
     assert outline.all("a")[1] == {"href": "index.html"}
@@ -186,8 +185,8 @@ def test_the_list_of_scenes_is_a_page_too():
     assert outline.all("img")[0]["alt"].startswith("A <scene>")
 
 
-def test_a_text_that_quotes_what_is_not_there_is_refused(page, tmp_path):
-    texts = {name: tmp_path / f"{name}.yaml" for name in ("captions", "summary")}
-    texts["captions"].write_text(texts["captions"].read_text().replace("speed", "no_such"))
+def test_a_text_that_quotes_what_is_not_there_is_refused(results):
+    text = (results.parent / "captions.yaml").read_text().replace("speed", "no_such")
+    (results.parent / "wrong.yaml").write_text(text)
     with pytest.raises(ValueError, match="no_such"):
-        index_page(tmp_path / "results", texts, {"Figures": ["fig01_one"]}, {})
+        written(results, captions="wrong")

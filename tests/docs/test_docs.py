@@ -1,0 +1,44 @@
+"""The tutorial runs from top to bottom, its numbers are what its text says, and the reference has every public name."""
+
+from __future__ import annotations
+
+import runpy
+
+import jupytext
+import pytest
+import tolerances as tol
+
+import slippulse as sp
+
+
+def test_the_tutorial_keeps_what_it_says(project):
+    names: dict = {}
+    for number, cell in enumerate(jupytext.read(project / "docs/tutorial.md").cells):
+        if cell.cell_type == "code":
+            exec(compile(cell.source, f"tutorial, cell {number}", "exec"), names)
+    # The lattice is near the exact solution.
+    assert 0.0 < names["stick_error"] < 2.0 * names["scene"].dx
+    assert 0.0 < names["slip_error"] < 2.0 * names["scene"].dx
+    # Softer springs give more slip at the same speed.
+    assert names["slip"]["soft"] > 1.5 * names["slip"]["stiff"]
+    assert names["fronts"]["soft"] == pytest.approx(names["fronts"]["stiff"], rel=tol.FRONT_SPEED)
+    # Slip without damping is the paper's.
+    slips = [2.0 * tau / 0.65 for tau in names["levels"]]
+    assert names["left_behind"] == pytest.approx(slips, rel=tol.FRONT_SPEED)
+    # The promise is kept.
+    assert names["relative_error"] < 1e-3
+    # The first barrier is passed, and the second is not.
+    edges = [position for position, _ in names["barrier"].steps]
+    depth = sp.theory.barrier_depth(0.5, -0.5, gamma=0.65)
+    (_, end), *_ = sp.theory.Rupture(names["barrier"], 0.65, duration=30.0).front_ends
+    assert edges[1] - edges[0] < depth
+    assert end.reason == "stops" and edges[2] < end.x < edges[2] + 1.1 * depth
+
+
+def test_the_reference_explains_every_public_name(project, tmp_path):
+    runpy.run_path(str(project / "docs/reference.py"))["main"](str(tmp_path))
+    for package, page in ((sp, "slippulse.html"), (sp.theory, "slippulse/theory.html")):
+        text = (tmp_path / page).read_text(encoding="utf-8")
+        for name in set(package.__all__) - {"theory"}:
+            assert f'id="{name}"' in text, name
+            assert getattr(package, name).__doc__, name
