@@ -7,12 +7,17 @@ rises to eta, going right.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
+# Times and positions that differ by less than this, relative, are the same: a hundred times the error of a stick time.
+SAME = 1e-9
 COUNT = 12
 NODES, WEIGHTS = legendre.leggauss(COUNT)
 TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
@@ -24,10 +29,10 @@ CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
 SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
 # From values at the nodes to coefficients by powers, which are quicker to evaluate.
-TO_POWERS = np.stack(
-    [legendre.leg2poly(np.eye(COUNT)[k]).tolist() + [0.0] * (COUNT - 1 - k) for k in range(COUNT)]
-).T
-TO_POWERS = TO_POWERS @ TO_SERIES
+TO_POWERS = sum(
+    np.outer(np.pad(legendre.leg2poly([0.0] * k + [1.0]), (0, COUNT - 1 - k)), TO_SERIES[k])
+    for k in range(COUNT)
+)
 
 
 @dataclass(frozen=True)
@@ -50,25 +55,20 @@ class Panel:
             self.time_ends[::-1],
         )
 
-    def part(self, left: float, right: float) -> Panel:
-        """The part between two places, -1 <= left < right <= 1."""
-        half = 0.5 * (right - left)
-        place = np.concatenate([left + half * (1.0 + NODES), [left, right]])
-        resample = legendre.legvander(place, COUNT - 1) @ TO_SERIES
-        x, time = resample @ self.x, resample @ self.time
-        ends = [(self.x_ends, x), (self.time_ends, time)]
-        ends = [(e[0] if left == -1.0 else f[-2], e[1] if right == 1.0 else f[-1]) for e, f in ends]
-        return Panel(
-            x[:-2], time[:-2], half * (resample @ self.source)[:-2], *(tuple(map(float, e)) for e in ends)
-        )
+    def until(self, s: float, x_end: float) -> Panel:
+        """The part from the left end to the parameter s, where x is x_end."""
+        half = 0.5 * (s + 1.0)
+        resample = legendre.legvander(np.append(half * (1.0 + NODES) - 1.0, s), COUNT - 1) @ TO_SERIES
+        x, time, source = resample @ self.x, resample @ self.time, half * (resample @ self.source)
+        ends = (self.x_ends[0], x_end), (self.time_ends[0], float(time[-1]))
+        return Panel(x[:-1], time[:-1], source[:-1], *ends)
 
 
-@dataclass(frozen=True)
-class Crossing:
+class Crossing(NamedTuple):
     """Where characteristics meet the curve: panels and the parameter on them; known says whether they do."""
 
     panel: np.ndarray
-    place: np.ndarray
+    s: np.ndarray
     known: np.ndarray
 
 
@@ -81,7 +81,9 @@ class Curve:
     restarts_left, restarts_right : positions where a front, slower than the waves before, outran them again
     """
 
-    def __init__(self, panels: list[Panel], restarts_left=(), restarts_right=()) -> None:
+    def __init__(
+        self, panels: list[Panel], restarts_left: Iterable[float] = (), restarts_right: Iterable[float] = ()
+    ) -> None:
         self.panels = panels
         self.x = np.array([panel.x for panel in panels])
         self.time = np.array([panel.time for panel in panels])
@@ -91,115 +93,85 @@ class Curve:
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
         self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
         self.late, self.early = self.time + self.x, self.time - self.x
-        self.weight = self.source * WEIGHTS
-        self._late_ends = time_ends + x_ends
-        self._early_ends = time_ends - x_ends
+        self.late_ends, self.early_ends = time_ends + x_ends, time_ends - x_ends
         self.restarts_left, self.restarts_right = tuple(restarts_left), tuple(restarts_right)
         # A characteristic that leaves the rupture across a front that was slower than the waves sees no source beyond.
-        self._regions_left = [0, *np.searchsorted(self.edges, sorted(restarts_left)).tolist(), len(panels)]
-        self._regions_right = [0, *np.searchsorted(self.edges, sorted(restarts_right)).tolist(), len(panels)]
+        self._regions_left, self._regions_right = (
+            [0, *sorted(int(np.argmin(np.abs(self.edges - x))) for x in restarts), len(panels)]
+            for restarts in (self.restarts_left, self.restarts_right)
+        )
 
     @cached_property
     def powers(self) -> dict[str, np.ndarray]:
         """Coefficients by powers of the parameter: [power, panel]."""
-        fields = {
-            "x": self.x,
-            "time": self.time,
-            "late": self.late,
-            "early": self.early,
-            "source": self.source,
+        return {
+            name: np.ascontiguousarray((getattr(self, name) @ TO_POWERS.T).T)
+            for name in ("x", "time", "late", "early", "source")
         }
-        return {name: np.ascontiguousarray((values @ TO_POWERS.T).T) for name, values in fields.items()}
-
-    @cached_property
-    def slopes(self) -> dict[str, np.ndarray]:
-        """Derivatives of `powers` by the parameter."""
-        return {name: p[1:] * np.arange(1, len(p))[:, None] for name, p in self.powers.items()}
 
     def mirrored(self) -> Curve:
         """The same at -x."""
-        return Curve(
-            [panel.mirrored() for panel in self.panels[::-1]],
-            [-x for x in self.restarts_right],
-            [-x for x in self.restarts_left],
-        )
+        panels = [panel.mirrored() for panel in self.panels[::-1]]
+        return Curve(panels, [-x for x in self.restarts_right], [-x for x in self.restarts_left])
 
-    def at(self, name: str, panel: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """One of `powers` at places on panels."""
-        return horner(self.powers[name], panel, place)
+    def at(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """One of `powers` at a parameter on panels."""
+        return horner(self.powers[name][:, panel], s)
 
-    def slope(self, name: str, panel: np.ndarray, place: np.ndarray) -> np.ndarray:
+    def slope(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Its derivative by the parameter."""
-        return horner(self.slopes[name], panel, place)
+        return horner(self.powers[name][1:, panel] * np.arange(1.0, COUNT)[:, None], s)
 
-    def arrival(self, x) -> np.ndarray:
+    def covers(self, x: np.ndarray) -> np.ndarray:
+        """Whether positions lie on the curve."""
+        slack = SAME * (self.edges[-1] - self.edges[0])
+        return (x >= self.edges[0] - slack) & (x <= self.edges[-1] + slack)
+
+    def arrival(self, x: np.ndarray | float) -> np.ndarray:
         """T(x); NaN outside the panels."""
         x = np.asarray(x, dtype=float)
-        flat = x.ravel()
-        panel, place = self.place(flat)
-        out = self.at("time", panel, place)
-        out[~((flat >= self.edges[0]) & (flat <= self.edges[-1]))] = np.nan
-        return out.reshape(x.shape)
+        time = self.at("time", *self.locate(x.ravel())).reshape(x.shape)
+        return np.where(self.covers(x), time, np.nan)
 
-    def place(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Panel and place on it of each position."""
+    def locate(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Panel and parameter on it of each position."""
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.panels) - 1)
-        return panel, self._solve("x", panel, x, np.stack([self.edges[panel], self.edges[panel + 1]]))
+        return panel, self._solve("x", panel, x, self.edges[panel], self.edges[panel + 1])
 
     def right(self, y: np.ndarray, eta: np.ndarray) -> Crossing:
         """Where T + x rises to eta, going right from y."""
-        return self._crossing("late", self._late_ends[:, 1], self._late_ends, self._regions_left, y, eta)
+        panel, known = _first_rise(self.edges, self.late_ends[:, 1], self._regions_left, y, eta)
+        s = self._solve("late", panel, eta, *self.late_ends[panel].T)
+        return Crossing(panel, np.where(known, s, 1.0), known)
 
     def left(self, y: np.ndarray, xi: np.ndarray) -> Crossing:
         """Where T - x rises to xi, going left from y."""
-        # The same at -x, panel by panel.
-        count = len(self.panels)
-        regions = [count - r for r in reversed(self._regions_right)]
-        ends = self._early_ends[::-1, ::-1]
-        mirror = self._crossing("early", ends[:, 1], ends, regions, -y, xi, flip=True)
-        return Crossing(count - 1 - mirror.panel, -mirror.place, mirror.known)
+        # The same at -x.
+        last = len(self.panels) - 1
+        regions = [last + 1 - r for r in reversed(self._regions_right)]
+        panel, known = _first_rise(-self.edges[::-1], self.early_ends[::-1, 0], regions, -y, xi)
+        panel = last - panel
+        s = self._solve("early", panel, xi, *self.early_ends[panel].T)
+        return Crossing(panel, np.where(known, s, -1.0), known)
 
-    def _crossing(self, name, exits, ends, regions, y, level, flip=False) -> Crossing:
-        """Walk towards higher panels (lower ones, numbered from the right, to flip) until the field rises to level."""
-        edges = -self.edges[::-1] if flip else self.edges
-        count = len(self.panels)
-        start = np.clip(np.searchsorted(edges, y, side="right") - 1, 0, count - 1)
-        region = np.searchsorted(regions, start, side="right") - 1
-        panel = np.full(y.shape, count)
-        for r in range(len(regions) - 1):
-            first, last = regions[r], regions[r + 1]
-            open_ = (region <= r) & (panel == count)
-            # The last place where the field rises to the level: what lies nearer falls from above it to the front.
-            lowest = np.minimum.accumulate(exits[first:last][::-1])[::-1]
-            found = first + np.searchsorted(lowest, level[open_], side="left")
-            panel[open_] = np.where(found < last, found, count)
-        known = panel < count
-        panel = np.minimum(panel, count - 1)
-        near, far = ends[panel].T
-        raw = count - 1 - panel if flip else panel
-        bounds = np.stack([far, near]) if flip else np.stack([near, far])
-        place = self._solve(name, raw, level, bounds)
-        place = np.where(known, place, -1.0 if flip else 1.0)
-        return Crossing(panel, -place if flip else place, known)
-
-    def _solve(self, name, panel, level, ends) -> np.ndarray:
-        """The parameter where a field, monotonic on its panel, has a value; ends are its values at -1 and 1."""
-        span = ends[1] - ends[0]
+    def _solve(self, name, panel, level, at_left, at_right) -> np.ndarray:
+        """The parameter where a field, monotonic on its panel with these values at the ends, has a value."""
+        span = at_right - at_left
         flat = np.abs(span) < 1e-13
-        s = np.clip(2.0 * (level - ends[0]) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
-        powers = self.powers[name]
-        rising = np.sign(span)
+        s = np.clip(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
+        powers = self.powers[name][:, panel]
+        rising, least = np.sign(span), 1e-3 * np.abs(span) + 1e-300
         for _ in range(30):
             slope = np.zeros_like(s)
-            value = powers[-1][panel]
+            value = powers[-1].copy()
             for power in powers[-2::-1]:
                 slope *= s
                 slope += value
                 value *= s
-                value += power[panel]
-            least = 1e-3 * np.abs(span) + 1e-300
-            step = (level - value) / (rising * np.maximum(rising * slope, least) + flat)
-            new = np.clip(s + step, -1.0, 1.0)
+                value += power
+            new = np.clip(
+                s + (level - value) / (rising * np.maximum(rising * slope, least) + flat), -1.0, 1.0
+            )
             change = np.max(np.abs(new - s), initial=0.0)
             s = new
             if change < 1e-9:
@@ -207,10 +179,25 @@ class Curve:
         return s
 
 
-def horner(powers: np.ndarray, panel: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Polynomials with coefficients [power, panel] at places on panels."""
-    out = powers[-1][panel]
+def _first_rise(edges, exits, regions, y, level) -> tuple[np.ndarray, np.ndarray]:
+    """Panels, walking from y towards higher ones, on which a field with these values at their far ends rises to a level
+    for the last time (what lies nearer falls from above it to the front); and whether there are any."""
+    count = exits.size
+    region = np.searchsorted(
+        regions, np.clip(np.searchsorted(edges, y, side="right") - 1, 0, count - 1), side="right"
+    )
+    panel = np.full(y.shape, count)
+    for r, (first, last) in enumerate(pairwise(regions), start=1):
+        lowest = np.minimum.accumulate(exits[first:last][::-1])[::-1]
+        found = first + np.searchsorted(lowest, level, side="left")
+        panel = np.where((region <= r) & (panel == count) & (found < last), found, panel)
+    return np.minimum(panel, count - 1), panel < count
+
+
+def horner(powers: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Polynomials with coefficients [power, ...] at a parameter each."""
+    out = powers[-1].copy()
     for power in powers[-2::-1]:
-        out *= place
-        out += power[panel]
+        out *= s
+        out += power
     return out

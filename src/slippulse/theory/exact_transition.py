@@ -14,8 +14,8 @@ from .curve import Curve
 from .front_law import LARGEST_RATIO, front_speed
 from .fronts import NARROWEST, FrontLaw, straight_panel
 from .profile import nucleations
-from .riemann import Cones
-from .trailing import TrailingEdge
+from .riemann import Past
+from .part import Part
 
 # Half the panels behind a uniform front that hardly outruns the waves.
 FARTHEST = 10_000
@@ -111,7 +111,7 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     check_number("time", time)
     if not float(fronts.curve.arrival(y)) < time:
         return 0.0
-    cones = Cones(fronts.curve, float(gamma), np.array([float(y)]), np.array([float(time)]))
+    cones = Past(fronts.curve, float(gamma), np.array([float(y)]), np.array([float(time)]))
     if not (cones.left.known[0] and cones.right.known[0]):
         raise ValueError(f"time: {time!r}; allowed: earlier, the cone leaves the part that outruns the waves")
     velocity = float(cones.slip_velocity()[0])
@@ -159,18 +159,7 @@ def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTra
     period = np.pi / np.sqrt(gamma)
     # The cone of (0, t) enters at x + T(x) = t, so x < t.
     fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
-    # Slip velocity swings no faster than the leaf springs: steps of a tenth of their half period miss no zero.
-    times = np.linspace(0.0, 2.0 * period, 21)[1:]
-    velocity = Cones(fronts.curve, gamma, np.zeros(times.size), times).slip_velocity()
-    first = int(np.flatnonzero(velocity[1:] <= 0.0)[0]) + 1
-    stick = float(
-        root_between(
-            lambda time: slip_velocity(fronts, gamma, 0.0, time),
-            times[first - 1],
-            times[first],
-            xtol=1e-12 * period,
-        )
-    )
+    stick = float(Part(fronts.curve, gamma, 2.0 * period).scan(np.zeros(1))[0])
     level = float(prestress.level(np.asarray(1e300)))
     speed = float(front_speed(level, damping_ratio, release))
     reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width, gamma)
@@ -207,5 +196,4 @@ def uniform_transition_time(
     reach = 12.0 / max(1.0 - rate**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve([straight_panel(a, b, rate, tau) for a, b in pairwise(edges.tolist())])
-    edge = TrailingEdge(curve, 1.0, 10.0, np.array([0.0]), one_side=True)
-    return float(edge.stick_time(np.array([0.0]))[0]) / float(np.sqrt(float(gamma)))
+    return float(Part(curve, 1.0, 10.0).scan(np.zeros(1))[0]) / float(np.sqrt(float(gamma)))

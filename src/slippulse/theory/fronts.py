@@ -10,7 +10,7 @@ import numpy as np
 from ..model.checks import check_kind, check_number
 from ..model.prestress import Prestress
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel
-from .profile import Piece, edges_of_features, mirrored, pieces, smooth
+from .profile import Piece, analytic, edges_of_features, mirrored, pieces
 from .slowness import check_law, slowness
 
 # Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
@@ -122,7 +122,7 @@ class FrontLaw:
         while True:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
-            tau = smooth(self.prestress, level, x)
+            tau = analytic(self.prestress, level, x)
             rate = self.slowness(tau)
             tails = np.maximum(
                 np.abs(rate @ TO_SERIES[-2:].T).max(axis=1), np.abs(tau @ TO_SERIES[-2:].T).max(axis=1)

@@ -1,18 +1,48 @@
-"""One connected part of a rupture: its curve, its trailing edge and its fields."""
+"""One connected part of a rupture, behind one curve: its fields, and its trailing edge.
+
+The trailing edge is the first zero in time of du/dt, as long as it runs faster than the waves. Then the past of a
+sliding point holds no stuck one, and Riemann's formula holds up to sticking. That is so where du/dt falls along both
+characteristics, d/d(t - y) < 0 and d/d(t + y) < 0. The stress of a block that has stuck is then
+d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just before, so that no block is ever released again.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import elementwise
 
 from ..model.roots import root_between
-from .fronts import FrontLaw
-from .riemann import Cones
-from .spreading import Stretch
-from .stationary import Stationary
-from .trailing import TrailingEdge
+from .curve import SAME, Curve
+from .riemann import Past, Rest
+
+# Times looked at together, and their distance: a fraction of 1/sqrt(gamma), or of the duration without leaf springs.
+# Around a minimum of du/dt two such steps are cut into FINE parts, twice.
+BATCH = 8
+SCAN = 0.2
+FINE = 24
+SCAN_WITHOUT_SPRINGS = 1.0 / 64.0
+# How many positions the stick times of the others are found from.
+GRID = 192
+# Errors of a root in time, and of Newton's last step to it.
+TIME, STEP = 1e-12, 1e-11
+
+
+class Edge(NamedTuple):
+    """Positions, their stick times (NaN where there is none), and derivatives of du/dt by t - x and t + x then."""
+
+    x: np.ndarray
+    stick: np.ndarray
+    by_xi: np.ndarray
+    by_eta: np.ndarray
+
+    @property
+    def pace(self) -> np.ndarray:
+        """Derivative of the stick time by position."""
+        return (self.by_xi - self.by_eta) / (self.by_xi + self.by_eta)
 
 
 class Part:
@@ -20,51 +50,209 @@ class Part:
 
     Parameters
     ----------
-    law : pre-stress, front law and gamma
-    stretch : how it spreads
-    until : time up to which it is wanted
+    curve : of the fronts
+    gamma : elasticity ratio, or 0
+    until : time up to which stick times are wanted
+    marks : positions where the curve has kinks
+    refinement : how many times as many positions and times are looked at
+    one_side : whether x >= 0 tells all
     """
 
-    def __init__(self, law: FrontLaw, stretch: Stretch, until: float) -> None:
-        self.law, self.stretch, self.until = law, stretch, until
-        self.curve = stretch.curve()
+    def __init__(
+        self, curve: Curve, gamma: float, until: float, marks: Iterable[float] = (), refinement: int = 1,
+        one_side: bool = False,
+    ) -> None:  # fmt: skip
+        self.curve, self.gamma, self.until = curve, gamma, until
+        self.marks, self.refinement, self.one_side = np.array([*marks]), refinement, one_side
 
     @cached_property
-    def rest(self) -> Stationary:
+    def rest(self) -> Rest:
         """A state at rest, for slip and strain."""
-        return Stationary(self.curve, self.law.gamma)
+        return Rest(self.curve, self.gamma)
 
-    @cached_property
-    def edge(self) -> TrailingEdge:
-        """Its trailing edge."""
-        ends = [piece.right for piece in self.law.pieces if np.isfinite(piece.right)]
-        marks = np.array([0.0, *ends, *self.stretch.joins])
-        one_side = self.law.prestress.symmetric
-        return TrailingEdge(self.curve, self.law.gamma, self.until, marks, self.law.refinement, one_side)
+    def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """du/dt at points that slide."""
+        return Past(self.curve, self.gamma, x, time).slip_velocity()
 
-    def inside(self, x: np.ndarray) -> np.ndarray:
-        """Which positions belong to it."""
-        return (x >= self.curve.edges[0]) & (x <= self.curve.edges[-1])
-
-    def field(self, name: str, y: np.ndarray, time: np.ndarray) -> np.ndarray:
+    def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """A field at points that slide."""
-        cones = Cones(self.curve, self.law.gamma, y, time)
-        return cones.slip_velocity() if name == "slip_velocity" else getattr(cones, name)(self.rest)
+        past = Past(self.curve, self.gamma, x, time)
+        return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
 
     def front_at(self, time: float, x: float, side: float) -> float:
-        """Where the front going to one side from around x is at a time: the nearest place released then."""
+        """Where the front going to one side from around x is at a time: the nearest position released then."""
         edges, times = self.curve.edges, self.curve.edge_times
         beyond = np.flatnonzero((side * edges > side * x) & (times > time))
         if not beyond.size:
             return float(edges[-1 if side > 0.0 else 0])
         k = beyond[0] if side > 0.0 else beyond[-1]
-        inner = edges[k - 1] if side > 0.0 else edges[k + 1]
-        inner = max(inner, x) if side > 0.0 else min(inner, x)
+        inner = side * max(side * edges[k - int(side)], side * x)
 
-        def late(place: float) -> float:
-            return float(self.curve.arrival(np.array(place))) - time
+        def late(position: float) -> float:
+            return float(self.curve.arrival(position)) - time
 
-        return root_between(late, float(inner), float(edges[k]), xtol=1e-13)
+        return inner if late(inner) >= 0.0 else root_between(late, inner, float(edges[k]), xtol=1e-13)
+
+    # Sticking
+
+    @cached_property
+    def edge(self) -> Edge:
+        """The trailing edge on a grid."""
+        left, right = self.curve.edges[[0, -1]]
+        if self.one_side:
+            left = max(left, 0.0)
+        count = GRID * self.refinement // (2 if self.one_side else 1) + 1
+        x = np.union1d(
+            np.linspace(left, right, count), self.marks[(self.marks >= left) & (self.marks <= right)]
+        )
+        x = x[self.curve.arrival(x) < self.until]
+        return self._edge_at(x, self.scan(x))
+
+    def _edge_at(self, x: np.ndarray, stick: np.ndarray) -> Edge:
+        slopes = np.full((2, x.size), np.nan)
+        stuck = np.isfinite(stick)
+        if stuck.any():
+            slopes[:, stuck] = Past(self.curve, self.gamma, x[stuck], stick[stuck]).velocity_slopes()
+        return Edge(x, stick, *slopes)
+
+    def scan(self, x: np.ndarray) -> np.ndarray:
+        """Stick times at positions, found without help from others."""
+        out = np.full(x.shape, np.nan)
+        release = self.curve.arrival(x)
+        step = SCAN / np.sqrt(self.gamma) if self.gamma > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
+        step = step / self.refinement
+        alive = np.flatnonzero(release < self.until)
+        # The last two times and velocities of each: a velocity that turns may have been below 0 in between.
+        times = np.stack([release, release], axis=1)
+        velocity = np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], axis=1)
+        while alive.size:
+            new = np.minimum(times[alive, 1:] + step * np.arange(1, BATCH + 1), self.until)
+            found = self.velocity(np.repeat(x[alive], BATCH), new.ravel()).reshape(new.shape)
+            t = np.concatenate([times[alive], new], axis=1)
+            v = np.concatenate([velocity[alive], found], axis=1)
+            below = v[:, 2:] <= 0.0
+            stuck = below.any(axis=1)
+            first = np.where(stuck, 2 + np.argmax(below, axis=1), t.shape[1])
+            stick = self._dips(x[alive], t, v, first)
+            rows = np.flatnonzero(stuck & ~np.isfinite(stick))
+            k = first[rows]
+            stick[rows] = self._zero(x[alive[rows]], t[rows, k - 1], t[rows, k], v[rows, k - 1])
+            out[alive] = stick
+            times[alive], velocity[alive] = t[:, -2:], v[:, -2:]
+            alive = alive[~np.isfinite(stick) & (t[:, -1] < self.until)]
+        return out
+
+    def _dips(self, x, t, v, first) -> np.ndarray:
+        """Zeros between samples around a minimum above 0 before the first sample below it; NaN where there is none."""
+        out = np.full(x.shape, np.nan)
+        inner = v[:, 1:-1]
+        turns = (inner < v[:, :-2]) & (inner <= v[:, 2:]) & (np.arange(1, v.shape[1] - 1) < first[:, None])
+        rows, k = np.nonzero(turns & (t[:, 2:] > t[:, 1:-1]))
+        low, high = t[rows, k], t[rows, k + 2]
+        for _ in range(2):
+            if not rows.size:
+                break
+            fine = np.linspace(low, high, FINE + 1, axis=1)
+            value = self.velocity(np.repeat(x[rows], FINE + 1), fine.ravel()).reshape(fine.shape)
+            m = np.argmax(value <= 0.0, axis=1)
+            n = np.flatnonzero(m > 0)
+            zero = self._zero(x[rows[n]], fine[n, m[n] - 1], fine[n, m[n]], value[n, m[n] - 1])
+            out[rows[n]] = np.fmin(out[rows[n]], zero)
+            best = np.clip(np.argmin(value, axis=1), 1, FINE - 1)
+            rest = np.flatnonzero((value > 0.0).all(axis=1))
+            rows, low, high = rows[rest], fine[rest, best[rest] - 1], fine[rest, best[rest] + 1]
+        return out
+
+    def _zero(self, x, low, high, at_low) -> np.ndarray:
+        """Zeros of du/dt in time; where it starts at 0, at release, from where it has risen."""
+        low, high = low.copy(), high.copy()
+        flat = np.flatnonzero(at_low <= 0.0)
+        for _ in range(40):
+            if not flat.size:
+                break
+            # A slow front that is about to stop: du/dt rises for a short while only.
+            middle = 0.5 * (low[flat] + high[flat])
+            risen = self.velocity(x[flat], middle) > 0.0
+            low[flat[risen]] = middle[risen]
+            flat = flat[~risen]
+            high[flat] = middle[~risen]
+        out = high.copy()
+        rest = np.setdiff1d(np.arange(x.size), flat)
+        if rest.size:
+            found = elementwise.find_root(
+                lambda time, x: self.velocity(x, time), (low[rest], high[rest]), args=(x[rest],),
+                tolerances={"xatol": TIME, "xrtol": 0.0},
+            )  # fmt: skip
+            out[rest] = found.x
+        return out
+
+    def stick_time(self, x: np.ndarray) -> np.ndarray:
+        """Stick times at positions, NaN where not before ``until``."""
+        edge = self.edge
+        if edge.x.size < 2:
+            return self.scan(x)
+        k = np.clip(np.searchsorted(edge.x, x, side="right") - 1, 0, edge.x.size - 2)
+        pace, rate = edge.pace, edge.by_xi + edge.by_eta
+        near = (x >= edge.x[0]) & (x <= edge.x[-1]) & np.isfinite(edge.stick[k] + edge.stick[k + 1])
+        near &= np.maximum(np.abs(pace[k]), np.abs(pace[k + 1])) < 1.0
+        # From the stick times on both sides and their slopes, by Hermite's cubic and Newton's steps.
+        span = edge.x[k + 1] - edge.x[k]
+        s = (x - edge.x[k]) / span
+        a, b = edge.stick[k], edge.stick[k + 1]
+        bow = span * ((1.0 - s) * pace[k] - s * pace[k + 1])
+        guess = a + s**2 * (3.0 - 2.0 * s) * (b - a) + s * (1.0 - s) * bow
+        rate = rate[k] * (1.0 - s) + rate[k + 1] * s
+        out, time = np.full(x.shape, np.nan), guess.copy()
+        todo = np.flatnonzero(near)
+        for _ in range(12):
+            if not todo.size:
+                break
+            step = self.velocity(x[todo], time[todo]) / rate[todo]
+            time[todo] -= step
+            # What strays is looked for from the start.
+            good = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
+            done = good & (np.abs(step) < STEP)
+            out[todo[done]] = time[todo[done]]
+            todo = todo[good & ~done]
+        far = np.flatnonzero(~np.isfinite(out))
+        out[far] = self.scan(x[far])
+        return np.where(out <= self.until, out, np.nan)
+
+    def violations(self) -> list[tuple[float, float]]:
+        """Positions and times of sticking where the trailing edge does not outrun the waves."""
+        edge = self.edge
+        x, stuck = edge.x, np.isfinite(edge.stick)
+        # What does not stick until then may stick right after.
+        stick = np.where(stuck, edge.stick, self.until)
+        slow = self._slow(edge)
+        out = list(zip(x[slow].tolist(), stick[slow].tolist(), strict=True))
+        jump = np.abs(np.diff(stick)) >= np.diff(x) * (1.0 + SAME)
+        between = (jump | (slow[1:] != slow[:-1])) & (stuck[1:] | stuck[:-1]) & ~(slow[1:] & slow[:-1])
+        for k in np.flatnonzero(between):
+            ahead = slow[k] or (not slow[k + 1] and stick[k] >= stick[k + 1])
+            fast = k + 1 if ahead else k
+            if stuck[fast]:
+                out.append(self._last_fast(fast, 2 * k + 1 - fast))
+        return out
+
+    def _slow(self, edge: Edge) -> np.ndarray:
+        # Beside the point where a slow front has stopped, sliding lasts too short a time to tell.
+        brief = 1e-3 / (np.sqrt(self.gamma) if self.gamma > 0.0 else 1.0)
+        lasting = edge.stick - self.curve.arrival(edge.x) > brief
+        return ((edge.by_xi >= 0.0) | (edge.by_eta >= 0.0)) & lasting
+
+    def _last_fast(self, a: int, b: int) -> tuple[float, float]:
+        """The end of the part of the edge that runs faster than the waves at grid point a, towards b."""
+        fast, fast_time, other = self.edge.x[a], self.edge.stick[a], self.edge.x[b]
+        for _ in range(24):
+            middle = np.array([0.5 * (fast + other)])
+            here = self._edge_at(middle, self.scan(middle))
+            (x,), (time,) = here.x, here.stick
+            if np.isfinite(time) and abs(time - fast_time) < abs(x - fast) and not self._slow(here)[0]:
+                fast, fast_time = x, time
+            else:
+                other = x
+        return float(fast), float(fast_time)
 
     def first_stick(self) -> tuple[float, float] | None:
         """Time and position of the first sticking."""
@@ -74,41 +262,42 @@ class Part:
         # Where several are first, the one nearest to x = 0.
         first = np.flatnonzero(edge.stick <= np.nanmin(edge.stick) + 1e-10)
         k = int(first[np.argmin(np.abs(edge.x[first]))])
-        centre, time = float(edge.x[k]), float(edge.stick[k])
-        reach = max(edge.x[min(k + 1, edge.x.size - 1)] - centre, centre - edge.x[max(k - 1, 0)])
-        for _ in range(8):
-            x = centre + reach * np.linspace(-1.0, 1.0, 9)
-            x = x[(x >= edge.x[0]) & (x <= edge.x[-1])]
-            stick = edge.stick_time(x)
-            if not np.isfinite(stick).any():
-                break
-            best = int(np.nanargmin(stick))
-            if stick[best] < time - 1e-12:
-                centre, time = float(x[best]), float(stick[best])
-            reach *= 0.25
-        return time, centre
+        time, x = float(edge.stick[k]), float(edge.x[k])
+        around = edge.pace[max(k - 1, 0) : k + 2]
+        if around.size == 3 and around[0] < 0.0 < around[2]:
 
-    def largest_velocity(self, horizon: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Largest slip velocity before a horizon, from a grid refined around the largest value on it."""
+            def pace(position: float) -> float:
+                at = np.array([position])
+                return float(self._edge_at(at, self.stick_time(at)).pace[0])
+
+            lowest = root_between(pace, edge.x[k - 1], edge.x[k + 1], xtol=STEP)
+            found = float(self.stick_time(np.array([lowest]))[0])
+            # Not for a kink, nor for what is the same.
+            if found < time - TIME:
+                time, x = found, lowest
+        return time, x
+
+    def largest_velocity(self, end: float, horizon: Callable[[np.ndarray], np.ndarray]) -> float:
+        """Largest slip velocity until an end and before a horizon, from a grid refined around its largest value."""
         edge = self.edge
-        x = edge.x
-        release = self.curve.arrival(x)
-        stick = np.where(np.isfinite(edge.stick), edge.stick, self.until)
-        stick = np.minimum(stick, horizon(x))
-        best, centre, share = 0.0, None, 0.5
-        shares = np.linspace(0.0, 1.0, 33)
-        grid_x, grid_share = np.meshgrid(x, shares, indexing="ij")
-        reach_x, reach_share = np.max(np.diff(x), initial=1e-3), shares[1]
-        for _ in range(6):
+        x, release = edge.x, np.minimum(self.curve.arrival(edge.x), end)
+        stick = np.minimum(np.minimum(np.where(np.isfinite(edge.stick), edge.stick, end), horizon(x)), end)
+        grid_x, fraction = np.meshgrid(x, np.linspace(0.0, 1.0, 33), indexing="ij")
+        reach_x, reach_fraction = np.max(np.diff(x), initial=1e-3), 1.0 / 32.0
+        best, around = 0.0, np.linspace(-1.0, 1.0, 7)
+        # Until the largest value does not change by rounding.
+        while reach_fraction > 1e-8:
             low = np.interp(grid_x, x, release)
-            time = low + (np.interp(grid_x, x, stick) - low) * grid_share
-            keep = np.flatnonzero(time.ravel() > self.curve.arrival(grid_x.ravel()))
-            values = self.field("slip_velocity", grid_x.ravel()[keep], time.ravel()[keep])
+            time = low + (np.interp(grid_x, x, stick) - low) * fraction
+            keep = np.nonzero(time > self.curve.arrival(grid_x))
+            values = self.velocity(grid_x[keep], time[keep])
             n = int(np.argmax(values))
             if values[n] > best:
-                best, centre, share = float(values[n]), grid_x.ravel()[keep][n], grid_share.ravel()[keep][n]
-            near_x = np.clip(centre + reach_x * np.linspace(-1.0, 1.0, 7), x[0], x[-1])
-            near_share = np.clip(share + reach_share * np.linspace(-1.0, 1.0, 7), 0.0, 1.0)
-            grid_x, grid_share = np.meshgrid(near_x, near_share, indexing="ij")
-            reach_x, reach_share = 0.4 * reach_x, 0.4 * reach_share
+                best, centre, at = float(values[n]), grid_x[keep][n], fraction[keep][n]
+            grid_x, fraction = np.meshgrid(
+                np.clip(centre + reach_x * around, x[0], x[-1]),
+                np.clip(at + reach_fraction * around, 0.0, 1.0),
+                indexing="ij",
+            )
+            reach_x, reach_fraction = 0.4 * reach_x, 0.4 * reach_fraction
         return best

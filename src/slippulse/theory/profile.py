@@ -35,7 +35,7 @@ class Piece:
     supersonic: bool
 
 
-def smooth(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
+def analytic(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
     """The pre-stress with one level everywhere: analytic, and the pre-stress itself where the level is that."""
     tau = prestress.peak + (level - prestress.peak) * -np.expm1(-0.5 * (x / prestress.width) ** 2)
     for centre, amplitude, width in prestress.bumps:
@@ -65,11 +65,11 @@ def pieces(prestress: Prestress) -> list[Piece]:
     out = []
     for left, right, level in _between_jumps(prestress):
         x = _samples(prestress, left, right)
-        tau = smooth(prestress, level, x)
+        tau = analytic(prestress, level, x)
         positive = tau > -ROUNDING
 
         def value(z: float, level=level) -> float:
-            return float(smooth(prestress, level, np.asarray(z)))
+            return float(analytic(prestress, level, np.asarray(z)))
 
         marks = []
         for k in np.flatnonzero(positive[1:] != positive[:-1]):
@@ -88,11 +88,11 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     found = []
     for left, right, level in _between_jumps(prestress):
         x = _samples(prestress, left, right)
-        excess = smooth(prestress, level, x) - 1.0
+        excess = analytic(prestress, level, x) - 1.0
         over = excess >= 0.0
 
         def above(z: float, level=level) -> float:
-            return float(smooth(prestress, level, np.asarray(z))) - 1.0
+            return float(analytic(prestress, level, np.asarray(z))) - 1.0
 
         marks = [float(x[0])] if over[0] else []
         for k in np.flatnonzero(over[1:] != over[:-1]):

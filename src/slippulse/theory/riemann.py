@@ -12,19 +12,65 @@ as long as no stuck point lies in the past of (y, t). p(x) is any solution at re
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from itertools import accumulate
+
 import numpy as np
 from numpy.polynomial import legendre
 
-from .curve import COUNT, INTEGRATE, WEIGHTS, Curve
-from .kernel import riemann, riemann_bend, riemann_slope
-from .stationary import Stationary
+from .curve import COUNT, CUMULATIVE, INTEGRATE, SLOPE, TO_POWERS, WEIGHTS, Crossing, Curve, horner
+from .kernel import riemann
 
-# Points whose cones are computed together: their arrays stay in the cache.
+# Points whose integrals are computed together: their arrays stay in the cache.
 CHUNK = 192
 
 
-class Cones:
-    """The past cones of points behind a curve.
+class Rest:
+    """One solution p of p'' - gamma p + tau = 0 along a curve: which one makes no difference to u.
+
+    For gamma > 0 the bounded one, exp(-sqrt(gamma) |x|)/(2 sqrt(gamma)) convolved with tau, which is continued beyond
+    the curve at its outermost values; summed from panel to panel in the direction in which it decays.
+    """
+
+    def __init__(self, curve: Curve, gamma: float) -> None:
+        self.curve = curve
+        if gamma == 0.0:
+            # p = p' = 0 at the left end.
+            slope = -_integral(curve.source)
+            p = _integral(slope * (curve.x @ SLOPE.T))
+        else:
+            k = float(np.sqrt(gamma))
+            right = _decaying(k, curve.x, curve.source, curve.edges)
+            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])[::-1, ::-1]
+            p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
+        # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
+        self.at_nodes = (p, slope, *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)))
+        self._powers = [(values @ TO_POWERS.T).T for values in (p, slope)]
+
+    def at(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
+        """p (order 0) or p' (1) at a parameter on panels."""
+        return horner(self._powers[order][:, panel], s)
+
+
+def _integral(values: np.ndarray) -> np.ndarray:
+    """From the left end of the curve, of values per unit of the parameter."""
+    gain = values @ WEIGHTS
+    return (np.cumsum(gain) - gain)[:, None] + values @ CUMULATIVE.T
+
+
+def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Int_{-inf}^x exp(-k (x - x')) tau dx' at the nodes."""
+    within = np.exp(k * (x - edges[:-1, None]))
+    loss = np.exp(-k * np.diff(edges))
+    gains = loss * ((source * within) @ WEIGHTS)
+    first = float(source[0, 0] / (SLOPE[0] @ x[0])) / k
+    starts = list(accumulate(zip(loss, gains, strict=True), lambda p, step: p * step[0] + step[1], initial=first))
+    return (np.array(starts[:-1])[:, None] + (source * within) @ CUMULATIVE.T) / within
+
+
+class Past:
+    """The domains of dependence of points behind a curve.
 
     Parameters
     ----------
@@ -40,72 +86,66 @@ class Cones:
 
     def slip_velocity(self) -> np.ndarray:
         """du/dt."""
-        weight = self.curve.source
+        return 0.5 * self._along(lambda behind, ahead, kernel, panels: kernel(0) * self._source(panels))
 
-        def kernel(behind, beside, z, bounds, panels):
-            return riemann(z, bounds) * weight[panels].ravel()
-
-        return 0.5 * self._along(kernel)
+    def _source(self, panels: slice) -> np.ndarray:
+        return self.curve.source[panels].ravel()
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of du/dt by t - y and by t + y: of the formula's ends and of its kernel."""
-        curve, gamma = self.curve, self.gamma
         ends = []
-        for name, cross in (("early", self.left), ("late", self.right)):
-            slope = curve.slope(name, cross.panel, cross.place)
+        for name, (panel, s, _) in (("early", self.left), ("late", self.right)):
+            slope = self.curve.slope(name, panel, s)
             # Where the slope is 0 so is tau, and the end contributes nothing.
             slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-            ends.append(curve.at("source", cross.panel, cross.place) / slope)
-        if gamma == 0.0:
+            ends.append(self.curve.at("source", panel, s) / slope)
+        if self.gamma == 0.0:
             return -0.5 * ends[0], 0.5 * ends[1]
+        by_xi = self._along(lambda behind, ahead, kernel, panels: kernel(1) * ahead * self._source(panels))
+        by_eta = self._along(lambda behind, ahead, kernel, panels: kernel(1) * behind * self._source(panels))
+        return 0.5 * (self.gamma * by_xi - ends[0]), 0.5 * (self.gamma * by_eta + ends[1])
 
-        def by_xi(behind, beside, z, bounds, panels):
-            return gamma * riemann_slope(z, bounds) * beside * curve.source[panels].ravel()
-
-        def by_eta(behind, beside, z, bounds, panels):
-            return gamma * riemann_slope(z, bounds) * behind * curve.source[panels].ravel()
-
-        return 0.5 * (self._along(by_xi) - ends[0]), 0.5 * (self._along(by_eta) + ends[1])
-
-    def slip(self, rest: Stationary) -> np.ndarray:
+    def slip(self, rest: Rest) -> np.ndarray:
         """u."""
         gamma = self.gamma
 
-        def kernel(behind, beside, z, bounds, panels):
-            p, bend, time, early, late = rest.along(panels)
-            out = riemann(z, bounds) * (-bend * time)
+        def integrand(behind, ahead, kernel, panels):
+            p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
+            out = kernel(0) * (-slope * time)
             if gamma > 0.0:
-                out += riemann_slope(z, bounds) * (beside * (gamma * p * early) - behind * (gamma * p * late))
+                out += kernel(1) * (ahead * (gamma * p * early) - behind * (gamma * p * late))
             return out
 
-        ends = rest.at(self.left) + rest.at(self.right)
-        return rest.value(self.y) - 0.5 * ends + 0.5 * self._along(kernel)
+        return self._less_ends(rest, 0) + 0.5 * self._along(integrand)
 
-    def strain(self, rest: Stationary) -> np.ndarray:
+    def strain(self, rest: Rest) -> np.ndarray:
         """du/dx, the derivative of the formula for u."""
         gamma, curve = self.gamma, self.curve
-        ends = rest.slope_at(self.left) + rest.slope_at(self.right)
-        out = rest.slope(self.y) - 0.5 * ends
+        out = self._less_ends(rest, 1)
         if gamma == 0.0:
             return out
 
-        def kernel(behind, beside, z, bounds, panels):
-            p, bend, time, early, late = rest.along(panels)
-            apart = beside - behind
-            slope = riemann_slope(z, bounds)
-            growth = gamma**2 * riemann_bend(z, bounds) * (beside * (p * early) - behind * (p * late))
-            return apart * (slope * (gamma * bend * time) - growth) + slope * (gamma * p * (early + late))
+        def integrand(behind, ahead, kernel, panels):
+            p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
+            first = kernel(1)
+            growth = gamma**2 * kernel(2) * (ahead * (p * early) - behind * (p * late))
+            return (ahead - behind) * (first * (gamma * slope * time) - growth) + first * (gamma * p * (early + late))
 
-        behind = self.xi - curve.at("early", self.right.panel, self.right.place)
-        beside = self.eta - curve.at("late", self.left.panel, self.left.place)
-        out += 0.125 * gamma * (rest.at(self.right) * behind - rest.at(self.left) * beside)
-        return out + 0.5 * self._along(kernel)
+        (on_left, s_left, _), (on_right, s_right, _) = self.left, self.right
+        behind = (self.xi - curve.at("early", on_right, s_right)) * rest.at(on_right, s_right, 0)
+        ahead = (self.eta - curve.at("late", on_left, s_left)) * rest.at(on_left, s_left, 0)
+        return out + 0.125 * gamma * (behind - ahead) + 0.5 * self._along(integrand)
 
-    def _along(self, kernel) -> np.ndarray:
-        """Integral of a kernel, given per unit of the panels' parameter, between the ends of each cone."""
-        curve, gamma = self.curve, self.gamma
+    def _less_ends(self, rest: Rest, order: int) -> np.ndarray:
+        """p or p' at the points less its mean at the ends of their integrals."""
+        at_ends = [rest.at(panel, s, order) for panel, s, _ in (self.left, self.right)]
+        return rest.at(*self.curve.locate(self.y), order) - 0.5 * sum(at_ends)
+
+    def _along(self, integrand: Callable) -> np.ndarray:
+        """Integral of an integrand, given per unit of the panels' parameter, between the ends of each domain."""
+        curve = self.curve
         out = np.empty(self.xi.shape)
-        # Cones of about the same panels together.
+        # Points of about the same panels together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, out.size, CHUNK):
             part = order[start : start + CHUNK]
@@ -114,28 +154,24 @@ class Cones:
             first, last = int(low.min()), int(high.max()) + 1
             panels = slice(first, last)
             behind = self.xi[part, None] - curve.early[panels].ravel()
-            beside = self.eta[part, None] - curve.late[panels].ravel()
-            z = gamma * behind * beside
+            ahead = self.eta[part, None] - curve.late[panels].ravel()
+            z = self.gamma * behind * ahead
             rows, here = np.arange(low.size), np.arange(last - first)
-            ends = (low - first, high - first)
-            boxes = kernel(behind, beside, z, _bounds(z, rows, ends), panels).reshape(low.size, -1, COUNT)
-            whole = (here >= ends[0][:, None]) & (here < ends[1][:, None])
+            low, high = low - first, high - first
+            # Below 0 only the cut panels count, continued beyond the domain.
+            cut = z.reshape(low.size, -1, COUNT)[np.stack([rows, rows]), np.stack([low, high])]
+            kernel = partial(riemann, z, (float(cut.min()), float(z.max())))
+            boxes = integrand(behind, ahead, kernel, panels).reshape(low.size, -1, COUNT)
+            whole = (here >= low[:, None]) & (here < high[:, None])
             total = np.sum(np.where(whole, boxes @ WEIGHTS, 0.0), axis=1)
             # The panels at both ends are cut.
-            for sign, end, cross in zip((-1.0, 1.0), ends, (self.left, self.right), strict=True):
-                total += sign * np.sum(boxes[rows, end] * partial_weights(cross.place[part]), axis=1)
+            weights = partial_weights(np.stack([self.left.s[part], self.right.s[part]]))
+            total += np.sum(boxes[rows, high] * weights[1] - boxes[rows, low] * weights[0], axis=1)
             out[part] = total
-        # A point on the curve, at the end of a panel: its cone is empty.
+        # A point on the curve, at the end of a panel: its domain is empty.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
 
 
-def partial_weights(place: np.ndarray) -> np.ndarray:
-    """Weights at a panel's nodes of the integral from its left end to a place on it."""
-    return legendre.legvander(place, COUNT) @ INTEGRATE
-
-
-def _bounds(z: np.ndarray, rows: np.ndarray, ends) -> tuple[float, float]:
-    """The range of z that counts: all above 0, and below it that of the cut panels, continued beyond the cone."""
-    boxes = z.reshape(z.shape[0], -1, COUNT)
-    lower = min(float(boxes[rows, end].min()) for end in ends)
-    return min(lower, 0.0), max(float(z.max()), 0.0)
+def partial_weights(s: np.ndarray) -> np.ndarray:
+    """Weights at a panel's nodes of the integral from its left end to a parameter."""
+    return legendre.legvander(s, COUNT) @ INTEGRATE

@@ -2,7 +2,7 @@
 
 While tau(x) > 0 a front outruns the waves, so T(x) is the integral of 1/v(tau(x), beta/dx), and the damping,
 beta = (beta/dx) dx -> 0, acts at the front alone. Where tau < 0 the front is a free boundary (`slow_front`). Behind
-the fronts the undamped equation has Riemann's solution (`riemann`), up to the trailing edge (`trailing`).
+the fronts the undamped equation has Riemann's solution (`riemann`), up to the trailing edge (`part`).
 """
 
 from __future__ import annotations
@@ -16,10 +16,13 @@ import numpy as np
 from ..model.checks import as_numbers, check_choice, check_number, of_one_shape, short_repr
 from ..model.prestress import Prestress
 from ..model.roots import root_between
+from .curve import SAME
 from .fronts import NARROWEST, FrontLaw
 from .part import Part
-from .spreading import spread
+from .spreading import Stretch, spread
 
+# The construction goes on this much beyond the duration, relative, so that the end is a time like any other.
+BEYOND = 1e-6
 FIELDS = ("slip_velocity", "slip", "strain")
 # Of a map, which takes 100 bytes each.
 MOST_POINTS = 10**7
@@ -78,34 +81,40 @@ class Rupture:
         self.prestress, self.gamma = prestress, self.law.gamma
         self.damping_ratio, self.release, self.duration = self.law.damping_ratio, release, float(duration)
         self.refinement = self.law.refinement
-        self.stretches, stopped = spread(self.law, self.duration)
-        self._stopped = [Limit(*point) for point in stopped]
-        self._parts = [Part(self.law, stretch, self.duration) for stretch in self.stretches if stretch.panels]
+        until = self.duration * (1.0 + BEYOND)
+        self.stretches, self._unknown = spread(self.law, until)
+        kinks = [0.0, *(piece.right for piece in self.law.pieces if np.isfinite(piece.right))]
+        self._parts = [
+            Part(
+                stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], self.refinement, prestress.symmetric
+            )
+            for stretch in self.stretches
+        ]
 
     # Fronts
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
         """Left and right end of each connected part: "stops" for good, or "duration" where it goes on."""
-        names = {"dead": "stops"}
         return [
-            tuple(
-                FrontEnd(
-                    *map(float, stretch.ends[side]), names.get(stretch.stopped[side], stretch.stopped[side])
-                )
-                for side in (-1.0, 1.0)
-            )
-            for stretch in self.stretches
+            (self._front_end(part, stretch, -1.0), self._front_end(part, stretch, 1.0))
+            for part, stretch in zip(self._parts, self.stretches, strict=True)
         ]
+
+    def _front_end(self, part: Part, stretch: Stretch, side: float) -> FrontEnd:
+        (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
+        if reason != "duration" and time <= self.duration * (1.0 + SAME):
+            return FrontEnd(float(x), float(min(time, self.duration)), "stops" if reason == "dead" else reason)
+        edges = part.curve.edges[part.curve.edge_times <= self.duration]
+        return FrontEnd(
+            part.front_at(self.duration, edges[-1 if side > 0.0 else 0], side), self.duration, "duration"
+        )
 
     def release_time(self, x) -> np.ndarray:
         """T(x): when the first front reaches x; NaN where none does until ``duration``."""
         x = as_numbers("x", x)
-        out = np.full(x.shape, np.nan)
-        for part in self._parts:
-            time = part.curve.arrival(x)
-            out = np.where(np.isfinite(time), time, out)
-        return np.where((out <= self.duration) & (out < self.horizon(x)), out, np.nan)
+        times = [part.curve.arrival(x) for part in self._parts]
+        return self._until_end(x, np.fmin.reduce(times))
 
     def fronts_at(self, time: float, x: float = 0.0) -> tuple[float, float]:
         """Positions of the two fronts of the connected part around x at a time.
@@ -115,24 +124,27 @@ class Rupture:
         ValueError
             If the time is outside (0, duration], or x has not slipped by then.
         """
-        check_number("time", time, above=0.0, at_most=self.duration)
+        time = self._time(time)
         check_number("x", x)
-        part = self._part_at(x)
-        if part is None or not float(part.curve.arrival(np.array(x))) <= time:
-            raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
-        return part.front_at(time, x, -1.0), part.front_at(time, x, 1.0)
+        for part in self._parts:
+            if part.curve.arrival(x) <= time * (1.0 + SAME):
+                return part.front_at(time, x, -1.0), part.front_at(time, x, 1.0)
+        raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     # Sticking
 
     def stick_time(self, x) -> np.ndarray:
         """When x sticks; NaN where it does not until ``duration``, or where the construction ends before."""
         x = as_numbers("x", x)
-        places, back = np.unique(self._side(x), return_inverse=True)
-        out = np.full(places.shape, np.nan)
+        return self._until_end(x, self._stick(x))
+
+    def _stick(self, x: np.ndarray) -> np.ndarray:
+        """Stick times, NaN where not until a little beyond the end, whatever the horizon."""
+        positions, back = np.unique(self._side(x), return_inverse=True)
+        out = np.full(positions.shape, np.nan)
         for part in self._parts:
-            inside = part.inside(places)
-            out[inside] = part.edge.stick_time(places[inside])
-        out[~(out < self.horizon(places))] = np.nan
+            on = part.curve.covers(positions)
+            out[on] = part.stick_time(positions[on])
         return out[back].reshape(x.shape)
 
     def final_slip(self, x) -> np.ndarray:
@@ -150,8 +162,10 @@ class Rupture:
     def first_stick(self) -> tuple[float, float] | None:
         """Time and position of the first sticking; None where nothing sticks until ``duration``."""
         found = [first for part in self._parts if (first := part.first_stick())]
-        found = [(time, x) for time, x in found if time < float(self.horizon(np.array(x)))]
-        return min(found) if found else None
+        times = [float(self._until_end(np.array(x), np.array(time))) for time, x in found]
+        return min(
+            ((time, x) for time, (_, x) in zip(times, found, strict=True) if np.isfinite(time)), default=None
+        )
 
     @property
     def transition_time(self) -> float:
@@ -175,25 +189,22 @@ class Rupture:
         side : "right" or "left"
         """
         check_choice("side", side, ("right", "left"))
-        check_number("time", time, above=0.0, at_most=self.duration)
-        if not self.first_stick or time <= self.first_stick[0]:
+        time = self._time(time)
+        if not self.first_stick or time <= self.first_stick[0] * (1.0 + SAME):
             return np.nan
         x = self.first_stick[1]
         front = self.fronts_at(time, x)[side == "right"]
 
-        def late(place: float) -> float:
-            stick = float(self.stick_time(np.array(place)))
-            # At the end itself the front's own point is said to stick as it is released.
-            return (stick if stick < self.duration else 2.0 * self.duration) - time
+        def late(position: float) -> float:
+            return float(np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)) - time
 
-        if late(front) <= 0.0 or time >= float(self.horizon(np.array(front))):
-            return 0.0 if late(front) <= 0.0 else np.nan
-        return abs(front - root_between(late, x, front, xtol=1e-11))
+        trailing = front if late(front) <= 0.0 else root_between(late, x, front, xtol=1e-11)
+        return np.nan if self._beyond_horizon(np.array([trailing, front]), time).any() else abs(front - trailing)
 
     @cached_property
     def largest_velocity(self) -> float:
         """Largest slip velocity until ``duration``, where the construction holds."""
-        return max(part.largest_velocity(self.horizon) for part in self._parts)
+        return max(part.largest_velocity(self.duration, self.horizon) for part in self._parts)
 
     # Fields
 
@@ -223,51 +234,63 @@ class Rupture:
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
         x, time = of_one_shape(x=as_numbers("x", x), time=as_numbers("time", time))
-        if np.any(time > self.duration):
+        if np.any(time > self.duration * (1.0 + SAME)):
             raise ValueError(f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}")
-        side = self._side(x)
-        places, column = np.unique(side, return_inverse=True)
+        time = np.minimum(time, self.duration)
+        positions, column = np.unique(self._side(x), return_inverse=True)
         column = column.reshape(x.shape)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._parts:
-            number = np.flatnonzero(part.inside(places))
+            number = np.flatnonzero(part.curve.covers(positions))
             if not number.size:
                 continue
-            release, stick = np.full((2, places.size), np.inf)
-            release[number] = part.curve.arrival(places[number])
-            found = part.edge.stick_time(places[number])
-            stick[number] = np.where(np.isfinite(found), found, np.inf)
+            release, stick = np.full((2, positions.size), np.inf)
+            release[number] = part.curve.arrival(positions[number])
+            stick[number] = np.nan_to_num(part.stick_time(positions[number]), nan=np.inf)
             sliding = (time > release[column]) & (time < stick[column])
             stuck = (time >= stick[column]) & np.isfinite(release[column])
-            y, t = places[column[sliding]], time[sliding]
+            y, t = positions[column[sliding]], time[sliding]
             # What has stuck is computed once for each position.
             ended = np.unique(column[stuck])
             for name in fields:
                 out[name][sliding] = part.field(name, y, t)
                 if name != "slip_velocity" and ended.size:
-                    last = np.zeros(places.size)
-                    last[ended] = part.field(name, places[ended], stick[ended])
+                    last = np.zeros(positions.size)
+                    last[ended] = part.field(name, positions[ended], stick[ended])
                     out[name][stuck] = last[column[stuck]]
         if "strain" in out and self.prestress.symmetric:
             out["strain"] = np.where(x < 0.0, -out["strain"], out["strain"])
-        late = time >= self.horizon(x)
+        late = self._beyond_horizon(x, time)
         return {name: np.where(late, np.nan, values) for name, values in out.items()}
 
     def _side(self, x: np.ndarray) -> np.ndarray:
         return np.abs(x) if self.prestress.symmetric else x
 
-    def _part_at(self, x: float) -> Part | None:
-        return next((part for part in self._parts if part.inside(np.array(x))), None)
+    # Where it ends: at the duration, and beyond a horizon
 
-    # Where it ends
+    def _time(self, time: float) -> float:
+        """A time until the duration, which is the duration if only rounding tells them apart."""
+        check_number("time", time, above=0.0)
+        time = min(float(time), self.duration) if time <= self.duration * (1.0 + SAME) else time
+        check_number("time", time, at_most=self.duration)
+        return time
+
+    def _until_end(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Times of events; NaN where they are not known to come until the duration."""
+        known = (time <= self.duration * (1.0 + SAME)) & ~self._beyond_horizon(x, time)
+        return np.where(known, np.minimum(time, self.duration), np.nan)
+
+    def _beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
+        return time * (1.0 + SAME) >= self.horizon(x)
 
     @cached_property
     def _ends(self) -> list[Limit]:
         reason = "the trailing edge is slower than the waves"
-        found = [Limit(x, t, reason) for part in self._parts for x, t in part.edge.violations()]
+        found = [Limit(x, t, reason) for part in self._parts for x, t in part.violations()]
         if self.prestress.symmetric:
             found += [Limit(-end.x, end.time, end.reason) for end in found]
-        return self._stopped + found
+        found += [Limit(*point) for point in self._unknown]
+        return [end for end in found if end.time <= self.duration * (1.0 + SAME)]
 
     @property
     def limit(self) -> Limit | None:
@@ -277,8 +300,4 @@ class Rupture:
     def horizon(self, x) -> np.ndarray:
         """From when on the construction says nothing at x: everything then is NaN."""
         x = as_numbers("x", x)
-        out = np.full(x.shape, np.inf)
-        if self._ends:
-            ends = np.array([(end.x, end.time) for end in self._ends])
-            out = np.min(ends[:, 1] + np.abs(x[..., None] - ends[:, 0]), axis=-1)
-        return out
+        return np.min([end.time + np.abs(x - end.x) for end in self._ends], axis=0, initial=np.inf)

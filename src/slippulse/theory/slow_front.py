@@ -10,26 +10,27 @@ X is marched as a function of e, in which it stays smooth where the front stops:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from ..model.prestress import Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
-from .kernel import riemann, riemann_slope
-from .profile import smooth
+from .kernel import riemann
+from .profile import analytic
 from .riemann import partial_weights
 
 RESOLVED = 1e-11
-# The shortest share of a panel of entries.
+# The shortest fraction of a panel of entries.
 SHORTEST = 1e-11
 # How far from a mark a front that speeds up to the waves is taken on at their speed.
 NEAR_MARK = 1e-4
+# How far, relative, a look beyond the end of a panel of entries goes for the next one.
+LOOK = 1e-11
 
 
-@dataclass(frozen=True)
-class Advance:
+class Advance(NamedTuple):
     """The next panel of a slow front, and why it is the last one: see `advance`."""
 
     panel: Panel | None
@@ -50,8 +51,6 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
     -------
     The new panel; stop is "mark" where it ends at the mark, "dead" where the front stops for good, and "unknown"
     where its characteristic comes from beyond the curve's left end; "unresolved" where no panel is short enough.
-
-    Source: the free boundary (module docstring).
     """
     front = _Chunk(curve, prestress, level, gamma)
     entry = front.entry()
@@ -71,42 +70,31 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
         found = _first_event(x, slope, mark, limit=1.2 if corrections else 1.0)
         if found is None:
             return Advance(front.panel(k, start, stop, x, slope), None)
-        place, event = found
+        s, event = found
         # The chunk is made again to end there: beyond it the solution may mean nothing.
-        if corrections and (abs(place - 1.0) < 1e-9 or (corrections > 5 and abs(place - 1.0) < 1e-6)):
-            return Advance(
-                front.panel(k, start, stop, x, slope, end=mark if event == "mark" else None), event
-            )
-        stop = start + 0.5 * (stop - start) * (1.0 + place)
+        if corrections and (abs(s - 1.0) < 1e-9 or (corrections > 5 and abs(s - 1.0) < 1e-6)):
+            return Advance(front.panel(k, start, stop, x, slope, mark if event == "mark" else None), event)
+        stop = start + 0.5 * (stop - start) * (1.0 + s)
         corrections += 1
     return Advance(None, "unresolved")
 
 
 def _first_event(x: np.ndarray, slope: np.ndarray, mark: float, limit: float) -> tuple[float, str] | None:
-    """The first place on the chunk, or up to a limit beyond it, where the front stops or meets the mark."""
-    found = []
-    series = TO_SERIES @ slope
-    roots = _roots_on(series, limit)
-    if roots.size:
-        found.append((float(roots[0]), "dead"))
+    """The first parameter on the chunk, or up to a limit beyond it, where the front stops or meets the mark."""
+    found = [(s, "dead") for s in _roots_on(slope, limit)]
     if np.isfinite(mark):
-        series = TO_SERIES @ x
-        series = series - np.eye(COUNT)[0] * mark
-        roots = _roots_on(series, limit)
-        if roots.size:
-            found.append((float(roots[0]), "mark"))
-    if not found:
-        return None
-    return min(found)
+        found += [(s, "mark") for s in _roots_on(x - mark, limit)]
+    return min(found, default=None)
 
 
-def _roots_on(series: np.ndarray, limit: float) -> np.ndarray:
+def _roots_on(values: np.ndarray, limit: float) -> list[float]:
+    series = TO_SERIES @ values
     scale = np.max(np.abs(series))
     if scale == 0.0:
-        return np.empty(0)
+        return []
     roots = legendre.legroots(legendre.legtrim(series, 1e-13 * scale))
     real = roots.real[np.abs(roots.imag) < 1e-9 * (1.0 + np.abs(roots.real))]
-    return np.sort(real[(real > -1.0 + 1e-12) & (real <= limit)])
+    return real[(real > -1.0 + 1e-12) & (real <= limit)].tolist()
 
 
 class _Chunk:
@@ -117,59 +105,54 @@ class _Chunk:
         self.x0, self.t0 = float(curve.edges[-1]), float(curve.edge_times[-1])
 
     def tau(self, x: np.ndarray) -> np.ndarray:
-        return smooth(self.prestress, self.level, x)
+        return analytic(self.prestress, self.level, x)
 
     def entry(self) -> tuple[int, float] | None:
-        """Panel and place where the front's characteristic entered; None beyond the left end."""
-        y = np.array([self.x0])
-        xi = np.array([self.t0 - self.x0])
-        for _ in range(2):
-            cross = self.curve.left(y, xi)
-            if not cross.known[0]:
-                return None
-            k, place = int(cross.panel[0]), float(cross.place[0])
-            if place > -1.0 + 1e-7:
-                break
-            # At the panel's end: the next one goes on, if it is not another part of the rupture that does.
-            xi = xi + 1e-11 * np.maximum(1.0, np.abs(xi))
-        return k, place
+        """Panel and parameter where the front's characteristic entered; None beyond the left end."""
+        xi = self.t0 - self.x0
+        look = LOOK * max(1.0, abs(xi))
+        # A little later: at the end of a panel it is the next one that goes on, or another part of the rupture.
+        at, later = (self.curve.left(np.array([self.x0]), np.array([level])) for level in (xi, xi + look))
+        if not later.known[0]:
+            return None
+        k = int(later.panel[0])
+        # Not by the look, which would leave a gap, but at the panel's very end.
+        if abs(self.curve.early_ends[k, 1] - xi) < 10.0 * look:
+            return k, 1.0
+        return k, float((at if at.panel[0] == k else later).s[0])
 
     def solve(self, k: int, start: float, stop: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Positions at the nodes, and their derivative; None where the chunk is too long."""
         curve, gamma = self.curve, self.gamma
-        places = start + 0.5 * (stop - start) * (1.0 + NODES)
+        s = start + 0.5 * (stop - start) * (1.0 + NODES)
         same = np.full(COUNT, k)
-        early = curve.at("early", same, places)
-        cut = curve.weight[k] - partial_weights(places) * curve.source[k]
-        rest = np.broadcast_to(curve.weight[k + 1 :].ravel(), (COUNT, curve.weight[k + 1 :].size))
+        early = curve.at("early", same, s)
+        cut = (WEIGHTS - partial_weights(s)) * curve.source[k]
+        rest = np.tile((curve.source[k + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
         weight = np.concatenate([cut, rest], axis=1)
         behind = gamma * (early[:, None] - curve.early[k:].ravel())
         late = curve.late[k:].ravel()
         own = gamma * (early[:, None] - early)
-        entries = curve.at("x", same, places)
-        x = self.guess(k, start, entries)
+        x = self.guess(k, start, curve.at("x", same, s))
         change = np.inf
         for _ in range(60):
             eta = early + 2.0 * x
             z = behind * (eta[:, None] - late)
             bounds = (float(z[:, :COUNT].min()), float(z.max()))
             ahead = np.add.reduce(weight * riemann(z, bounds), axis=1)
+            growth = 2.0 * np.add.reduce(weight * riemann(z, bounds, 1) * behind, axis=1)
             # From x0 to each position: with a kernel of 1 exactly, and the rest of the kernel at the nodes.
             half = 0.5 * (x - self.x0)
             area = half * (self.tau(self.x0 + half[:, None] * (1.0 + NODES)) @ WEIGHTS)
             tau = self.tau(x)
-            source = tau * (SLOPE @ x)
-            z_own = own * 2.0 * (0.5 * (eta[:, None] - eta))
-            z_bounds = (float(z_own.min()), float(z_own.max()))
-            near = np.add.reduce(CUMULATIVE * source * (riemann(z_own, z_bounds) - 1.0), axis=1)
-            residual = ahead + area + near
-            fall = tau + 2.0 * np.add.reduce(weight * riemann_slope(z, bounds) * behind, axis=1)
+            z = own * (eta[:, None] - eta)
+            beyond = riemann(z, (float(z.min()), float(z.max()))) - 1.0
+            near = np.add.reduce(CUMULATIVE * (tau * (SLOPE @ x)) * beyond, axis=1)
+            fall = tau + growth
             if not np.all(fall < 0.0):
                 return None
-            step = residual / fall
-            new = x - step
             # Never behind the last position.
-            new = np.maximum(new, self.x0 + 0.1 * (x - self.x0))
+            new = np.maximum(x - (ahead + area + near) / fall, self.x0 + 0.1 * (x - self.x0))
             previous, change = change, float(np.max(np.abs(new - x)))
             x = new
             if not np.isfinite(change) or change > 1e3:
@@ -178,23 +161,21 @@ class _Chunk:
                 break
         else:
             return None
-        series = TO_SERIES @ x
-        if np.max(np.abs(series[-2:])) > RESOLVED * max(1.0, abs(self.x0)):
+        if np.max(np.abs((TO_SERIES @ x)[-2:])) > RESOLVED * max(1.0, abs(self.x0)):
             return None
         return x, SLOPE @ x
 
     def guess(self, k: int, start: float, entries: np.ndarray) -> np.ndarray:
         """Positions that go on as they would without leaf springs."""
-        first = float(self.curve.at("x", np.array([k]), np.array([start]))[0])
-        gone = first - entries
-        at_entry = float(self.prestress_at_entry(k, start))
-        here = float(self.tau(np.array(self.x0)))
+        panel, s = np.array([k]), np.array([start])
+        first, source, slope = (
+            float(self.curve.at("x", panel, s)[0]),
+            float(self.curve.at("source", panel, s)[0]),
+            float(self.curve.slope("x", panel, s)[0]),
+        )
+        at_entry, here = source / slope, float(self.tau(np.array(self.x0)))
         pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
-        return self.x0 + min(max(pace, 1e-3), 10.0) * gone
-
-    def prestress_at_entry(self, k: int, start: float) -> float:
-        place, panel = np.array([start]), np.array([k])
-        return self.curve.at("source", panel, place)[0] / self.curve.slope("x", panel, place)[0]
+        return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
 
     def stalled(self) -> bool:
         """Whether the front has just come to rest, at the end of the last panel of entries."""
@@ -203,11 +184,11 @@ class _Chunk:
         return bool(at_end < 1e-3 * (self.curve.edges[-1] - self.curve.edges[-2]))
 
     def panel(self, k, start, stop, x, slope, end: float | None = None) -> Panel:
-        places = start + 0.5 * (stop - start) * (1.0 + NODES)
-        early = self.curve.at("early", np.full(COUNT, k), places)
+        s = np.append(start + 0.5 * (stop - start) * (1.0 + NODES), stop)
+        *early, last_early = self.curve.at("early", np.full(COUNT + 1, k), s)
         last = float(AT_ENDS[1] @ x) if end is None else end
-        last_early = float(self.curve.at("early", np.array([k]), np.array([stop]))[0])
-        return Panel(x, early + x, self.tau(x) * slope, (self.x0, last), (self.t0, last_early + last))
+        ends = (self.x0, last), (self.t0, float(last_early) + last)
+        return Panel(x, np.array(early) + x, self.tau(x) * slope, *ends)
 
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0: too short to be resolved, at the speed of the waves."""
@@ -215,7 +196,5 @@ class _Chunk:
             return Advance(None, "unresolved")
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
-        time = self.t0 + x - self.x0
-        return Advance(
-            Panel(x, time, self.tau(x) * half, (self.x0, mark), (self.t0, self.t0 + 2.0 * half)), "mark"
-        )
+        ends = (self.x0, mark), (self.t0, self.t0 + 2.0 * half)
+        return Advance(Panel(x, self.t0 + x - self.x0, self.tau(x) * half, *ends), "mark")

@@ -40,6 +40,7 @@ class Stretch:
         self.joins: list[float] = []
 
     def curve(self) -> Curve:
+        """Its panels, as one curve."""
         return Curve(self.panels, self.restarts[-1.0], self.restarts[1.0])
 
     def add(self, side: float, panels: list[Panel], x: float, time: float) -> None:
@@ -58,9 +59,9 @@ class Stretch:
             if right <= side * x:
                 kept.append(panel)
             elif left < side * x:
-                _, place = Curve([panel]).place(np.array([side * x]))
-                if place[0] > -1.0:
-                    kept.append(panel.part(-1.0, float(place[0])))
+                s = float(Curve([panel]).locate(np.array([side * x]))[1][0])
+                if s > -1.0:
+                    kept.append(panel.until(s, side * x))
         time = kept[-1].time_ends[1] if kept else 0.0
         self.panels = kept if side > 0.0 else [panel.mirrored() for panel in kept[::-1]]
         self.ends[side] = (x, time)
