@@ -165,3 +165,7 @@ DRAFT_TRANSITION = 0.05
 EXPLORER = 1e-3
 # Cubics in a table of the front law; v follows ln(v - 1), so that fast fronts have the largest error.
 EXPLORER_SPEED = 1e-4
+
+# --- The last bits ----------------------------------------------------------------------------------------------
+
+END, NUDGED, NUDGED_MINIMUM = 1e-9, 1e-9, 1e-7

@@ -103,11 +103,14 @@ class Curve:
 
     @cached_property
     def powers(self) -> dict[str, np.ndarray]:
-        """Coefficients by powers of the parameter: [power, panel]."""
-        return {
-            name: np.ascontiguousarray((getattr(self, name) @ TO_POWERS.T).T)
-            for name in ("x", "time", "late", "early", "source")
-        }
+        """Coefficients, by powers of the parameter, of values and their derivatives: [power, 2, panel]."""
+        out = {}
+        for name in ("x", "time", "late", "early", "source"):
+            values = (getattr(self, name) @ TO_POWERS.T).T
+            slopes = np.zeros_like(values)
+            slopes[:-1] = values[1:] * np.arange(1.0, COUNT)[:, None]
+            out[name] = np.stack([values, slopes], axis=1)
+        return out
 
     def mirrored(self) -> Curve:
         """The same at -x."""
@@ -116,11 +119,11 @@ class Curve:
 
     def at(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
         """One of `powers` at a parameter on panels."""
-        return horner(self.powers[name][:, panel], s)
+        return horner(self.powers[name][:, 0, panel], s)
 
     def slope(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Its derivative by the parameter."""
-        return horner(self.powers[name][1:, panel] * np.arange(1.0, COUNT)[:, None], s)
+        return horner(self.powers[name][:, 1, panel], s)
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Whether positions lie on the curve."""
@@ -159,22 +162,13 @@ class Curve:
         span = at_right - at_left
         flat = np.abs(span) < 1e-13
         s = np.clip(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
-        powers = self.powers[name][:, panel]
+        powers = self.powers[name][:, :, panel]
         rising, least = np.sign(span), 1e-3 * np.abs(span) + 1e-300
         for _ in range(30):
-            slope = np.zeros_like(s)
-            value = powers[-1].copy()
-            for power in powers[-2::-1]:
-                slope *= s
-                slope += value
-                value *= s
-                value += power
-            new = np.clip(
-                s + (level - value) / (rising * np.maximum(rising * slope, least) + flat), -1.0, 1.0
-            )
-            change = np.max(np.abs(new - s), initial=0.0)
-            s = new
-            if change < 1e-9:
+            value, slope = horner(powers, s)
+            step = (level - value) / (rising * np.maximum(rising * slope, least) + flat)
+            before, s = s, np.clip(s + step, -1.0, 1.0)
+            if np.max(np.abs(s - before), initial=0.0) < 1e-9:
                 break
         return s
 

@@ -89,6 +89,8 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     for left, right, level in _between_jumps(prestress):
         x = _samples(prestress, left, right)
         excess = analytic(prestress, level, x) - 1.0
+        # What is 1 but for rounding, as under the far tail of a bump, is 1.
+        excess[np.abs(excess) <= ROUNDING] = 0.0
         over = excess >= 0.0
 
         def above(z: float, level=level) -> float:
