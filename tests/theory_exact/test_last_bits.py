@@ -94,10 +94,11 @@ def reasons(rupture: Rupture) -> list[str]:
 
 
 def positions(rupture: Rupture, number: int) -> np.ndarray:
-    """Some, and the fronts at the end."""
+    """Some, and those of the fronts at the end that have not stopped, where T(x) is a square root."""
     fronts = rupture.fronts_at(rupture.duration)
     inside = np.random.default_rng((number, 1)).uniform(*fronts, 6)
-    return np.concatenate([inside, [0.0], fronts])
+    going = [end.x for pair in rupture.front_ends for end in pair if end.reason == "duration"]
+    return np.concatenate([inside, [0.0], going])
 
 
 @pytest.mark.parametrize("number", range(SCENES))
@@ -123,7 +124,7 @@ def test_the_end_is_a_time_like_any_other(number):
     duration = rupture.duration
     longer = Rupture(**keys | {"duration": 1.1 * duration})
     x = positions(rupture, number)
-    inside, fronts = x[:-2], x[-2:]
+    inside, fronts = x[:7], x[7:]
     here = at(rupture, inside, duration)
     for name, value in at(longer, inside, duration).items():
         assert here[name] == pytest.approx(value, rel=END, abs=END, nan_ok=True), name

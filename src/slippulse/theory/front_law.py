@@ -12,7 +12,7 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_choice, check_number, of_one_shape
 from ..model.scene import RELEASES
-from .speed_solver import SLOWEST, fastest, first_guess, in_chunks, log_excess, root
+from .speed_solver import SLOWEST, first_guess, in_chunks, log_excess, root, slowest
 from .wiener_hopf import log_prestress
 
 # Beyond it, with tau_0 as near 1 as floating point comes, products of speed and damping would overflow.
@@ -71,7 +71,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     out = np.array(_undamped(tau))
     damped = ratio > 0.0
     near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
-    out[near] = fastest(tau[near], ratio[near], release)
+    out[near] = 1.0 / slowest(tau[near], ratio[near], release)
     rest = damped & ~near
     if np.any(rest):
         out[rest] = 1.0 + np.exp(log_excess(tau[rest], ratio[rest], release))

@@ -101,10 +101,10 @@ class Part:
         left, right = self.curve.edges[[0, -1]]
         if self.one_side:
             left = max(left, 0.0)
-        count = GRID * self.refinement // (2 if self.one_side else 1) + 1
-        x = np.union1d(
-            np.linspace(left, right, count), self.marks[(self.marks >= left) & (self.marks <= right)]
-        )
+        grid = np.linspace(left, right, GRID * self.refinement // (2 if self.one_side else 1) + 1)
+        marks = self.marks[(self.marks >= left) & (self.marks <= right)]
+        apart = np.abs(grid[:, None] - marks).min(axis=1, initial=np.inf) > SAME * (right - left)
+        x = np.union1d(grid[apart], marks)
         x = x[self.curve.arrival(x) < self.until]
         return self._edge_at(x, self.scan(x))
 

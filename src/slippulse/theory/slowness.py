@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 
 from ..model.checks import check_choice, check_number
 from ..model.scene import RELEASES
-from .speed_solver import in_chunks
+from .speed_solver import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
 COUNT = 14
@@ -22,6 +22,8 @@ NODES = legendre.leggauss(COUNT)[0]
 TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
 RESOLVED = 2e-12
 NARROWEST = 1e-7
+# How near 1, in 1 - tau, the panels lose as many digits as the first terms leave out.
+NEARLY_ONE = 1e-8
 # Beyond it, under rule "total", psi is so near pi/2 that 1/v is lost: 5e-10 of it here, all of it at 1e9.
 LARGEST_RATIO = 1e6
 
@@ -62,7 +64,10 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
             break
     # The end of the first panel is a double root.
     s = np.where(tau <= 0.0, -1.0, s)
-    return np.cos(edges[panel] + half * (1.0 + s))
+    out = np.cos(edges[panel] + half * (1.0 + s))
+    # And that of the last may be one, where the first terms in 1/v are better.
+    near = (1.0 - tau < NEARLY_ONE) & ((release == "total") | (damping_ratio < 1e3))
+    return np.where(near, slowest(np.where(near, tau, 1.0), damping_ratio, release), out)
 
 
 def check_law(damping_ratio: float, release: str) -> None:

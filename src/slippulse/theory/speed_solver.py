@@ -77,11 +77,11 @@ def _odds(level: np.ndarray) -> np.ndarray:
     return level - np.log(np.maximum(-np.expm1(level), 1e-17))
 
 
-def fastest(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """Speeds v >> b: -ln tau = b/v + 1/(2 v^2) ("total") or 1/(2 v^2) ("elastic"), up to 1/v^3."""
+def slowest(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:
+    """1/v of fronts with v >> b: -ln tau = b/v + 1/(2 v^2) ("total") or 1/(2 v^2) ("elastic"), up to 1/v^3."""
     level = -np.log(tau)
-    damping = ratio if release == "total" else 0.0
-    return (damping + np.sqrt(damping**2 + 2.0 * level)) / (2.0 * level)
+    damping = np.asarray(ratio) if release == "total" else 0.0
+    return 2.0 * level / np.maximum(damping + np.sqrt(damping**2 + 2.0 * level), 1e-300)
 
 
 def in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
