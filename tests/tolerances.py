@@ -168,4 +168,10 @@ EXPLORER_SPEED = 1e-4
 
 # --- The last bits ----------------------------------------------------------------------------------------------
 
-END, NUDGED, NUDGED_MINIMUM = 1e-9, 1e-9, 1e-7
+# Of answers near 1 to 10. At the end of a duration, against a longer one: other panels, each resolved to 1e-10.
+END = 1e-8
+# For inputs nudged in their last bits: roots in time, found to 1e-11, over slopes down to 0.1.
+NUDGED = 1e-9
+# Where a position is a double root, a least stick time or a slow front that stops or outruns the waves again: the
+# square root of rounding, 1.5e-8.
+NUDGED_DOUBLE = 1.5e-7

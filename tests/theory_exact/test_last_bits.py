@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from tolerances import END, NUDGED, NUDGED_MINIMUM
+from tolerances import END, NUDGED, NUDGED_DOUBLE
 
 from slippulse.model.prestress import Prestress
 from slippulse.theory.rupture import Rupture
@@ -111,8 +111,10 @@ def test_inputs_nudged_in_their_last_bits(number):
     other = Rupture(**{name: nudged(value, rng) for name, value in keys.items()})
     found = answers(other, nudged(x, rng), nudged(rupture.duration, rng))
     assert reasons(other) == reasons(rupture)
+    # Where a front has been slow and outruns the waves again its position is a double root too.
+    again = any(part.restarts[side] for part in rupture.stretches for side in part.restarts)
     for name, value in expected.items():
-        tolerance = NUDGED_MINIMUM if name in ("first_stick", "limit", "horizon") else NUDGED
+        tolerance = NUDGED_DOUBLE if again or name in ("first_stick", "limit", "horizon") else NUDGED
         assert found[name] == pytest.approx(value, rel=tolerance, abs=tolerance, nan_ok=True), name
 
 

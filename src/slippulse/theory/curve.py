@@ -162,13 +162,17 @@ class Curve:
         span = at_right - at_left
         flat = np.abs(span) < 1e-13
         s = np.clip(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
-        powers = self.powers[name][:, :, panel]
-        rising, least = np.sign(span), 1e-3 * np.abs(span) + 1e-300
-        for _ in range(30):
-            value, slope = horner(powers, s)
-            step = (level - value) / (rising * np.maximum(rising * slope, least) + flat)
-            before, s = s, np.clip(s + step, -1.0, 1.0)
-            if np.max(np.abs(s - before), initial=0.0) < 1e-9:
+        rising, least = np.sign(span), 1e-8 * np.abs(span) + 1e-300
+        # Where a slow front has stopped its end is a double root, to which Newton's steps halve the way, or go astray.
+        todo = np.flatnonzero(np.minimum(np.abs(level - at_left), np.abs(level - at_right)) > 1e-15 * np.abs(level))
+        for _ in range(40):
+            value, slope = horner(self.powers[name][:, :, panel[todo]], s[todo])
+            slope = rising[todo] * np.maximum(rising[todo] * slope, least[todo]) + flat[todo]
+            new = np.clip(s[todo] + (level[todo] - value) / slope, -1.0, 1.0)
+            going = np.abs(new - s[todo]) >= 1e-9
+            s[todo] = new
+            todo = todo[going]
+            if not todo.size:
                 break
         return s
 
