@@ -29,6 +29,8 @@ SCAN_WITHOUT_SPRINGS = 1.0 / 64.0
 GRID = 192
 # Errors of a root in time, and of Newton's last step to it.
 TIME, STEP = 1e-12, 1e-11
+# Slip velocities on a slow front are below this, and would be 0.
+QUIET = 1e-13
 
 
 class Edge(NamedTuple):
@@ -172,7 +174,7 @@ class Part:
                 break
             # A slow front that is about to stop: du/dt rises for a short while only.
             middle = 0.5 * (low[flat] + high[flat])
-            risen = self.velocity(x[flat], middle) > 0.0
+            risen = self.velocity(x[flat], middle) > QUIET
             low[flat[risen]] = middle[risen]
             flat = flat[~risen]
             high[flat] = middle[~risen]
