@@ -30,7 +30,7 @@ GRID = 192
 # Errors of a root in time, and of Newton's last step to it.
 TIME, STEP = 1e-12, 1e-11
 # Slip velocities on a slow front are below this, and would be 0.
-QUIET = 1e-13
+QUIET = 1e-12
 
 
 class Edge(NamedTuple):
@@ -168,7 +168,8 @@ class Part:
     def _zero(self, x, low, high, at_low) -> np.ndarray:
         """Zeros of du/dt in time; where it starts at 0, at release, from where it has risen."""
         low, high = low.copy(), high.copy()
-        flat = np.flatnonzero(at_low <= 0.0)
+        level = np.where(at_low <= 0.0, QUIET, 0.0)
+        flat = np.flatnonzero(level)
         for _ in range(40):
             if not flat.size:
                 break
@@ -182,8 +183,8 @@ class Part:
         rest = np.setdiff1d(np.arange(x.size), flat)
         if rest.size:
             found = elementwise.find_root(
-                lambda time, x: self.velocity(x, time), (low[rest], high[rest]), args=(x[rest],),
-                tolerances={"xatol": TIME, "xrtol": 0.0},
+                lambda time, x, level: self.velocity(x, time) - level, (low[rest], high[rest]),
+                args=(x[rest], level[rest]), tolerances={"xatol": TIME, "xrtol": 0.0},
             )  # fmt: skip
             out[rest] = found.x
         return out
