@@ -14,7 +14,11 @@ KILLS ?= 24
 export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
 # Without compiled modules each process imports for 3 s instead of 1.
 export PYTHONDONTWRITEBYTECODE :=
+# Where else to install is not for this environment.
+unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT PIP_PYTHON \
+    PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
 VENV := .venv
+LOCK := src/slippulse/data/lock.py
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
@@ -54,9 +58,15 @@ help:
 
 setup: $(READY)
 
+ifndef LOCKED
+# Of two at once the second waits, and then finds it done.
 $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(CHECK_PLACE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) $(LOCK) .setup.lock $(MAKE) --no-print-directory LOCKED=yes $(READY)
+else
+$(READY): requirements-build.lock requirements.lock pyproject.toml
+	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) .snakemake/run.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
 	@echo "Setting up $(VENV) from requirements.lock (once; 1.2 GB)"
 	@rm -rf "$(VENV)"
 	@$(PYTHON) -m venv "$(VENV)"
@@ -64,6 +74,7 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(call install,--no-binary connection-pool --no-build-isolation -r requirements.lock)
 	@$(PIP) --no-build-isolation --editable .
 	@touch "$(READY)"
+endif
 
 # Only what a cluster adds: every other package is that of requirements.lock.
 $(VENV)/.slurm: $(READY) requirements-slurm.lock
@@ -92,17 +103,13 @@ reference: $(READY)
 replicate: $(READY)
 	@$(CHECK_OPTIONS)
 	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.overlay "$$OVERLAY"
-	@"$(BIN)/python" workflow/unlock.py .
-	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --cores "$$CORES" \
-	    $(if $(PRESET)$(ALLOW_LARGE),--config $(if $(PRESET),preset="$$PRESET") $(if $(ALLOW_LARGE),allow_large="$$ALLOW_LARGE")) \
-	    $(if $(OVERLAY),--configfile "$$OVERLAY") -- $$TARGET
+	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)
-	@set -f; PATH="$(CURDIR)/$(BIN):$$PATH" snakemake --workflow-profile none --quiet all --rulegraph mermaid-js -- \
-	    $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
+	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py rulegraph
 
 verify: $(READY)
-	@"$(BIN)/python" -m slippulse.data.verify results $(if $(AGAINST),--against "$$AGAINST")
+	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.data.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
 
 faults: $(READY)
 	@$(call CHECK_COUNT,KILLS)

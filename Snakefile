@@ -58,8 +58,8 @@ include: "workflow/rules/targets.smk"
 
 
 onsuccess:
-    report_outdated()
+    say_outdated()
 
 
 onerror:
-    report_outdated()
+    say_outdated()

@@ -12,7 +12,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from slippulse.data.variables import is_described
+from slippulse.data.columns import is_described
 
 RESULTS = os.environ.get("PAGES", "")
 PAGES = (

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from itertools import islice
-
 import numpy as np
 import pytest
 
 from slippulse.configuration.cost import expected_cost
 from slippulse.configuration.expand import expand, resolve
-from slippulse.data.chunks import dealing, runs_of
+from slippulse.data.chunks import runs_of
 from slippulse.data.join import ChunksDiffer
 from slippulse.data.origin import configured_by
-from slippulse.steps import join_data, join_measurements, join_uncertainties, measure, simulate, study_grid
+from slippulse.steps import join, measure, simulate, study_grid
 
 # Of the part of the configuration that the files are made by, which each notes.
 CONFIGURATION = "0123456789abcdef"
@@ -39,18 +37,17 @@ SWEEPS = {
 
 @pytest.mark.parametrize(("chunks", "runs"), [(1, 5), (2, 2), (2, 7), (7, 7), (8, 81), (100, 1234)])
 def test_each_run_is_in_one_chunk(chunks, runs):
-    dealt = list(islice(dealing(chunks), runs))
     members = [list(runs_of(number, chunks, runs)) for number in range(1, chunks + 1)]
     assert sorted(run for chunk in members for run in chunk) == list(range(runs))
-    for number, chunk in enumerate(members, start=1):
-        assert chunk == [run for run, to in enumerate(dealt) if to == number]
+    for chunk in members:
+        assert chunk == sorted(chunk)
         assert len(chunk) in (runs // chunks, -(-runs // chunks))
 
 
 @pytest.mark.parametrize("inner", [8, 10, 20, 99, 100, 101])
 def test_costs_that_repeat_are_spread_whatever_their_period(inner):
     cost = np.tile(np.r_[np.ones(inner - 1), inner], 100_000 // inner)
-    sums = np.bincount(list(islice(dealing(10), cost.size)), cost)[1:]
+    sums = np.array([cost[list(runs_of(number, 10, cost.size))].sum() for number in range(1, 11)])
     # With a fixed first chunk one of ten would have half of all costs at 10, 20 and 100.
     assert sums.max() < 1.2 * sums.mean()
 
@@ -101,6 +98,17 @@ def made(project, tmp_path_factory):
     return make
 
 
+KINDS = ("data", "measurements", "uncertainties", "uncertainties/coarser")
+
+
+def join_all(joined, *chunks_and_record) -> None:
+    """Files of each kind, as the rule makes them."""
+    *chunks, record = chunks_and_record
+    for kind, of_chunks, path in zip(KINDS, chunks, joined, strict=True):
+        files = {"chunks": of_chunks, "finest": [joined[1]]}
+        join.run(files, {"joined": path}, {"kind": kind, "record": record})
+
+
 @pytest.mark.parametrize(
     ("name", "chunks"),
     [
@@ -117,13 +125,7 @@ def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks)
     )
     joined = [tmp_path / file.name for file in whole]
     with configured_by(CONFIGURATION):
-        join_data.run({"chunks": data}, {"data": joined[0]}, {"record": SWEEPS[name]["record"]})
-    join_measurements.run({"chunks": measured}, {"measured": joined[1]}, {})
-    join_uncertainties.run(
-        {"finest": joined[1], "uncertainties": studies, "coarser": coarser},
-        {"uncertainties": joined[2], "coarser": joined[3]},
-        {},
-    )
+        join_all(joined, data, measured, studies, coarser, SWEEPS[name]["record"])
     for one, other in zip(whole, joined, strict=True):
         assert one.read_bytes() == other.read_bytes(), one.name
 
@@ -131,18 +133,8 @@ def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks)
 def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
     whole = made("displacement")
     short, long = made("displacement", [1, 5]), made("displacement", [2, 2])
-    with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
-        join_measurements.run({"chunks": [short[1], long[1]]}, {"measured": tmp_path / "measured.csv"}, {})
-    with pytest.raises(ChunksDiffer):
-        join_data.run(
-            {"chunks": [short[0], long[0]]},
-            {"data": tmp_path / "data.nc"},
-            {"record": SWEEPS["displacement"]["record"]},
-        )
-    with pytest.raises(ChunksDiffer):
-        join_uncertainties.run(
-            {"finest": whole[1], "uncertainties": [short[2], long[2]], "coarser": [short[3], long[3]]},
-            {"uncertainties": tmp_path / "study.csv", "coarser": tmp_path / "coarser.csv"},
-            {},
-        )
+    for index, kind in enumerate(KINDS):
+        files = {"chunks": [short[index], long[index]], "finest": [whole[1]]}
+        with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
+            join.run(files, {"joined": tmp_path / "joined"}, {"kind": kind, "record": ["fronts", "fields"]})
     assert not any(tmp_path.iterdir())

@@ -12,7 +12,8 @@ import xarray as xr
 import slippulse as sp
 from slippulse.data.files import write_whole
 from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
-from slippulse.data.variables import VARIABLES, columns_page
+from slippulse.data.columns import columns_page
+from slippulse.data.variables import VARIABLES
 
 SCENES = [
     sp.Scene("displacement", sp.Prestress(tau, 0.5), 2.0, 0.1, gamma=0.65, beta=0.01) for tau in (0.3, 0.5)

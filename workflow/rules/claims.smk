@@ -11,7 +11,6 @@ if config["claims"]:
 
 rule write_claims:
     input:
-        sources("steps.write_claims"),
         # Of front speeds at one level, without a grid study.
         measured=tables("measurements", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=tables("uncertainties/coarser", CLAIM_SIMULATIONS),
@@ -33,7 +32,6 @@ rule write_claims:
         measure=plain(config["measure"]),
         damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
-        configuration=digest_of(config),
     message:
         "Judging the claims"
     run:

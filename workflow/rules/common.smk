@@ -1,5 +1,7 @@
 # What the rules share: the checked configuration, and what each result comes from.
 
+import os
+import re
 import sys
 from functools import cache
 from pathlib import Path
@@ -11,9 +13,9 @@ from slippulse.configuration.overlay import read_overlay
 from slippulse.configuration.read import read_config
 from slippulse.configuration.scenes import all_simulations
 from slippulse.data.alterations import changes
-from slippulse.data.records import digest_of
-from slippulse.steps.job import Jobs
-from slippulse.steps.reach import PACKAGE, declared, sources
+from slippulse.steps.job import Jobs, end_with
+from slippulse.steps.origins import below
+from slippulse.steps.reach import PACKAGE, declared
 
 
 def refuse(reason):
@@ -31,7 +33,6 @@ except ConfigError as error:
     refuse(f"The configuration is refused:\n{error}")
 
 ACCURACY = accuracy_of(config)
-LOCK = "requirements.lock"
 SCENES = config.get("scenes", {})
 # A scene is a simulation of one run that records everything.
 SIMULATIONS = all_simulations(config)
@@ -40,13 +41,15 @@ OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 JOBS = Jobs(program=["snakemake.cli"])
+if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
+    end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
 
 
 def run_step(rule, wildcards, input, output, params, threads, log):
     """Run the step of a rule on plain values, in a process of its own."""
     settings = dict(params.items()) | {"threads": threads}
-    name = " ".join([rule, *wildcards])
-    JOBS.run(settings.pop("step"), name, dict(input.items()), dict(output.items()), settings, log[0])
+    origin, name = ORIGINS[below(output[0])], " ".join([rule, *wildcards])
+    JOBS.run(origin, name, dict(input.items()), dict(output.items()), settings, log[0])
 
 
 # Each figure and study by name; what it is made from stands in its module: simulations by kind of file, studies, and
@@ -70,11 +73,26 @@ CHUNKS = {
     for name, sweep in SIMULATIONS.items()
     if sweep.get("chunks", 1) > 1
 }
-CHUNKED = "|".join(CHUNKS) or "(?!)"
-# What one job works at: a simulation without chunks, or one chunk of another, as NAME/3-of-8.
-ONE_JOB = "|".join(
-    [rf"(?!(?:{CHUNKED})\b)[a-z][a-z0-9_]*", *(chunk for names in CHUNKS.values() for chunk in names)]
-)
+# What is made of each simulation, by chunks or not.
+KINDS = {
+    "data": "nc",
+    "measurements": "csv",
+    "predictions": "csv",
+    "uncertainties": "csv",
+    "uncertainties/coarser": "csv",
+}
+# What each wildcard stands for.
+VALUES = {
+    # What one job works at: a simulation without chunks, or one chunk of another, as NAME/3-of-8.
+    "simulation": [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])],
+    "joined": [f"{kind}/{name}.{ending}" for name in CHUNKS for kind, ending in KINDS.items()],
+    "scene": [*SCENES],
+    "sweep": [*config["simulations"]],
+}
+
+
+wildcard_constraints:
+    **{name: "|".join(map(re.escape, values)) or "(?!)" for name, values in VALUES.items()},
 
 
 def plain(value):
@@ -117,24 +135,6 @@ def selected(keys, own={}):
             inside, value = inside.setdefault(parent, {}), value[parent]
         inside[last] = plain(value[last])
     return found
-
-
-def configuration(simulations=(), **settings):
-    """Digest of the part of the configuration that a result comes from."""
-    return digest_of([{name: sweep_of(name) for name in sorted(set(simulations))}, settings])
-
-
-@cache
-def configuration_of_data(job):
-    """The same for the data of one simulation, chunks or not."""
-    return configuration([Path(job).parts[0]])
-
-
-@cache
-def configuration_of_numbers(job):
-    """The same for what is measured in the data of one simulation."""
-    name = Path(job).parts[0]
-    return configuration([name], measure=measure_of([name]))
 
 
 def measure_of(simulations):
@@ -211,7 +211,19 @@ def job_megabytes(wildcards, attempt):
 
 def joining(wildcards):
     """Limits for joining the chunks of a simulation."""
-    return joining_limits(run_count(sweep_of(wildcards.simulation)))
+    return joining_limits(run_count(sweep_of(Path(wildcards.joined).stem)))
+
+
+def chunks_of(joined):
+    """Files of the chunks that a file is put together from, in the order of their numbers."""
+    kind, ending = Path(joined).parent, Path(joined).suffix
+    return [f"results/{kind}/{chunk}{ending}" for chunk in CHUNKS[Path(joined).stem]]
+
+
+def studied_in(joined):
+    """The measurements that a grid study is of; nothing for other files."""
+    path = Path(joined)
+    return tables("measurements", [path.stem]) if path.parent == Path("uncertainties") else []
 
 
 def settings_of_figure(name):
@@ -225,18 +237,3 @@ def settings_of_study(name):
     found = selected(needs.get("settings", ()), {})
     sweeps = {sweep: sweep_of(sweep) for sweep in needs.get("sweeps", [])}
     return found | ({"sweeps": sweeps} if sweeps else {})
-
-
-def configuration_of(needs, values):
-    """Digest of all that a figure or a study comes from."""
-    studies = {study: settings_of_study(study) for study in needs.get("studies", [])}
-    names = sorted(simulations_in(needs))
-    return configuration(names, values=values, studies=studies, measure=measure_of(names) if names else {})
-
-
-def configuration_of_figure(name):
-    return configuration_of(NEEDS[name], settings_of_figure(name))
-
-
-def configuration_of_study(name):
-    return configuration_of(STUDY_NEEDS[name], settings_of_study(name))

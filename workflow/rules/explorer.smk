@@ -3,7 +3,6 @@
 
 rule write_explorer:
     input:
-        sources("steps.write_explorer"),
         law="results/studies/explorer_law.csv",
         measured=tables("measurements", EXPLORER_SIMULATIONS),
     output:
@@ -12,7 +11,6 @@ rule write_explorer:
         "results/logs/write_explorer.log",
     params:
         step="write_explorer",
-        configuration=configuration(EXPLORER_SIMULATIONS, measure=config["measure"]),
     message:
         "Writing results/explorer.html"
     run:

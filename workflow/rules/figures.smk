@@ -6,7 +6,6 @@ for figure, needs in NEEDS.items():
         name:
             figure
         input:
-            sources("steps.draw_figure", f"figures.{figure}"),
             **inputs_of(needs),
         output:
             png=report(
@@ -22,8 +21,17 @@ for figure, needs in NEEDS.items():
             step="draw_figure",
             figure=figure,
             values=settings_of_figure(figure),
-            configuration=configuration_of_figure(figure),
         message:
             f"Drawing {figure}"
         run:
             run_step(rule, wildcards, input, output, params, threads, log)
+
+
+# The short name of each figure of the paper.
+for figure in FIGURES:
+
+    rule:
+        name:
+            figure.partition("_")[0]
+        input:
+            figure_files([figure]),

@@ -40,7 +40,6 @@ rule write_provenance:
     input:
         # It notes a digest of them all.
         [path.as_posix() for path in source_files(".")],
-        LOCK,
         results=RESULTS,
         captions="manuscript/captions.yaml",
     output:
@@ -53,7 +52,6 @@ rule write_provenance:
         step="write_provenance",
         config=plain(config),
         shipped=plain(SHIPPED),
-        configuration=digest_of(config),
     message:
         "Noting what the results were made from"
     run:
@@ -62,7 +60,6 @@ rule write_provenance:
 
 rule write_index:
     input:
-        sources("steps.write_index"),
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
         pictures=[f"results/figures/{name}.png" for name in NEEDS],
@@ -82,7 +79,6 @@ rule write_index:
         galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES}
         | ({"Sweeps of your own": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
         scenes={name: scene["title"] for name, scene in SCENES.items()},
-        configuration=digest_of(config),
     message:
         "Writing results/index.html, the page to open"
     run:

@@ -3,7 +3,6 @@
 
 rule write_report:
     input:
-        sources("steps.write_report"),
         [
             f"manuscript/{name}"
             for name in (
@@ -16,7 +15,6 @@ rule write_report:
                 "statements.yaml",
             )
         ],
-        LOCK,
         source="manuscript/replication.md",
         claims="results/claims.json",
         findings="results/findings.json",
@@ -34,7 +32,6 @@ rule write_report:
         step="write_report",
         figures=list(NEEDS),
         config=plain(config),
-        configuration=digest_of(config),
     message:
         "Writing the replication report"
     run:

@@ -12,7 +12,6 @@ rule scenes:
 
 rule draw_scene:
     input:
-        sources("steps.draw_scene"),
         data="results/data/{scene}.nc",
         measured="results/measurements/{scene}.csv",
         predicted="results/predictions/{scene}.csv",
@@ -31,7 +30,6 @@ rule draw_scene:
         step="draw_scene",
         scene=lambda wildcards: wildcards.scene,
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.scene),
     message:
         "Drawing scene {wildcards.scene}"
     run:
@@ -40,7 +38,6 @@ rule draw_scene:
 
 rule animate_scene:
     input:
-        sources("steps.animate_scene"),
         data="results/data/{scene}.nc",
     output:
         gif="results/scenes/{scene}.gif",
@@ -51,7 +48,6 @@ rule animate_scene:
     params:
         step="animate_scene",
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
-        configuration=lambda wildcards: configuration_of_data(wildcards.scene),
     message:
         "Animating scene {wildcards.scene}"
     run:
@@ -60,7 +56,6 @@ rule animate_scene:
 
 rule write_scenes_page:
     input:
-        sources("steps.write_scenes_page"),
         expand("results/scenes/{scene}.png", scene=SCENES),
     output:
         html="results/scenes/index.html",
@@ -69,7 +64,6 @@ rule write_scenes_page:
     params:
         step="write_scenes_page",
         scenes={name: scene["title"] for name, scene in SCENES.items()},
-        configuration=configuration(SCENES, measure=config["measure"]),
     message:
         "Writing the list of scenes"
     run:
@@ -78,7 +72,6 @@ rule write_scenes_page:
 
 rule draw_sweep:
     input:
-        sources("steps.draw_sweep"),
         measured="results/measurements/{sweep}.csv",
         predicted="results/predictions/{sweep}.csv",
     output:
@@ -91,7 +84,6 @@ rule draw_sweep:
         sweep="|".join(config["simulations"]),
     params:
         step="draw_sweep",
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.sweep),
     message:
         "Drawing sweep {wildcards.sweep}"
     run:

@@ -3,14 +3,8 @@
 # stay: to measure anew, or to make a lost chunk again, needs them.
 
 
-wildcard_constraints:
-    simulation=ONE_JOB,
-
-
 rule compile_kernels:
     input:
-        sources("steps.compile_kernels"),
-        LOCK,
     output:
         kernels="results/kernels.txt",
     log:
@@ -27,8 +21,6 @@ rule compile_kernels:
 
 rule simulate:
     input:
-        sources("steps.simulate"),
-        LOCK,
         kernels="results/kernels.txt",
     output:
         data="results/data/{simulation}.nc",
@@ -44,7 +36,6 @@ rule simulate:
         step="simulate",
         simulation=lambda wildcards: wildcards.simulation,
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
-        configuration=lambda wildcards: configuration_of_data(wildcards.simulation),
     message:
         "Simulating {wildcards.simulation}"
     run:
@@ -53,7 +44,6 @@ rule simulate:
 
 rule measure:
     input:
-        sources("steps.measure"),
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
@@ -63,7 +53,6 @@ rule measure:
     params:
         step="measure",
         measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Measuring {wildcards.simulation}"
     run:
@@ -72,8 +61,6 @@ rule measure:
 
 rule predict:
     input:
-        sources("steps.predict"),
-        LOCK,
     output:
         predicted="results/predictions/{simulation}.csv",
     log:
@@ -83,7 +70,6 @@ rule predict:
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
         share=config["measure"]["share"],
         still=config["measure"]["still"],
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Predicting {wildcards.simulation}"
     run:
@@ -92,8 +78,6 @@ rule predict:
 
 rule study_grid:
     input:
-        sources("steps.study_grid"),
-        LOCK,
         kernels="results/kernels.txt",
         finest="results/measurements/{simulation}.csv",
     output:
@@ -110,76 +94,29 @@ rule study_grid:
         simulation=lambda wildcards: wildcards.simulation,
         sweeps=lambda wildcards: coarser_sweeps(wildcards.simulation),
         measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     run:
         run_step(rule, wildcards, input, output, params, threads, log)
 
 
-rule join_data:
+rule join:
     input:
-        sources("steps.join_data"),
-        chunks=lambda wildcards: [f"results/data/{chunk}.nc" for chunk in CHUNKS[wildcards.simulation]],
+        chunks=lambda wildcards: chunks_of(wildcards.joined),
+        finest=lambda wildcards: studied_in(wildcards.joined),
     output:
-        data="results/data/{simulation}.nc",
+        joined="results/{joined}",
     log:
-        "results/logs/join_data/{simulation}.log",
-    wildcard_constraints:
-        simulation=CHUNKED,
-    resources:
-        mem_mb=job_megabytes,
-    params:
-        step="join_data",
-        record=lambda wildcards: SIMULATIONS[wildcards.simulation]["record"],
-        configuration=lambda wildcards: configuration_of_data(wildcards.simulation),
-    message:
-        "Putting the data of {wildcards.simulation} together"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
-
-
-rule join_measurements:
-    input:
-        sources("steps.join_measurements"),
-        chunks=lambda wildcards: tables("measurements", CHUNKS[wildcards.simulation]),
-    output:
-        measured="results/measurements/{simulation}.csv",
-    log:
-        "results/logs/join_measurements/{simulation}.log",
-    wildcard_constraints:
-        simulation=CHUNKED,
-    priority: 1
-    params:
-        step="join_measurements",
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
-    message:
-        "Putting the measurements of {wildcards.simulation} together"
-    run:
-        run_step(rule, wildcards, input, output, params, threads, log)
-
-
-rule join_uncertainties:
-    input:
-        sources("steps.join_uncertainties"),
-        finest="results/measurements/{simulation}.csv",
-        uncertainties=lambda wildcards: tables("uncertainties", CHUNKS[wildcards.simulation]),
-        coarser=lambda wildcards: tables("uncertainties/coarser", CHUNKS[wildcards.simulation]),
-    output:
-        uncertainties="results/uncertainties/{simulation}.csv",
-        coarser="results/uncertainties/coarser/{simulation}.csv",
-    log:
-        "results/logs/join_uncertainties/{simulation}.log",
-    wildcard_constraints:
-        simulation=CHUNKED,
+        "results/logs/join/{joined}.log",
     priority: 1
     resources:
         runtime=lambda wildcards, attempt: attempt * joining(wildcards).minutes,
         mem_mb=lambda wildcards, attempt: attempt * joining(wildcards).megabytes,
     params:
-        step="join_uncertainties",
-        configuration=lambda wildcards: configuration_of_numbers(wildcards.simulation),
+        step="join",
+        kind=lambda wildcards: Path(wildcards.joined).parent.as_posix(),
+        record=lambda wildcards: SIMULATIONS[Path(wildcards.joined).stem]["record"],
     message:
-        "Putting the grid studies of {wildcards.simulation} together"
+        "Putting {wildcards.joined} together"
     run:
         run_step(rule, wildcards, input, output, params, threads, log)

@@ -6,8 +6,6 @@ for study in ALL_STUDIES:
         name:
             f"study_of_{study}"
         input:
-            sources("steps.run_study", f"studies.{study}"),
-            LOCK,
             **inputs_of(STUDY_NEEDS[study]),
             kernels="results/kernels.txt",
         output:
@@ -20,7 +18,6 @@ for study in ALL_STUDIES:
             step="run_study",
             study=study,
             values=settings_of_study(study),
-            configuration=configuration_of_study(study),
         message:
             f"Studying {study}"
         run:

@@ -1,117 +1,175 @@
-# Included last: what is asked for on the command line is something that a rule makes, and affordable.
+# Included last: what is asked for is something that a rule makes, is affordable, and is made from nothing that is not
+# what its record says.
 
-from snakemake.io import strip_wildcard_constraints
+import json
+import shlex
+from types import SimpleNamespace
+
+from snakemake.cli import get_argument_parser
 
 from slippulse.configuration.expand import expand as expand_sweep
 from slippulse.configuration.limits import check_affordable
-from slippulse.configuration.refusals import format_problems
-from slippulse.configuration.targets import check_places, check_targets
-from slippulse.data.records import changed_since_made, mark_outdated, remove_changed
+from slippulse.data.files import write_text
+from slippulse.data.lock import take
+from slippulse.data.records import Tree, record_path
+from slippulse.data.verify import problems_of
+from slippulse.steps.origins import Job, is_result, origins_of
+from slippulse.steps.targets import check_places, check_targets
 
+# How this run was called, which `make verify` asks for.
+CALL = "records/.call.json"
+CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
 # With these Snakemake only looks.
-LOOKING = "-n --dry-run --dryrun -t --touch -S --summary -D --detailed-summary --rulegraph --dag --filegraph --lint --unlock"
-OUTPUTS = [strip_wildcard_constraints(file) for rule in workflow.rules for file in rule.output]
-# Everything that jobs of this configuration write.
-MADE = sorted(
-    set(
-        expand(
-            OUTPUTS,
-            simulation=[*SIMULATIONS, *(chunk for chunks in CHUNKS.values() for chunk in chunks)],
-            scene=SCENES,
-            sweep=OWN_SIMULATIONS,
-        )
-    )
+LOOKING = any(
+    getattr(CALLED, option)
+    for option in "dryrun touch summary detailed_summary dag rulegraph filegraph unlock report archive".split()
 )
+OPTIONS = [
+    *(["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []),
+    *(["--config", *CALLED.config] if CALLED.config else []),
+]
+# One a step, a figure and a study, and those that name what to make.
+NAMES = [
+    *("all", "everything", "scenes"),
+    *NEEDS,
+    *(figure.partition("_")[0] for figure in FIGURES),
+    *(f"study_of_{name}" for name in ALL_STUDIES),
+    *(path.stem for path in sorted((PACKAGE / "steps").glob("*.py"))),
+]
+RULES = {name: getattr(rules, name) for name in NAMES if rules.has(name)}
+
+
+def jobs_of(rule):
+    """The jobs that a rule stands for: one for each value of its wildcard."""
+    wildcard = next((name for name in VALUES if f"{{{name}}}" in rule.output[0]), None)
+    for value in VALUES[wildcard] if wildcard else [""]:
+        values = {wildcard: value} if wildcard else {}
+        wildcards = SimpleNamespace(**values)
+
+        def filled(item):
+            found = item(wildcards) if callable(item) else item
+            return [str(path).format(**values) for path in ([found] if isinstance(found, str) else found)]
+
+        settings = {
+            key: entry(wildcards) if callable(entry) else entry
+            for key, entry in rule.params.items()
+            if key != "step"
+        }
+        inputs, outputs = (
+            tuple(path for item in items for path in filled(item)) for items in (rule.input, rule.output)
+        )
+        yield Job(rule.params.step, inputs, outputs, settings)
+
+
+ORIGINS = origins_of(job for rule in RULES.values() if "step" in rule.params.keys() for job in jobs_of(rule))
+MADE = [f"results/{name}" for name in ORIGINS]
+
+
+def files_of(target):
+    """What is made for a target, below results/: a file, or all of a rule."""
+    files = [target]
+    if target in RULES:
+        files = RULES[target].output or RULES[target].input
+    return [below(file) for file in files if is_result(file)]
 
 
 def refuse_places():
     """Where a folder or a file goes there is nothing of the other kind, and it may be written."""
-    if not workflow.is_main_process:
-        return
-    records = [f"results/records/{file.removeprefix('results/')}.json" for file in MADE]
-    logs = [file for rule in workflow.rules for file in rule.log]
+    records = [f"results/{record_path(origin.record)}" for origin in ORIGINS.values()]
+    logs = [rule.log[0] for rule in RULES.values() if rule.log]
     folders = {parent for file in [*MADE, *records, *logs] for parent in Path(file).parents[:-1]}
     check_places(Path("results"), [Path(".snakemake"), *sorted(folders)], map(Path, [*MADE, *records]))
 
 
 def refuse_unknown_targets():
     """A misspelt target is refused with the nearest one that there is."""
-    open_rules = [rule for rule in workflow.rules if rule.has_wildcards()]
-    patterns = {rule.name: strip_wildcard_constraints(rule.output[0]) for rule in open_rules}
-    names = [rule.name for rule in workflow.rules]
-    check_targets(
-        sys.argv[1:],
-        lambda target: target in names or any(rule.is_producer(target) for rule in workflow.rules),
-        [*names, *MADE],
-        patterns,
-    )
+    patterns = {name: rule.output[0] for name, rule in RULES.items() if rule.output and "{" in rule.output[0]}
+    check_targets(CALLED.targets, [*RULES, *MADE, "verify"], patterns)
 
 
-def simulations_behind(file):
-    """Simulations that a file under results/ is made from; all of them where it may be any."""
-    name = Path(file).stem
-    if file.startswith("results/studies/"):
-        return set()
-    if name in NEEDS:
-        return set(simulations_of([name]))
-    if file == "results/scenes/index.html":
-        return set(SCENES)
-    found = {other for other in SIMULATIONS if name in (other, f"{other}_numbers", f"sweep_{other}")}
-    return found or set(SIMULATIONS)
-
-
-def refuse_dear_targets():
+def refuse_expensive_targets(wanted):
     """With `accuracy` the cost of what is asked for is checked, and not that of the whole paper."""
-    if "promise" not in ACCURACY or config.get("allow_large", False) or not workflow.is_main_process:
-        return
-    files = [argument for argument in sys.argv[1:] if argument.startswith("results/")]
-    if not files and "scenes" in sys.argv[1:]:
-        files = ["results/scenes/index.html"]
-    elif not files and not ACCURACY.get("whole", True) and "everything" not in sys.argv[1:]:
-        files = FIRST
-    names = {name for file in files or [""] for name in simulations_behind(file)}
-    check_affordable({f"simulations.{name}": expand_sweep(sweep_of(name)) for name in sorted(names)})
+    if "promise" in ACCURACY and not config.get("allow_large", False):
+        names = {Path(file).parts[1].removesuffix(".nc") for file in wanted if file.startswith("data/")}
+        check_affordable({f"simulations.{name}": expand_sweep(sweep_of(name)) for name in sorted(names)})
 
 
-def refuse_changed_files():
-    """Nothing is built on a file that was changed since its job wrote it, or that none wrote: it goes, with a word.
-
-    Pages that a killed run has left behind are marked.
-    """
-    if not workflow.is_main_process or not Path("results").is_dir():
-        return
-    # Jobs of another run that is at work here may not have noted yet what they wrote.
-    looking = any(argument in LOOKING.split() for argument in sys.argv) or any(
-        Path(".snakemake/locks").glob("*")
-    )
-    changed = (changed_since_made if looking else remove_changed)(
-        "results", expected=[file.removeprefix("results/") for file in MADE]
-    )
-    if changed:
-        fate = f"it {'would be' if looking else 'is'} removed, and made anew where it is needed"
-        lines = [
-            f"results/{name} was changed since it was made, or has no record: {fate}" for name in changed
-        ]
-        print(format_problems(lines), file=sys.stderr)
-    if not looking:
-        mark_outdated("results")
-
-
-def report_outdated():
-    """Mark the pages that this run has left behind, and say which results are older than what they are made from."""
-    stale = mark_outdated("results") if Path("results").is_dir() else {}
+def lock_folder():
+    """One run at a time; what a killed one has left of Snakemake's own lock is removed."""
+    held = take(".snakemake/run.lock")
+    if held is None:
+        refuse("Another run is at work in this folder: wait for it, or stop it.")
+    stale = [lock for lock in Path(".snakemake/locks").glob("*") if lock.is_file()]
+    for lock in stale:
+        lock.unlink()
     if stale:
+        # Files that a killed job was writing have a hidden name of their own until they are whole.
+        for part in Path("results").rglob(".*-????????.*"):
+            part.unlink(missing_ok=True)
+        print("The last run was killed: what it left unfinished is made anew.", file=sys.stderr)
+    return held
+
+
+def say_faulty(faulty):
+    """One line on what is not what its record says, with the first reason that is not another's."""
+    if faulty:
+        first = next((name for name, reason in faulty.items() if "older than" not in reason), [*faulty][0])
+        fate = "would be removed" if LOOKING else "removed"
         print(
-            f"{len(stale)} results are older than what they are made from, as {next(iter(stale))};"
-            " pages among them are marked, the report's PDF is removed. Renew all: make replicate TARGET=everything",
+            f"{len(faulty)} results are not as made by what is here now, as results/{first}: {faulty[first]};"
+            f" {fate}, and made anew where needed.",
             file=sys.stderr,
         )
 
 
+def say_outdated():
+    """One line on results that this run has left behind, with the command that renews them."""
+    tree = Tree("results", ORIGINS)
+    left = {name: tree.outdated(name) for name in ORIGINS if Path("results", name).is_file()}
+    left = {name: reason for name, reason in left.items() if reason}
+    if left:
+        print(
+            f"{len(left)} results are not as made by what is here now, as results/{[*left][-1]}:"
+            f" {left[[*left][-1]]}. Renew them: {renewal()}",
+            file=sys.stderr,
+        )
+
+
+def renewal():
+    """The command that makes everything as this run was called."""
+    if "MAKELEVEL" not in os.environ:
+        return shlex.join(["snakemake", "--cores", str(workflow.cores), *OPTIONS, "--", "everything"])
+    given = {name: os.environ.get(name) for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")}
+    return shlex.join(
+        ["make", "replicate", *(f"{name}={value}" for name, value in given.items() if value)]
+    ) + (" TARGET=everything")
+
+
+def verify(complete):
+    """Compare all results with what a complete run would make; ends the process."""
+    problems, count = problems_of("results", ORIGINS, complete)
+    print("\n".join(problems) or f"{count} files are as made by what is here now")
+    whole = Tree("results", ORIGINS).behind(files_of("everything"))
+    if skipped := [name for name in whole if not Path("results", name).exists() and name not in complete]:
+        print(f"Not looked at: {len(skipped)} files that TARGET=everything makes besides, as {skipped[0]}")
+    raise SystemExit(1 if problems else 0)
+
+
 try:
-    refuse_places()
-    refuse_unknown_targets()
-    refuse_dear_targets()
-    refuse_changed_files()
+    if workflow.is_main_process:
+        refuse_unknown_targets()
+        targets = sorted(CALLED.targets) or ["all"]
+        if "verify" in targets:
+            verify(Tree("results", ORIGINS).behind([*files_of("all"), *files_of(targets[0])]))
+        refuse_places()
+        TREE = Tree("results", ORIGINS)
+        WANTED = TREE.behind(file for target in targets for file in files_of(target))
+        refuse_expensive_targets(WANTED)
+        if LOOKING:
+            say_faulty(TREE.faults(name for name in WANTED if Path("results", name).is_file()))
+        else:
+            LOCK = lock_folder()
+            say_faulty(TREE.remove_faulty(WANTED))
+            write_text(json.dumps({"options": OPTIONS, "targets": targets}), Path("results", CALL))
 except ConfigError as error:
     refuse(str(error))

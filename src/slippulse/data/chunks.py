@@ -7,22 +7,8 @@ always the same, a list of as many values as there are chunks would give each ch
 
 from __future__ import annotations
 
-import itertools
 import random
 from collections.abc import Iterator
-
-
-def dealing(chunks: int) -> Iterator[int]:
-    """Number of the chunk, from 1, of each run of a sweep in turn, without end.
-
-    Parameters
-    ----------
-    chunks : how many there are, >= 1
-    """
-    for turn in itertools.count():
-        first = _first(turn, chunks)
-        for place in range(chunks):
-            yield (first + place) % chunks + 1
 
 
 def runs_of(number: int, chunks: int, runs: int) -> Iterator[int]:

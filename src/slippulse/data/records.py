@@ -1,21 +1,54 @@
-"""What each job made from what: digests of its files and of its part of the configuration, one record a job.
+"""What each job made from what, by which configuration and which sources: one record a job.
 
-Records tell which results were changed by hand, are missing, or are older than what they were made from.
+A result is what its record says, made by what is here now; or it is made anew. No time of a file is looked at.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import re
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+import time
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from .files import write_whole
+from .files import write_text
 
 FOLDER = "records"
+MISSING, CHANGED = "missing", "not what its job wrote"
+
+
+class Origin(NamedTuple):
+    """What a result is made by. Paths are below results/.
+
+    Attributes
+    ----------
+    record : first output of its job, after which the record is named
+    step : module of `slippulse.steps`
+    configuration : digest of the configuration behind it
+    sources : digest of the sources that make it, and of the texts that they read
+    inputs : results that it is made from
+    """
+
+    record: str
+    step: str
+    configuration: str
+    sources: str
+    inputs: frozenset[str]
+
+
+@dataclass(frozen=True)
+class Record:
+    """One job: what made it, digests of its outputs and inputs by path below results/, and what it used."""
+
+    step: str
+    configuration: str
+    sources: str
+    outputs: Mapping[str, str]
+    inputs: Mapping[str, str]
+    used: Mapping[str, float]
 
 
 def digest_of(value: object) -> str:
@@ -30,176 +63,191 @@ def file_digest(path: str | Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def _paths(files: Mapping) -> list[str]:
+def paths_in(files: Mapping) -> list[str]:
+    """Every path of a mapping from names to a path or a list of paths."""
     return [str(path) for value in files.values() for path in ([value] if isinstance(value, str) else value)]
 
 
-def results_of(path: str | Path) -> Path:
-    """The folder ``results`` that a file is in."""
-    return next(parent for parent in Path(path).parents if parent.name == "results")
-
-
-def write_record(step: str, files: Mapping, outputs: Mapping, settings: Mapping, used: Mapping) -> None:
+def write_record(origin: Origin, files: Mapping, outputs: Mapping, used: Mapping) -> None:
     """Note what a job has made.
 
     Parameters
     ----------
-    step : its module
+    origin : what it was made by
     files, outputs : paths, or lists of paths, by name
-    settings : with ``configuration``, the digest of the configuration behind the outputs
     used : seconds, processor_seconds, memory_MB
     """
-    made = _paths(outputs)
-    base = results_of(made[0])
+    made = paths_in(outputs)
+    results = next(parent for parent in Path(made[0]).parents if parent.name == "results")
 
-    def digests(paths: list[str]) -> dict[str, str]:
-        inside = [Path(path) for path in paths if "results" in Path(path).parts]
-        return {str(path.relative_to(base)): file_digest(path) for path in sorted(inside)}
+    def digests(paths: Iterable[str]) -> dict[str, str]:
+        inside = [Path(path) for path in paths if Path(path).is_relative_to(results)]
+        return {path.relative_to(results).as_posix(): file_digest(path) for path in sorted(inside)}
 
-    record = {
-        "step": step,
-        "configuration": settings.get("configuration", ""),
-        "outputs": digests(made),
-        "inputs": digests(_paths(files)),
-        "used": dict(used),
-    }
-    name = Path(made[0]).relative_to(base)
-    text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
-    write_whole(
-        base / FOLDER / name.with_name(name.name + ".json"),
-        lambda part: part.write_text(text, encoding="utf-8"),
+    record = Record(
+        origin.step, origin.configuration, origin.sources, digests(made), digests(paths_in(files)), dict(used)
     )
+    text = json.dumps(asdict(record), indent=1, ensure_ascii=False) + "\n"
+    write_text(text, results / record_path(origin.record))
 
 
-@dataclass(frozen=True)
-class Record:
-    """One job: where its record is, what it made from what (paths below results/, digests), and what it used."""
+def record_path(name: str) -> str:
+    """Where the record is, below results/, of the job whose first output has this name."""
+    return f"{FOLDER}/{name}.json"
 
-    path: Path
-    step: str
-    configuration: str
-    outputs: Mapping[str, str]
-    inputs: Mapping[str, str]
-    used: Mapping[str, float]
+
+def read_record(path: str | Path) -> Record:
+    """Read one record.
+
+    Raises
+    ------
+    OSError, ValueError
+        Without a record, or with one that is not what a job writes.
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        texts = (str(content[key]) for key in ("step", "configuration", "sources"))
+        return Record(*texts, *(dict(content[key]) for key in ("outputs", "inputs", "used")))
+    except (KeyError, TypeError, RecursionError) as error:
+        raise ValueError(str(error)) from error
 
 
 def read_records(results: str | Path) -> list[Record]:
-    """Every record of a tree of results that can be read, without those whose outputs are all gone."""
-    results = Path(results)
+    """Every record of a tree of results that can be read."""
     found = []
-    for path in sorted((results / FOLDER).rglob("*.json")):
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-            # Another version may have written more, or less.
-            record = Record(
-                path,
-                str(content["step"]),
-                str(content["configuration"]),
-                dict(content["outputs"]),
-                dict(content["inputs"]),
-                {"seconds": 0.0, "processor_seconds": 0.0, "memory_MB": 0} | content.get("used", {}),
-            )
-            if _inside(*record.outputs) and any((results / name).exists() for name in record.outputs):
-                found.append(record)
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
-            continue
+    for path in sorted((Path(results) / FOLDER).rglob("*.json")):
+        with suppress(OSError, ValueError):
+            found.append(read_record(path))
     return found
 
 
-def _inside(*names: str) -> bool:
-    """Whether paths stay below the folder that they are relative to."""
-    return not any(Path(name).is_absolute() or ".." in Path(name).parts for name in names)
-
-
-def changed_since_made(results: str | Path, expected: Collection[str] = ()) -> list[str]:
-    """Outputs, below results/, that are no longer what their job wrote, whatever their times.
+class Tree:
+    """A folder of results as it is, against what its results would be made by here and now.
 
     Parameters
     ----------
-    results : folder
-    expected : outputs that a job is known to write: without a record they are nobody's
+    results : the folder
+    origins : what each result is made by, by path below the folder
     """
-    results = Path(results)
-    records = read_records(results)
-    noted = {name for record in records for name in record.outputs}
-    changed = [name for name in expected if name not in noted and (results / name).exists()]
-    for record in records:
-        for name, digest in record.outputs.items():
-            path = results / name
-            if path.exists() and not (path.is_file() and file_digest(path) == digest):
-                changed.append(name)
-    return changed
+
+    def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
+        self.results, self.origins = Path(results), origins
+        self._digests = Digests(self.results / FOLDER / ".digests")
+        self._records: dict[str, Record | str] = {}
+        self._outdated: dict[str, str] = {}
+
+    def behind(self, names: Iterable[str]) -> list[str]:
+        """Some results and all that they are made from, the first ones last."""
+        found: dict[str, None] = {}
+
+        def visit(name: str) -> None:
+            if name not in found and name in self.origins:
+                for source in sorted(self.origins[name].inputs):
+                    visit(source)
+                found[name] = None
+
+        for name in names:
+            visit(name)
+        return [*found]
+
+    def faults(self, names: Iterable[str]) -> dict[str, str]:
+        """Results that are not what their record says, made by what is here now, each with the reason."""
+        found = {name: self._fault(name) for name in names}
+        self._digests.save()
+        return {name: reason for name, reason in found.items() if reason}
+
+    def outdated(self, name: str) -> str:
+        """Why a result would be made anew, whatever its content; empty where it would not."""
+        if name not in self._outdated:
+            self._outdated[name] = self._compare(name)
+        return self._outdated[name]
+
+    def remove_faulty(self, names: Iterable[str]) -> dict[str, str]:
+        """Remove, of some results and what they are made from, the faulty ones; returns them with the reasons."""
+        there = [name for name in self.behind(names) if (self.results / name).is_file()]
+        found = self.faults(there)
+        for name in found:
+            (self.results / name).unlink()
+        return found
+
+    def _fault(self, name: str) -> str:
+        path = self.results / name
+        if not path.is_file():
+            return MISSING
+        reason = self.outdated(name)
+        if reason:
+            return reason
+        return "" if self._digests.of(path) == self._record(name).outputs[name] else CHANGED
+
+    def _record(self, name: str) -> Record:
+        record = self._read(self.origins[name].record)
+        assert isinstance(record, Record)
+        return record
+
+    def _read(self, name: str) -> Record | str:
+        """A record, or why there is none."""
+        if name not in self._records:
+            try:
+                self._records[name] = read_record(self.results / record_path(name))
+            except FileNotFoundError:
+                self._records[name] = "no record"
+            except (OSError, ValueError):
+                self._records[name] = "its record cannot be read"
+        return self._records[name]
+
+    def _compare(self, name: str) -> str:
+        origin = self.origins[name]
+        record = self._read(origin.record)
+        if isinstance(record, str):
+            return record
+        if record.step != origin.step or name not in record.outputs or record.inputs.keys() != origin.inputs:
+            return "made by another rule"
+        if record.configuration != origin.configuration:
+            return "made by another configuration"
+        if record.sources != origin.sources:
+            return "made by other sources"
+        for source, digest in record.inputs.items():
+            if self.outdated(source) or self._record(source).outputs[source] != digest:
+                return f"older than {source}, which it is made from"
+        return ""
 
 
-def remove_changed(results: str | Path, expected: Collection[str] = ()) -> list[str]:
-    """Remove what `changed_since_made` finds, so that it is made anew where it is needed; returns the names."""
-    found = changed_since_made(results, expected=expected)
-    changed = [name for name in dict.fromkeys(found) if (Path(results) / name).is_file()]
-    for name in changed:
-        (Path(results) / name).unlink()
-    return changed
+class Digests:
+    """SHA-256 of files, remembered with what tells that one is still the same: size, inode and its two times.
 
+    The time of the inode changes with every change of content, and no program sets it.
 
-def outdated(results: str | Path) -> dict[str, str]:
-    """Outputs that were made from something else than what is there now, each with the first such input.
-
-    What is made from an outdated file is outdated too.
+    Parameters
+    ----------
+    path : file in which they are remembered
     """
-    records = read_records(results)
-    now = {name: digest for record in records for name, digest in record.outputs.items()}
-    stale: dict[str, str] = {}
-    pending = True
-    while pending:
-        pending = False
-        for record in records:
-            if all(name in stale for name in record.outputs):
-                continue
-            for name, digest in record.inputs.items():
-                if name in stale or (name in now and now[name] != digest):
-                    stale |= dict.fromkeys(record.outputs, name)
-                    pending = True
-                    break
-    return stale
 
+    # In seconds: a file that was just written may change once more within a tick of the clock.
+    SETTLED = 2.0
 
-# What an outdated page says at its top.
-NOTE = (
-    '<p role="alert" style="background:#ffd54f;color:#000;padding:.75rem;margin:0">Out of date: parts of these results'
-    " were made anew since this page was written. <code>make replicate TARGET=everything</code> renews it.</p>"
-)
+    def __init__(self, path: Path) -> None:
+        self._path, self._new = path, False
+        self._known: dict[str, list] = {}
+        with suppress(OSError, ValueError):
+            self._known = dict(json.loads(path.read_text(encoding="utf-8")))
 
+    def of(self, path: Path) -> str:
+        """Digest of a file."""
+        status = path.stat()
+        state = [status.st_size, status.st_ino, status.st_mtime_ns, status.st_ctime_ns]
+        name = path.as_posix()
+        match self._known.get(name):
+            case [*known, str(digest)] if known == state:
+                return digest
+        settled = time.time() - max(status.st_mtime, status.st_ctime) > self.SETTLED
+        digest = file_digest(path)
+        if settled:
+            self._known[name], self._new = [*state, digest], True
+        return digest
 
-def mark_outdated(results: str | Path) -> dict[str, str]:
-    """Mark pages that are older than what they were made from, and remove documents that cannot be marked.
-
-    Returns
-    -------
-    outdated outputs, each with the first input that is newer (`outdated`)
-    """
-    results = Path(results)
-    stale = outdated(results)
-    for record in read_records(results):
-        for name in record.outputs:
-            path = results / name
-            if name not in stale or not path.is_file():
-                continue
-            if path.suffix == ".html":
-                _mark(path, record)
-            elif path.parent.name == "manuscript" and path.suffix == ".pdf":
-                path.unlink()
-    return stale
-
-
-def _mark(page: Path, record: Record) -> None:
-    text = page.read_text(encoding="utf-8")
-    if NOTE in text:
-        return
-    # It stays older than its inputs, so that it is renewed when it is asked for.
-    times = page.stat()
-    marked = re.sub(r"(<body[^>]*>)", lambda match: match[1] + NOTE, text, count=1)
-    write_whole(page, lambda part: part.write_text(marked, encoding="utf-8"))
-    os.utime(page, ns=(times.st_atime_ns, times.st_mtime_ns))
-    content = json.loads(record.path.read_text(encoding="utf-8"))
-    content["outputs"][str(page.relative_to(results_of(page)))] = file_digest(page)
-    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-    write_whole(record.path, lambda part: part.write_text(text, encoding="utf-8"))
+    def save(self) -> None:
+        """Remember them, where that is possible."""
+        if self._new:
+            with suppress(OSError):
+                write_text(json.dumps(self._known), self._path)
+            self._new = False

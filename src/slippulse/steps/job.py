@@ -11,6 +11,7 @@ import errno
 import multiprocessing
 import os
 import resource
+import signal
 import sys
 import time
 import traceback
@@ -18,11 +19,25 @@ from collections.abc import Iterator, Mapping, Sequence
 from importlib import import_module
 from multiprocessing.connection import wait
 from pathlib import Path
-from threading import Lock
+from threading import Lock, Thread
+
+from ..data.origin import configured_by
+from ..data.records import Origin, write_record
 
 
 class JobFailed(Exception):
     """A job that has said why."""
+
+
+def end_with(descriptor: int) -> None:
+    """End this process and its group when the other end of a pipe is closed, as its holder ends."""
+
+    def wait_for_it() -> None:
+        with contextlib.suppress(OSError):
+            os.read(descriptor, 1)
+            os.killpg(0, signal.SIGKILL)
+
+    Thread(target=wait_for_it, daemon=True).start()
 
 
 class Jobs:
@@ -48,39 +63,37 @@ class Jobs:
         JobFailed
         """
         process = self._processes.Process(target=run_job, args=job)
-        with self._turn:
-            process.start()
-        wait([process.sentinel])
-        with self._turn:
-            process.join()
-        if process.exitcode < 0:
-            raise JobFailed(f"killed by signal {-process.exitcode}")
+        try:
+            with self._turn:
+                process.start()
+            wait([process.sentinel])
+            with self._turn:
+                process.join()
+        except (EOFError, OSError) as error:
+            raise JobFailed("the process that starts the jobs has ended") from error
         if process.exitcode:
             raise JobFailed(f"exit code {process.exitcode}")
 
 
 def run_job(
-    step: str, name: str, files: Mapping, outputs: Mapping, settings: Mapping, log: str | Path
+    origin: Origin, name: str, files: Mapping, outputs: Mapping, settings: Mapping, log: str | Path
 ) -> None:
     """Run one step as all that a process does.
 
     Parameters
     ----------
-    step : module of `slippulse.steps` with ``run(files, outputs, settings)``
+    origin : what its outputs are made by; its step is a module with ``run(files, outputs, settings)``
     name : of the job, for messages
     files, outputs : paths, or lists of paths, by name
-    settings : what the step takes from the configuration; ``configuration`` is the digest of all that it comes from
+    settings : what the step takes from the configuration
     log : file for what the job says
     """
     began = time.monotonic()
     with logged(log):
-        from ..data.origin import configured_by
-        from ..data.records import write_record
-
-        with configured_by(settings.get("configuration", "")):
-            import_module(f"slippulse.steps.{step}").run(files, outputs, settings)
+        with configured_by(origin.configuration):
+            import_module(f"slippulse.steps.{origin.step}").run(files, outputs, settings)
         seconds = time.monotonic() - began
-        write_record(step, files, outputs, settings, used(seconds))
+        write_record(origin, files, outputs, used(seconds))
     if not sys.stderr.isatty():
         sys.stderr.write(f"  {name}: {seconds:.1f} s\n")
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import hashlib
 import re
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -56,10 +58,30 @@ def sources(*modules: str) -> list[str]:
     return sorted(path.relative_to(root).as_posix() for path in reached)
 
 
+def modules_of(step: str, settings: Mapping) -> list[str]:
+    """Modules that a step runs: its own, and the figure or study that its settings name."""
+    rooms = {"figure": "figures", "study": "studies"}
+    named = [f"{room}.{settings[key]}" for key, room in rooms.items() if key in settings]
+    return [f"steps.{step}", *named]
+
+
+def digest_of_files(paths: Iterable[str | Path]) -> str:
+    """Short digest of names and contents of files of the project, whatever their order."""
+    digest, root = hashlib.sha256(), PACKAGE.parents[1]
+    for path in sorted({str(path) for path in paths}):
+        digest.update(path.encode() + b"\0" + _content(root / path) + b"\0")
+    return digest.hexdigest()[:16]
+
+
 def _file(module: str) -> Path:
     """The file of a module or package below slippulse; empty for slippulse itself."""
     path = PACKAGE.joinpath(*module.split(".")) if module else PACKAGE
     return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+@cache
+def _content(path: Path) -> bytes:
+    return hashlib.sha256(path.read_bytes()).digest()
 
 
 @cache

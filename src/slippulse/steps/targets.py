@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ..model.checks import ConfigError, nearest, short_repr
 
 
-def check_targets(
-    arguments: Sequence[str],
-    made: Callable[[str], bool],
-    known: Sequence[str],
-    patterns: Mapping[str, str],
-) -> None:
+def check_targets(targets: Iterable[str], known: Sequence[str], patterns: Mapping[str, str]) -> None:
     """Refuse a target that no rule makes.
 
     Parameters
     ----------
-    arguments : of the command line; all after ``--`` are targets, before it what starts with results/
-    made : whether a rule has this name or makes this file
-    known : rules and files to suggest
+    targets : what is asked for
+    known : rules and files that there are
     patterns : rules that make a file for each of many names, with how it is called
 
     Raises
@@ -29,15 +23,14 @@ def check_targets(
     ConfigError
         Naming the target and the one that was probably meant.
     """
-    start = arguments.index("--") + 1 if "--" in arguments else len(arguments)
-    for argument in [*(a for a in arguments[:start] if a.startswith("results/")), *arguments[start:]]:
-        if argument in patterns:
+    for target in targets:
+        if target in patterns:
             raise ConfigError(
-                f"target: {short_repr(argument)}, a rule for many files; allowed: one of them, {patterns[argument]}"
+                f"target: {short_repr(target)}, a rule for many files; allowed: one of them, {patterns[target]}"
             )
-        if not made(argument):
+        if target not in known:
             raise ConfigError(
-                f"target: {short_repr(argument)}{nearest(argument, known)}; allowed: a rule, or a file that one makes"
+                f"target: {short_repr(target)}{nearest(target, known)}; allowed: a rule, or a file that one makes"
             )
 
 

@@ -1,0 +1,210 @@
+"""Whether two trees of results agree within their uncertainties.
+
+python -m slippulse.data.compare results other/results
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from .alterations import changes
+from .columns import is_text
+from .store import UnreadableFile, load_table
+
+# What makes a run the same run in another tree, whatever its lattice.
+SAME = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
+# What a number without uncertainty depends on besides.
+LATTICE = ["scheme", "dx", "order", "max_step"]
+# Numbers that agree to this need no uncertainty: tables have nine digits. On one lattice those without agree to so much
+# of themselves, or of 1.
+DIGITS, ROUNDING = 1e-8, 1e-6
+SHOWN = 10
+
+
+class Comparison(NamedTuple):
+    """Numbers of two trees of results.
+
+    Attributes
+    ----------
+    compared, agree : how many measured numbers both have, and how many differ by no more than both uncertainties
+    unknown : how many differ, are of two lattices, and have no uncertainty on either side
+    apart : one line for each number or text that differs otherwise
+    other : what is not comparable: other configurations, other runs, tables in one tree only; and other verdicts
+    """
+
+    compared: int
+    agree: int
+    unknown: int
+    apart: list[str]
+    other: list[str]
+
+
+def compare(here: Path, there: Path) -> Comparison:
+    """Compare the measured tables, the configurations and the verdicts of two trees.
+
+    Raises
+    ------
+    ValueError
+        If one has no measured tables, or a file that cannot be read.
+    """
+    trees = (here, there)
+    names = [{path.name for path in (tree / "measurements").glob("*.csv")} for tree in trees]
+    for tree, found in zip(trees, names, strict=True):
+        if not found:
+            raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
+    parts = [_compare_tables(trees, name) for name in sorted(names[0] & names[1])]
+    other = [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
+    other += _configurations(trees) + [line for part in parts for line in part.other] + _verdicts(trees)
+    apart = [line for part in parts for line in part.apart]
+    compared, agree, unknown = (sum(part[index] for part in parts) for index in range(3))
+    return Comparison(compared, agree, unknown, apart, other)
+
+
+def _compare_tables(trees: tuple[Path, Path], name: str) -> Comparison:
+    """One table of measured numbers, with the grid studies of both."""
+    one, two = (_table(tree / "measurements" / name, SAME) for tree in trees)
+    if not one[SAME].equals(two[SAME]):
+        return Comparison(0, 0, 0, [], [f"{name}: other runs"])
+    other = [f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})]
+    if len({(tree / "uncertainties" / name).exists() for tree in trees}) > 1:
+        other.append(f"{name}: uncertainties in one tree only")
+    both = [column for column in one if column in two and column not in SAME]
+    lattice = [column for column in both if column in LATTICE]
+    alike = (one[lattice] == two[lattice]).all(axis=1).to_numpy()[:, None]
+    texts = [column for column in both if "O" in (one[column].dtype.kind, two[column].dtype.kind)]
+    numbers = [column for column in both if column not in texts + LATTICE]
+    value, value_there = (table[numbers].astype(float) for table in (one, two))
+    bars = [
+        _uncertainties(tree / "uncertainties" / name, values)
+        for tree, values in zip(trees, (value, value_there), strict=True)
+    ]
+    known = bars[0].notna() | bars[1].notna()
+    allowed = bars[0].fillna(0.0) + bars[1].fillna(0.0) + DIGITS * value.abs()
+    allowed = allowed.mask(~known & alike, ROUNDING * value.abs().clip(lower=1.0))
+    within = (value - value_there).abs() <= allowed
+    counted = (value.notna() & value_there.notna()) | ((value.notna() | value_there.notna()) & alike)
+    unknown = counted & ~within & ~known & ~alike
+    apart = [
+        f"{name}: point {point}, {quantity}: {value[quantity][point]:.6g} against"
+        f" {value_there[quantity][point]:.6g}; allowed: a difference of {allowed[quantity][point]:.2g}"
+        for point, quantity in _where(counted & ~within & ~unknown)
+    ]
+    ours, theirs = (table[texts].astype(object).fillna("") for table in (one, two))
+    apart += [
+        f"{name}: point {point}, {column}: {ours[column][point]!r} against {theirs[column][point]!r}"
+        for point, column in _where((ours != theirs) & alike)
+    ]
+    total, agree, unsure = (int(cells.to_numpy().sum()) for cells in (counted, counted & within, unknown))
+    return Comparison(total, agree, unsure, apart, other)
+
+
+def _where(cells: pd.DataFrame) -> Iterator[tuple[int, str]]:
+    """Row and column of every cell that is true."""
+    for row, column in np.argwhere(cells.to_numpy()):
+        yield int(row), str(cells.columns[column])
+
+
+def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
+    """A table with these columns, and with no text in a column of numbers."""
+    with _readable(path):
+        table = load_table(path)
+        for column in needed:
+            if column not in table:
+                raise ValueError(f"no column {column}")
+        for column in table:
+            if table[column].dtype.kind not in "biuf" and not is_text(column):
+                raise ValueError(f"text in column {column}")
+    return table
+
+
+def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
+    """Uncertainty of every number; NaN where it is not known, as where the study was of another value."""
+    nothing = pd.DataFrame(np.nan, values.index, values.columns)
+    if not path.exists():
+        return nothing
+    table = _table(path, ["point", "quantity", "value", "uncertainty"])
+    with _readable(path):
+        study = table.pivot(index="point", columns="quantity", values=["value", "uncertainty"])
+        studied, found = (
+            study[part].reindex(index=values.index, columns=values.columns).astype(float)
+            for part in ("value", "uncertainty")
+        )
+    return found.mask((values - studied).abs() > DIGITS * values.abs())
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Name the file that cannot be read, or does not hold what a run writes."""
+    try:
+        yield
+    except UnreadableFile:
+        raise
+    except (OSError, ValueError, LookupError, TypeError, RecursionError) as error:
+        reason = (
+            f"no {error}" if isinstance(error, LookupError) else getattr(error, "strerror", None) or error
+        )
+        raise UnreadableFile(path, reason) from None
+
+
+def _read(trees: Iterable[Path], name: str, part) -> list[Any]:
+    """Part of a JSON file of each tree; nothing where one is missing."""
+    found = []
+    for path in (tree / name for tree in trees):
+        if path.exists():
+            with _readable(path):
+                found.append(part(json.loads(path.read_text(encoding="utf-8"))))
+    return found if len(found) == 2 else []
+
+
+def _configurations(trees: tuple[Path, Path]) -> list[str]:
+    """Keys at which the configurations differ, but for the preset, whose lattices the uncertainties cover."""
+    found = _read(trees, "provenance.json", lambda content: dict(content["config"]))
+    if not found:
+        return ["provenance.json: missing in one tree; configurations not compared"]
+    return [
+        f"configuration: {change['key']}: {change['here']!r} against {change['shipped']!r}"
+        for change in changes(found[1], found[0])
+        if change["key"] != "preset"
+    ]
+
+
+def _verdicts(trees: tuple[Path, Path]) -> list[str]:
+    found = _read(
+        trees, "claims.json", lambda claims: {str(claim["id"]): claim["verdict"] for claim in claims}
+    )
+    if not found:
+        return ["claims.json: missing in one tree; verdicts not compared"]
+    one, two = (pd.Series(verdicts, dtype=object) for verdicts in found)
+    both = pd.DataFrame({"one": one, "two": two}).fillna("no such claim")
+    different = both[both["one"] != both["two"]]
+    return [f"{name}: verdict {row.one!r} against {row.two!r}" for name, row in different.iterrows()]
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Compare two trees; returns the exit code."""
+    try:
+        result = compare(*(Path(argument) for argument in arguments))
+    except ValueError as error:
+        print(error)
+        return 1
+    print(
+        f"{result.agree} of {result.compared} numbers agree within both uncertainties together;"
+        f" {result.unknown} differ and have no uncertainty"
+    )
+    for title, lines in (("Apart", result.apart), ("Not comparable", result.other)):
+        if lines:
+            rest = [f"... and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []
+            print("\n  ".join([f"{title}:", *lines[:SHOWN], *rest]))
+    return 0 if result.compared and not (result.apart or result.other) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

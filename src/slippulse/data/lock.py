@@ -1,0 +1,49 @@
+"""A lock that the system frees when its holder ends, however that happens.
+
+    python src/slippulse/data/lock.py FILE COMMAND...     runs a command when nobody else holds the lock
+    python src/slippulse/data/lock.py FILE                fails where somebody holds it
+
+Needs nothing but Python, since the set-up of the environment uses it too.
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import subprocess
+import sys
+from pathlib import Path
+from typing import TextIO
+
+
+def take(path: str | Path) -> TextIO | None:
+    """Hold a lock for as long as the file that this returns is open; None where another process holds it."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    file = open(path, "a", encoding="utf-8")  # noqa: SIM115
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        # Some file systems have no locks: there is then no protection.
+        if error.errno in (errno.EAGAIN, errno.EACCES):
+            file.close()
+            return None
+    return file
+
+
+def main(arguments: list[str]) -> int:
+    """Wait for a lock, and run a command while it is held; returns the exit code."""
+    path, *command = arguments
+    held = take(path)
+    if not command:
+        return int(held is None)
+    if held is None:
+        print("Another set-up is at work in this folder: waiting for it", flush=True)
+        held = open(path, "a", encoding="utf-8")  # noqa: SIM115
+        fcntl.flock(held, fcntl.LOCK_EX)
+    with held:
+        return subprocess.run(command, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,83 @@
+"""Run Snakemake for make, so that a signal ends the run at once, with all of its jobs and with one line.
+
+    python workflow/run.py replicate|verify|rulegraph
+
+Files are written whole or not at all, so that a run may be killed at any time: the next one goes on from what is there.
+The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+# How the last run was called.
+CALL = Path("results/records/.call.json")
+SHOW_CURSOR = "\x1b[?25h"
+
+
+def arguments(what: str) -> list[str]:
+    """Of Snakemake, for a target of the Makefile."""
+    given = {name: os.environ.get(name, "") for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")}
+    targets = os.environ.get("TARGET", "").split()
+    values = [f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if given[name]]
+    options = (["--config", *values] if values else []) + (
+        ["--configfile", given["OVERLAY"]] if given["OVERLAY"] else []
+    )
+    if what == "rulegraph":
+        targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
+        return ["--workflow-profile", "none", "--quiet", "all", "--rulegraph", "mermaid-js", "--", *targets]
+    if what == "verify":
+        if not options:
+            # As the last run was called.
+            with suppress(OSError, ValueError, KeyError):
+                called = json.loads(CALL.read_text(encoding="utf-8"))
+                options, targets = called["options"], [*{"everything"} & {*called["targets"]}]
+        return [
+            "--workflow-profile",
+            "none",
+            "--quiet",
+            "all",
+            "--cores",
+            "1",
+            *options,
+            "--",
+            "verify",
+            *targets,
+        ]
+    return ["--cores", os.environ.get("CORES", "2"), *options, "--", *targets]
+
+
+def main(what: str) -> int:
+    """Run it in a group of processes of its own; returns the exit code."""
+    # When this process ends, however that happens, the other end of this pipe tells Snakemake.
+    leash, held = os.pipe()
+    process = None
+
+    def stop(number: int, _frame: object) -> None:
+        if process is not None:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+        shown = SHOW_CURSOR if sys.stderr.isatty() else ""
+        os.write(2, f"{shown}\nStopped; the next run goes on from what is there.\n".encode())
+        os._exit(128 + number)
+
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, stop)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "snakemake", *arguments(what)],
+        env=os.environ | {"SLIPPULSE_LEASH": str(leash)}, pass_fds=[leash], start_new_session=True,
+    )  # fmt: skip
+    os.close(leash)
+    code = process.wait()
+    os.close(held)
+    return code if code >= 0 else 128 - code
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
