@@ -17,7 +17,7 @@ from slippulse.data.provenance import (
     source_files,
     tree_digest,
 )
-from slippulse.data.records import write_record
+from slippulse.data.records import Origin, write_record
 
 
 def test_an_overlay_is_marked_value_by_value():
@@ -57,7 +57,12 @@ def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
     results.mkdir()
     for name, seconds in (("a.csv", 1.25), ("b.csv", 0.5)):
         (results / name).write_text(name)
-        write_record("simulate", {}, {"made": f"{results}/{name}"}, {}, {"seconds": seconds})
+        write_record(
+            Origin(name, "simulate", "", "", frozenset()),
+            {},
+            {"made": f"{results}/{name}"},
+            {"seconds": seconds},
+        )
     assert job_times(results) == {"simulate": 1.75}
     facts = provenance(project, config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]

@@ -1,169 +1,178 @@
-"""What each job made from what: what was changed by hand, what is out of date, and pages that say so."""
+"""What each job made from what, by which configuration and sources: what is not as made by what is here now."""
 
 from __future__ import annotations
 
 import json
 import os
-import time
+import shutil
 from pathlib import Path
 
 import pytest
 
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times
-from slippulse.data.records import (
-    NOTE,
-    changed_since_made,
-    digest_of,
-    mark_outdated,
-    outdated,
-    read_records,
-    remove_changed,
-    write_record,
-)
+from slippulse.data.records import Digests, Tree, digest_of, read_record, read_records, write_record
+from slippulse.data.verify import problems_of
+from slippulse.steps.origins import Job, origins_of
 
-PAGE = "<html><body class='wide'><p>All well.</p></body></html>"
+DATA, TABLE, PAGE, OTHER = "data/a.nc", "measurements/a.csv", "index.html", "scenes/other.html"
+JOBS = [
+    Job("simulate", (), (f"results/{DATA}",), {"level": 0.5}),
+    Job("measure", (f"results/{DATA}",), (f"results/{TABLE}",), {}),
+    Job("write_index", (f"results/{TABLE}", "manuscript/summary.yaml"), (f"results/{PAGE}",), {"title": "All"}),
+    Job("animate_scene", (), (f"results/{OTHER}",), {}),
+]  # fmt: skip
 
 
-def make(results: Path, name: str, content: str, *sources: str) -> Path:
-    """A job that writes one file from others."""
-    path = results / name
-    write_text(content, path)
-    files = {"sources": [str(results / source) for source in sources]}
-    write_record("some_step", files, {"made": str(path)}, {"configuration": "abc"}, {})
-    return path
+def run(folder: Path, jobs=JOBS) -> None:
+    """Every job, which writes what it is made from."""
+    origins = origins_of(jobs)
+    for job in jobs:
+        origin = origins[job.outputs[0].removeprefix("results/")]
+        for output in job.outputs:
+            write_text(f"{job.step} {origin.configuration}", folder / output)
+        write_record(origin, {"made": [str(folder / path) for path in job.outputs]}, {"seconds": 1.5})
 
 
 @pytest.fixture
 def results(tmp_path) -> Path:
-    """Data, numbers measured in them, and two pages and a document that show the numbers."""
-    folder = tmp_path / "results"
-    make(folder, "data/a.nc", "data")
-    make(folder, "measurements/a.csv", "x\n1\n", "data/a.nc")
-    make(folder, "index.html", PAGE, "measurements/a.csv")
-    make(folder, "manuscript/report.pdf", "%PDF", "measurements/a.csv")
-    make(folder, "scenes/other.html", PAGE)
-    return folder
+    run(tmp_path)
+    return tmp_path / "results"
 
 
-def later(path: Path) -> None:
-    """Let a file be newer than its record, as an edit makes it."""
-    moment = time.time_ns() + 10**9
-    os.utime(path, ns=(moment, moment))
+def faults(results: Path, jobs=JOBS) -> dict[str, str]:
+    origins = origins_of(jobs)
+    return Tree(results, origins).faults(origins)
 
 
-def test_a_record_says_what_was_made_by_which_configuration_from_what(results):
-    (record,) = (record for record in read_records(results) if "measurements/a.csv" in record.outputs)
-    assert (record.step, record.configuration) == ("some_step", "abc")
-    assert list(record.inputs) == ["data/a.nc"]
-    assert changed_since_made(results) == []
-    assert outdated(results) == mark_outdated(results) == {}
+def test_a_record_says_what_was_made_by_what_from_what(results):
+    record = read_record(results / f"records/{TABLE}.json")
+    assert record.step == "measure" and [*record.inputs] == [DATA] and [*record.outputs] == [TABLE]
+    assert faults(results) == {} and len(read_records(results)) == len(JOBS)
+    assert job_times(results)["measure"] == 1.5
+    origins = origins_of(JOBS)
+    assert problems_of(results, origins, origins) == ([], len(JOBS))
 
 
-def test_a_file_edited_by_hand_is_found_and_removed(results):
-    path = results / "measurements/a.csv"
-    path.write_text("x\n2\n")
-    later(path)
-    assert changed_since_made(results) == ["measurements/a.csv"]
-    assert remove_changed(results) == ["measurements/a.csv"] and not path.exists()
-    assert changed_since_made(results) == []
+def record_of(results: Path, name: str, **change) -> None:
+    path = results / f"records/{name}.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | change))
 
 
-def test_a_file_that_is_only_touched_stays(results):
-    later(results / "measurements/a.csv")
-    assert remove_changed(results) == [] and (results / "measurements/a.csv").exists()
+ODD = ["", "{", "[]", "5", '{"step": 1}', "[" * 100_000]
+HARM = {
+    "edited": (lambda folder: (folder / DATA).write_text("datA"), {DATA: "not what its job wrote"}),
+    "emptied": (lambda folder: (folder / DATA).write_text(""), {DATA: "not what its job wrote"}),
+    "removed": (lambda folder: (folder / DATA).unlink(), {DATA: "missing"}),
+    "a folder": (lambda folder: ((folder / DATA).unlink(), (folder / DATA).mkdir()), {DATA: "missing"}),
+    "a folder for a record": (
+        lambda folder: ((folder / f"records/{OTHER}.json").unlink(), (folder / f"records/{OTHER}.json").mkdir()),
+        {OTHER: "its record cannot be read"},
+    ),
+    "other outputs": (lambda folder: record_of(folder, OTHER, outputs={}), {OTHER: "made by another rule"}),
+    "another step": (lambda folder: record_of(folder, OTHER, step="measure"), {OTHER: "made by another rule"}),
+    "other sources": (lambda folder: record_of(folder, OTHER, sources=""), {OTHER: "made by other sources"}),
+    "no record": (
+        lambda folder: (folder / f"records/{DATA}.json").unlink(),
+        {DATA: "no record", TABLE: f"older than {DATA}, which it is made from",
+         PAGE: f"older than {TABLE}, which it is made from"},
+    ),
+    "other data": (
+        lambda folder: record_of(folder, DATA, outputs={DATA: "0"}),
+        {DATA: "not what its job wrote", TABLE: f"older than {DATA}, which it is made from",
+         PAGE: f"older than {TABLE}, which it is made from"},
+    ),
+}  # fmt: skip
+HARM |= {
+    f"record {number}": (
+        lambda folder, text=text: (folder / f"records/{OTHER}.json").write_text(text),
+        {OTHER: "its record cannot be read"},
+    )
+    for number, text in enumerate(ODD)
+}
 
 
-def test_a_file_changed_long_ago_is_found(results):
-    """As a backup that keeps its times brings it back."""
-    path = results / "data/a.nc"
-    path.write_text("datA")
-    os.utime(path, ns=(0, 0))
-    assert changed_since_made(results) == ["data/a.nc"]
+@pytest.mark.parametrize("case", HARM)
+def test_what_is_not_as_made_is_named_and_removed_whatever_its_time(results, case):
+    harm, expected = HARM[case]
+    harm(results)
+    for path in results.rglob("*"):
+        os.utime(path, ns=(0, 0))
+    assert faults(results) == expected
+    origins = origins_of(JOBS)
+    lines, _ = problems_of(results, origins, origins)
+    assert lines == [f"{results / name}: {reason}" for name, reason in expected.items()]
+    removed = Tree(results, origins).remove_faulty(origins)
+    assert removed == {name: reason for name, reason in expected.items() if reason != "missing"}
+    assert not any((results / name).exists() for name in removed)
 
 
-def test_what_is_made_from_something_outdated_is_outdated_too(results):
-    make(results, "data/a.nc", "other data")
-    assert outdated(results) == {
-        "measurements/a.csv": "data/a.nc",
-        "index.html": "measurements/a.csv",
-        "manuscript/report.pdf": "measurements/a.csv",
-    }
+def test_only_what_is_wanted_and_what_that_is_made_from_is_removed(results):
+    for name in (DATA, OTHER):
+        (results / name).write_text("changed")
+    assert Tree(results, origins_of(JOBS)).remove_faulty([TABLE]) == {DATA: "not what its job wrote"}
+    # The table was made from what the record of the data says.
+    assert (results / TABLE).exists() and (results / OTHER).read_text() == "changed"
 
 
-def test_outdated_pages_are_marked_once_and_documents_go(results):
-    page, other = results / "index.html", results / "scenes/other.html"
-    before = page.stat().st_mtime_ns
-    make(results, "data/a.nc", "other data")
-    for _ in range(2):
-        assert set(mark_outdated(results)) >= {"index.html", "measurements/a.csv"}
-        assert page.read_text().count("Out of date") == page.read_text().count(NOTE) == 1
-    assert page.read_text().startswith("<html><body class='wide'>" + NOTE)
-    # Older than what it is made from, so that the next run renews it; the mark is not an edit by hand.
-    assert page.stat().st_mtime_ns == before and changed_since_made(results) == []
-    assert other.read_text() == PAGE and not (results / "manuscript/report.pdf").exists()
+@pytest.mark.parametrize(
+    ("index", "change", "reasons"),
+    [
+        (0, {"settings": {"level": 0.6}}, {DATA: "configuration", TABLE: "configuration", PAGE: "configuration"}),
+        (2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}),
+        (2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}),
+        (2, {"inputs": (f"results/{DATA}", "manuscript/summary.yaml")}, {PAGE: "rule"}),
+    ],
+    ids=["another level", "another title", "another text", "another table"],
+)  # fmt: skip
+def test_another_configuration_is_told(results, index, change, reasons):
+    jobs = [*JOBS]
+    jobs[index] = jobs[index]._replace(**change)
+    assert {name: reason.split()[-1] for name, reason in faults(results, jobs).items()} == reasons
 
 
-def test_a_page_that_is_made_anew_is_no_longer_outdated(results):
-    make(results, "data/a.nc", "other data")
-    make(results, "measurements/a.csv", "x\n3\n", "data/a.nc")
-    make(results, "index.html", PAGE, "measurements/a.csv")
-    assert "index.html" not in mark_outdated(results)
-    assert (results / "index.html").read_text() == PAGE
-
-
-ODD = ["", "{", "[]", '{"step": 1}', "[" * 100_000]
-ODD += [
-    json.dumps({"step": "s", "configuration": "", "outputs": {"data/a.nc": "0"}, "inputs": {}} | change)
-    for change in ({"outputs": 5}, {"outputs": ["a"]}, {"inputs": None}, {"used": 5})
-]
-
-
-@pytest.mark.parametrize("text", ODD)
-def test_a_record_that_cannot_be_read_is_as_none_and_stays(results, text):
-    path = results / "records/data/a.nc.json"
-    path.write_text(text)
-    assert "data/a.nc" not in [name for record in read_records(results) for name in record.outputs]
-    assert changed_since_made(results) == [] and mark_outdated(results) == {} and path.read_text() == text
-
-
-def test_a_folder_in_place_of_a_record_or_of_an_output_stops_nothing(results):
-    for name in ("records/data/a.nc.json", "measurements/a.csv"):
-        (results / name).unlink()
-        (results / name).mkdir()
-    assert changed_since_made(results) == ["measurements/a.csv"]
-    assert remove_changed(results) == [] and (results / "measurements/a.csv").is_dir()
-
-
-@pytest.mark.parametrize("place", ["../mine.txt", "data/../../mine.txt", "{outside}/mine.txt"])
-def test_a_record_that_names_a_file_elsewhere_is_as_none(results, place):
-    mine = results.parent / "mine.txt"
-    mine.write_text("mine")
-    path = results / "records/data/a.nc.json"
-    content = json.loads(path.read_text())
-    content["outputs"] |= {place.format(outside=results.parent): "0"}
-    path.write_text(json.dumps(content))
-    later(mine)
-    assert remove_changed(results) == [] and mine.read_text() == "mine"
-
-
-def test_a_record_of_another_version_is_read(results):
-    path = results / "records/data/a.nc.json"
-    content = json.loads(path.read_text())
-    del content["used"]
-    path.write_text(json.dumps(content | {"host": "new"}))
-    (record,) = (record for record in read_records(results) if "data/a.nc" in record.outputs)
-    assert record.used["seconds"] == 0.0 and job_times(results) == {"some_step": 0.0}
-
-
-def test_an_expected_file_without_a_record_is_removed_and_no_other(results):
-    (results / "records/data/a.nc.json").unlink()
+def test_a_file_that_no_rule_makes_is_not_known(results):
     (results / "data/mine.nc").write_text("mine")
-    assert remove_changed(results) == []
-    expected = ["data/a.nc", "data/b.nc", "measurements/a.csv"]
-    assert changed_since_made(results, expected=expected) == ["data/a.nc"]
-    assert remove_changed(results, expected) == ["data/a.nc"]
-    assert not (results / "data/a.nc").exists() and (results / "data/mine.nc").exists()
+    (results / "logs").mkdir()
+    (results / "logs/a.log").write_text("")
+    write_text("{}", results / "records/gone.csv.json")
+    origins = origins_of(JOBS)
+    lines, _ = problems_of(results, origins, origins)
+    assert [line.split(": ")[0].removeprefix(f"{results}/") for line in lines] == [
+        "data/mine.nc",
+        "records/gone.csv.json",
+    ]
+    assert all(line.endswith("not known; no rule makes it") for line in lines)
+
+
+def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_same(tmp_path, monkeypatch):
+    path, cache = tmp_path / "a", tmp_path / "cache"
+    path.write_text("one")
+    monkeypatch.setattr(Digests, "SETTLED", -1.0)
+    digests = Digests(cache)
+    first = digests.of(path)
+    digests.save()
+    cache.write_text(cache.read_text().replace(first, "remembered"))
+    assert Digests(cache).of(path) == "remembered"
+    # Another content of the same length, with the same time.
+    times = path.stat()
+    path.write_text("two")
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+    second = Digests(cache).of(path)
+    assert second not in ("remembered", first)
+    shutil.copy2(path, tmp_path / "b")
+    (tmp_path / "b").replace(path)
+    assert Digests(cache).of(path) == second
+    cache.write_text("[" * 100)
+    assert Digests(cache).of(path) == second
+
+
+def test_a_file_that_was_just_written_is_read_again(tmp_path):
+    (tmp_path / "a").write_text("one")
+    digests = Digests(tmp_path / "cache")
+    digests.of(tmp_path / "a")
+    digests.save()
+    assert not (tmp_path / "cache").exists()
 
 
 def test_the_digest_does_not_depend_on_the_order_of_keys():

@@ -10,9 +10,9 @@ import pytest
 import xarray as xr
 
 import slippulse as sp
+from slippulse.data.columns import columns_page
 from slippulse.data.files import write_whole
 from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
-from slippulse.data.columns import columns_page
 from slippulse.data.variables import VARIABLES
 
 SCENES = [

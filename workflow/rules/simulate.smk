@@ -4,7 +4,6 @@
 
 
 rule compile_kernels:
-    input:
     output:
         kernels="results/kernels.txt",
     log:
@@ -60,7 +59,6 @@ rule measure:
 
 
 rule predict:
-    input:
     output:
         predicted="results/predictions/{simulation}.csv",
     log:

@@ -122,15 +122,25 @@ def say_faulty(faulty):
         )
 
 
+def plan(faulty):
+    """Say what would be removed; a dry run begins anew with these files forced, since they are still there."""
+    if "SLIPPULSE_PLANNED" not in os.environ:
+        say_faulty(faulty)
+        if faulty and CALLED.dryrun:
+            at = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
+            forced = ["--forcerun", *(f"results/{name}" for name in faulty)]
+            called = [sys.executable, "-m", "snakemake", *sys.argv[1:at], *forced, *sys.argv[at:]]
+            os.execve(sys.executable, called, os.environ | {"SLIPPULSE_PLANNED": "yes"})
+
+
 def say_outdated():
     """One line on results that this run has left behind, with the command that renews them."""
     tree = Tree("results", ORIGINS)
-    left = {name: tree.outdated(name) for name in ORIGINS if Path("results", name).is_file()}
-    left = {name: reason for name, reason in left.items() if reason}
+    left = [name for name in ORIGINS if Path("results", name).is_file() and tree.outdated(name)]
     if left:
         print(
-            f"{len(left)} results are not as made by what is here now, as results/{[*left][-1]}:"
-            f" {left[[*left][-1]]}. Renew them: {renewal()}",
+            f"{len(left)} results are not as made by what is here now, as results/{left[-1]}:"
+            f" {tree.outdated(left[-1])}. Renew them: {renewal()}",
             file=sys.stderr,
         )
 
@@ -166,10 +176,12 @@ try:
         WANTED = TREE.behind(file for target in targets for file in files_of(target))
         refuse_expensive_targets(WANTED)
         if LOOKING:
-            say_faulty(TREE.faults(name for name in WANTED if Path("results", name).is_file()))
+            plan(TREE.faults(name for name in WANTED if Path("results", name).is_file()))
         else:
             LOCK = lock_folder()
             say_faulty(TREE.remove_faulty(WANTED))
             write_text(json.dumps({"options": OPTIONS, "targets": targets}), Path("results", CALL))
 except ConfigError as error:
     refuse(str(error))
+except OSError as error:
+    refuse(f"{error.filename}: {error.strerror}")

@@ -63,29 +63,27 @@ def file_digest(path: str | Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def paths_in(files: Mapping) -> list[str]:
-    """Every path of a mapping from names to a path or a list of paths."""
-    return [str(path) for value in files.values() for path in ([value] if isinstance(value, str) else value)]
-
-
-def write_record(origin: Origin, files: Mapping, outputs: Mapping, used: Mapping) -> None:
+def write_record(origin: Origin, outputs: Mapping, used: Mapping) -> None:
     """Note what a job has made.
 
     Parameters
     ----------
     origin : what it was made by
-    files, outputs : paths, or lists of paths, by name
+    outputs : paths, or lists of paths, by name
     used : seconds, processor_seconds, memory_MB
     """
-    made = paths_in(outputs)
+    made = [
+        str(path) for value in outputs.values() for path in ([value] if isinstance(value, str) else value)
+    ]
     results = next(parent for parent in Path(made[0]).parents if parent.name == "results")
 
-    def digests(paths: Iterable[str]) -> dict[str, str]:
-        inside = [Path(path) for path in paths if Path(path).is_relative_to(results)]
-        return {path.relative_to(results).as_posix(): file_digest(path) for path in sorted(inside)}
-
     record = Record(
-        origin.step, origin.configuration, origin.sources, digests(made), digests(paths_in(files)), dict(used)
+        origin.step,
+        origin.configuration,
+        origin.sources,
+        {Path(path).relative_to(results).as_posix(): file_digest(path) for path in made},
+        {name: file_digest(results / name) for name in sorted(origin.inputs)},
+        dict(used),
     )
     text = json.dumps(asdict(record), indent=1, ensure_ascii=False) + "\n"
     write_text(text, results / record_path(origin.record))

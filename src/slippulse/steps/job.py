@@ -93,7 +93,7 @@ def run_job(
         with configured_by(origin.configuration):
             import_module(f"slippulse.steps.{origin.step}").run(files, outputs, settings)
         seconds = time.monotonic() - began
-        write_record(origin, files, outputs, used(seconds))
+        write_record(origin, outputs, used(seconds))
     if not sys.stderr.isatty():
         sys.stderr.write(f"  {name}: {seconds:.1f} s\n")
 
