@@ -43,7 +43,9 @@ def scene(number: int) -> dict:
 def nudged(value, rng):
     """A number, or each in tuples and arrays, moved by 1 to 4 units in the last place."""
     if isinstance(value, Prestress):
-        parts = {f.name: nudged(getattr(value, f.name), rng) for f in dataclasses.fields(value) if f.name != "peak"}
+        parts = {
+            f.name: nudged(getattr(value, f.name), rng) for f in dataclasses.fields(value) if f.name != "peak"
+        }
         if value.symmetric:
             parts["left"] = parts["right"]
             parts |= {} if not (value.steps or value.bumps) else {"steps": value.steps, "bumps": value.bumps}

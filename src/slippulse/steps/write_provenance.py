@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..data.files import write_text
 from ..data.provenance import checksums, manifest, provenance
-from ..report.captions import read_captions
+from ..report.texts import read_captions
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:

@@ -164,7 +164,9 @@ class Curve:
         s = np.clip(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
         rising, least = np.sign(span), 1e-8 * np.abs(span) + 1e-300
         # Where a slow front has stopped its end is a double root, to which Newton's steps halve the way, or go astray.
-        todo = np.flatnonzero(np.minimum(np.abs(level - at_left), np.abs(level - at_right)) > 1e-15 * np.abs(level))
+        todo = np.flatnonzero(
+            np.minimum(np.abs(level - at_left), np.abs(level - at_right)) > 1e-15 * np.abs(level)
+        )
         for _ in range(40):
             value, slope = horner(self.powers[name][:, :, panel[todo]], s[todo])
             slope = rising[todo] * np.maximum(rising[todo] * slope, least[todo]) + flat[todo]

@@ -13,9 +13,9 @@ from ..model.roots import root_between
 from .curve import Curve
 from .front_law import LARGEST_RATIO, front_speed
 from .fronts import NARROWEST, FrontLaw, straight_panel
+from .part import Part
 from .profile import nucleations
 from .riemann import Past
-from .part import Part
 
 # Half the panels behind a uniform front that hardly outruns the waves.
 FARTHEST = 10_000

@@ -25,7 +25,9 @@ def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.nd
     if max(-lower, upper) > LARGEST:
         return _bessel(np.clip(z, lower, upper), order)
     # Few polynomials serve all ranges.
-    lower, upper = (e and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(e)))), e) for e in (lower, upper))
+    lower, upper = (
+        e and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(e)))), e) for e in (lower, upper)
+    )
     scaled = (z - 0.5 * (lower + upper)) * (2.0 / (upper - lower))
     np.clip(scaled, -1.0, 1.0, out=scaled)
     coefficients = _polynomial(lower, upper, order)

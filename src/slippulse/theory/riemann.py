@@ -19,7 +19,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.polynomial import legendre
 
-from .curve import COUNT, CUMULATIVE, INTEGRATE, SLOPE, TO_POWERS, WEIGHTS, Crossing, Curve, horner
+from .curve import COUNT, CUMULATIVE, INTEGRATE, SLOPE, TO_POWERS, WEIGHTS, Curve, horner
 from .kernel import riemann
 
 # Points whose integrals are computed together: their arrays stay in the cache.
@@ -42,7 +42,9 @@ class Rest:
         else:
             k = float(np.sqrt(gamma))
             right = _decaying(k, curve.x, curve.source, curve.edges)
-            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])[::-1, ::-1]
+            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])[
+                ::-1, ::-1
+            ]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
         self.at_nodes = (p, slope, *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)))
@@ -65,7 +67,9 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
     loss = np.exp(-k * np.diff(edges))
     gains = loss * ((source * within) @ WEIGHTS)
     first = float(source[0, 0] / (SLOPE[0] @ x[0])) / k
-    starts = list(accumulate(zip(loss, gains, strict=True), lambda p, step: p * step[0] + step[1], initial=first))
+    starts = list(
+        accumulate(zip(loss, gains, strict=True), lambda p, step: p * step[0] + step[1], initial=first)
+    )
     return (np.array(starts[:-1])[:, None] + (source * within) @ CUMULATIVE.T) / within
 
 
@@ -129,7 +133,9 @@ class Past:
             p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
             first = kernel(1)
             growth = gamma**2 * kernel(2) * (ahead * (p * early) - behind * (p * late))
-            return (ahead - behind) * (first * (gamma * slope * time) - growth) + first * (gamma * p * (early + late))
+            return (ahead - behind) * (first * (gamma * slope * time) - growth) + first * (
+                gamma * p * (early + late)
+            )
 
         (on_left, s_left, _), (on_right, s_right, _) = self.left, self.right
         behind = (self.xi - curve.at("early", on_right, s_right)) * rest.at(on_right, s_right, 0)

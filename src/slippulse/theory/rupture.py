@@ -86,7 +86,12 @@ class Rupture:
         kinks = [0.0, *(piece.right for piece in self.law.pieces if np.isfinite(piece.right))]
         self._parts = [
             Part(
-                stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], self.refinement, prestress.symmetric
+                stretch.curve(),
+                self.gamma,
+                until,
+                [*kinks, *stretch.joins],
+                self.refinement,
+                prestress.symmetric,
             )
             for stretch in self.stretches
         ]
@@ -104,7 +109,9 @@ class Rupture:
     def _front_end(self, part: Part, stretch: Stretch, side: float) -> FrontEnd:
         (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
         if reason != "duration" and time <= self.duration * (1.0 + SAME):
-            return FrontEnd(float(x), float(min(time, self.duration)), "stops" if reason == "dead" else reason)
+            return FrontEnd(
+                float(x), float(min(time, self.duration)), "stops" if reason == "dead" else reason
+            )
         edges = part.curve.edges[part.curve.edge_times <= self.duration]
         return FrontEnd(
             part.front_at(self.duration, edges[-1 if side > 0.0 else 0], side), self.duration, "duration"
@@ -199,7 +206,9 @@ class Rupture:
             return float(np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)) - time
 
         trailing = front if late(front) <= 0.0 else root_between(late, x, front, xtol=1e-11)
-        return np.nan if self._beyond_horizon(np.array([trailing, front]), time).any() else abs(front - trailing)
+        return (
+            np.nan if self._beyond_horizon(np.array([trailing, front]), time).any() else abs(front - trailing)
+        )
 
     @cached_property
     def largest_velocity(self) -> float:
