@@ -3,8 +3,8 @@
     make faults             24 kills
     python tests/faults.py --kills 3 --seed 7
 
-Each run is killed by SIGKILL: Snakemake alone, a job alone, or everything, in turn. The next run clears the lock
-as the make target does and goes on from what is there. Results are compared file by file, byte by byte.
+Each run is killed by SIGKILL: Snakemake alone, a job alone, or everything, in turn. The next run goes on from what is
+there. Results are compared file by file, byte by byte.
 """
 
 from __future__ import annotations
@@ -53,7 +53,6 @@ class Report:
 
     kills: dict[str, int] = field(default_factory=lambda: dict.fromkeys(WHOM, 0))
     finished_first: int = 0
-    unlocked: int = 0
     comparisons: int = 0
     files: int = 0
 
@@ -72,18 +71,6 @@ def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
     command += ["--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
     with open(folder / "said.txt", "a", encoding="utf-8") as said:
         return subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, start_new_session=True)
-
-
-def unlock(folder: Path) -> bool:
-    """As the make target does before a run; whether there was a lock."""
-    done = subprocess.run(
-        [sys.executable, PROJECT / "workflow/unlock.py", "."],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return "lock is removed" in done.stderr
 
 
 def digests(folder: Path) -> dict[str, str]:
@@ -156,7 +143,6 @@ def fault_run(folder: Path, kills: int, seed: int, say=print, targets: Iterable[
             kill(run, whom, chance)
             report.kills[whom] += 1
             say(f"killed {whom} after {instant:.1f} s: {len(digests(harmed))} files there")
-            report.unlocked += unlock(harmed)
             continue
         report.finished_first += 1
         _finish(harmed, expected, report)
@@ -169,7 +155,6 @@ def fault_run(folder: Path, kills: int, seed: int, say=print, targets: Iterable[
 
 def _finish(folder: Path, expected: dict[str, str], report: Report) -> None:
     targets = [f"results/{name}" for name in expected]
-    report.unlocked += unlock(folder)
     assert start(folder, targets).wait(timeout=1200) == 0, (folder / "said.txt").read_text(encoding="utf-8")[
         -4000:
     ]
@@ -193,7 +178,7 @@ def main() -> int:
         report = fault_run(Path(folder), chosen.kills, chosen.seed)
     survived = ", ".join(f"{count} of {whom}" for whom, count in report.kills.items())
     print(
-        f"{sum(report.kills.values())} kills survived ({survived}; {report.unlocked} stale locks removed,"
+        f"{sum(report.kills.values())} kills survived ({survived};"
         f" {report.finished_first} runs finished first); {report.files} files the same, byte by byte,"
         f" {report.comparisons} times"
     )

@@ -59,7 +59,6 @@ def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
         (results / name).write_text(name)
         write_record(
             Origin(name, "simulate", "", "", frozenset()),
-            {},
             {"made": f"{results}/{name}"},
             {"seconds": seconds},
         )
