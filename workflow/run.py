@@ -17,7 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 
 # How the last run was called.
-CALL = Path("results/records/.call.json")
+CALL = Path("results/records/.call")
 SHOW_CURSOR = "\x1b[?25h"
 
 

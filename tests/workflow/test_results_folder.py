@@ -115,7 +115,7 @@ RECORD = "records/{}.json".format
 RECORDS = {
     RECORD("data/arrest.nc"): "removed", RECORD("figures/fig01_system_sketch.png"): "emptied",
     RECORD("measurements/barrier.csv"): "edited", RECORD("data/steady_stress.nc"): "grown",
-    RECORD("studies/front_speed.csv"): "removed", RECORD("scenes/barrier.png"): "a dead link",
+    RECORD("studies/published_figure.csv"): "removed", RECORD("scenes/barrier.png"): "a dead link",
 }  # fmt: skip
 
 
@@ -252,9 +252,9 @@ def test_short_names_are_targets(folder):
         (folder / f"results/{FIGURE}.png").unlink()
         run(folder, name)
         assert (folder / f"results/{FIGURE}.png").exists(), name
-    result = snakemake(folder, "--", "fig70", overlay="overlay.yaml")
+    result = snakemake(folder, "--", "fig077", overlay="overlay.yaml")
     assert (
-        result.returncode != 0 and "target: 'fig70'; did you mean 'fig07'?" in result.stdout + result.stderr
+        result.returncode != 0 and "target: 'fig077' (did you mean 'fig07'?)" in result.stdout + result.stderr
     )
 
 

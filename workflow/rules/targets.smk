@@ -17,7 +17,7 @@ from slippulse.steps.origins import Job, is_result, origins_of
 from slippulse.steps.targets import check_places, check_targets
 
 # How this run was called, which `make verify` asks for.
-CALL = "records/.call.json"
+CALL = "records/.call"
 CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
 # With these Snakemake only looks.
 LOOKING = any(
