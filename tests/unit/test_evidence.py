@@ -39,7 +39,7 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
     study = grid_tables(tuple(tables), (2.0, 4.0), ("left", "run_flags"))
     coarser = [table.assign(factor=factor) for table, factor in zip(tables[1:], (2.0, 4.0), strict=True)]
     finest = tables[0].assign(paper=LEVELS)
-    return Evidence.of(
+    return Evidence(
         {
             "sweep": finest,
             "coarser/sweep": pd.concat(coarser, ignore_index=True),

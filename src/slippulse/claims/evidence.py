@@ -12,6 +12,7 @@ from ..measure.uncertainty import GridStudy, grid_study
 from . import rules
 
 NAN = float("nan")
+NUMBERS = ("predicted", "measured", "uncertainty", "deviation")
 Where = Callable[[pd.DataFrame], pd.Series]
 
 
@@ -70,76 +71,56 @@ def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     return [bool(one) if one is not None and one == other else None for one, other in pairs]
 
 
-@dataclass(frozen=True)
 class Evidence:
     """What the ledger is computed from.
 
-    Attributes
+    Parameters
     ----------
-    tables : per simulation or study its table; predictions alone where nothing is measured
-    lattices_of : per simulation, measured with predicted on the finest lattice, the middle and the coarsest
-    uncertainties : per simulation, the grid study of every number of every run
+    tables : per simulation measured and predicted numbers, and per study its table; of grid studies coarser/NAME and
+        uncertainties/NAME
     entries : per claim, what manuscript/claims.yaml says of it
     steady : change of the largest velocity below which a pulse is steady, from the configuration
     """
 
-    tables: Mapping[str, pd.DataFrame]
-    lattices_of: Mapping[str, Sequence[pd.DataFrame]]
-    uncertainties: Mapping[str, pd.DataFrame]
-    entries: Mapping[str, Mapping]
-    steady: float = 0.02
+    def __init__(
+        self, tables: Mapping[str, pd.DataFrame], entries: Mapping[str, Mapping], steady: float = 0.02
+    ) -> None:
+        self.tables, self.entries, self.steady = tables, entries, steady
+        self._lattices = {}
+        for name in (path.removeprefix("coarser/") for path in tables if path.startswith("coarser/")):
+            finest, coarser = tables[name], tables[f"coarser/{name}"]
+            predicted = finest[finest.columns.difference(coarser.columns)]
+            parts = [part.reset_index(drop=True) for _, part in coarser.groupby("factor")]
+            kept = finest["run_flags"].isna() | (finest["run_flags"] == "")
+            levels = [finest, *(part.join(predicted) for part in parts)]
+            self._lattices[name] = [level[kept].assign(simulation=name) for level in levels]
 
-    @classmethod
-    def of(
-        cls, tables: Mapping[str, pd.DataFrame], entries: Mapping[str, Mapping], steady: float
-    ) -> Evidence:
-        """From tables by name, those of a grid study as coarser/NAME and uncertainties/NAME."""
-        lattices, studies = {}, {}
-        for name in tables:
-            if name.startswith("coarser/"):
-                finest, coarser = tables[name.removeprefix("coarser/")], tables[name]
-                predicted = finest[finest.columns.difference(coarser.columns)]
-                parts = (part.reset_index(drop=True) for _, part in coarser.groupby("factor"))
-                lattices[name.removeprefix("coarser/")] = [finest, *(part.join(predicted) for part in parts)]
-            elif name.startswith("uncertainties/"):
-                studies[name.removeprefix("uncertainties/")] = tables[name]
-        return cls(tables, lattices, studies, entries, steady)
-
-    # Runs
+    # Runs, without those that are flagged on the finest lattice, whose numbers are not those of the model
 
     def lattices(self, *simulations: str) -> list[pd.DataFrame]:
-        """Tables of some simulations one below the other: on the finest lattice, the middle and the coarsest.
+        """Tables of some simulations one below the other: on the finest lattice, the middle and the coarsest."""
+        parts = zip(*(self._lattices[name] for name in simulations), strict=True)
+        return [pd.concat(level, ignore_index=True) for level in parts]
 
-        Runs that are flagged on the finest one, whose numbers are not those of the model, are left out of all.
-        """
-        parts = []
-        for name in simulations:
-            kept = _unflagged(self.lattices_of[name][0])
-            parts.append([table[kept].assign(simulation=name) for table in self.lattices_of[name]])
-        return [pd.concat(level, ignore_index=True) for level in zip(*parts, strict=True)]
-
-    def runs(self, *simulations: str, where: Where | None = None) -> pd.DataFrame:
-        """Unflagged runs on the finest lattice.
+    def runs(self, simulation: str, where: Where | None = None) -> pd.DataFrame:
+        """Runs on the finest lattice.
 
         Raises
         ------
         NoRuns
         """
-        table = self.lattices(*simulations)[0]
+        table = self.lattices(simulation)[0]
         table = table if where is None else table[where(table)]
         if table.empty:
-            raise NoRuns(", ".join(simulations))
+            raise NoRuns(simulation)
         return table
 
     def points(self, simulation: str, quantity: str, where: Where | None = None) -> pd.DataFrame:
-        """Unflagged runs of a sweep with one quantity: value, extrapolated to spacing 0, uncertainty."""
-        study = self.uncertainties[simulation]
+        """Runs of a sweep, by number, with one quantity: value, extrapolated to spacing 0, uncertainty."""
+        study = self.tables[f"uncertainties/{simulation}"]
         study = study[study["quantity"] == quantity].set_index("point")
-        table = self.lattices_of[simulation][0]
-        columns = {
-            name: study[name].reindex(table.index) for name in ("value", "extrapolated", "uncertainty")
-        }
-        points = table.assign(simulation=simulation, **columns)[_unflagged(table)]
+        table = self._lattices[simulation][0]
+        points = table.join(study[["value", "extrapolated", "uncertainty"]])
         return points if where is None else points[where(points)]
 
     def studied(self, tables: Sequence[pd.DataFrame], number: Callable[[pd.DataFrame], float]) -> GridStudy:
@@ -172,13 +153,8 @@ class Evidence:
         claim = Claim(id, verdict, numbers={"runs": usable, "left_out": len(points) - usable})
         if run is None:
             return claim
-        return replace(
-            claim,
-            predicted=paper[run],
-            measured=value[run],
-            uncertainty=uncertainty[run],
-            deviation=deviation[run],
-        )
+        numbers = (each[run] for each in (paper, value, uncertainty, deviation))
+        return replace(claim, **dict(zip(NUMBERS, numbers, strict=True)))
 
     def approximate(
         self,
@@ -231,17 +207,10 @@ class Evidence:
         """
         decided = list(decided)
         known = [bool(found) for found in decided if found is not None]
-        runs, held, failed, undecided = (
-            len(decided),
-            sum(known),
-            known.count(False),
-            len(decided) - len(known),
-        )
-        return Claim(
-            id, rules.qualitative(held, failed, undecided, condition),
-            predicted=runs, measured=held, uncertainty=undecided, deviation=failed / runs if runs else NAN,
-            numbers={"runs": runs, "held": held, "failed": failed, "undecided": undecided},
-        )  # fmt: skip
+        runs, held, failed = len(decided), sum(known), known.count(False)
+        numbers = {"runs": runs, "held": held, "failed": failed, "undecided": runs - len(known)}
+        verdict = rules.qualitative(held, failed, runs - len(known), condition)
+        return Claim(id, verdict, runs, held, runs - len(known), failed / runs if runs else NAN, numbers)
 
     def agreed(
         self,
@@ -270,10 +239,6 @@ class Evidence:
             for chosen, seen, found, exact in rows
             if chosen
         ]
-
-
-def _unflagged(table: pd.DataFrame) -> np.ndarray:
-    return (table["run_flags"].isna() | (table["run_flags"] == "")).to_numpy()
 
 
 def compared(claim: Claim, values: pd.Series, exact: pd.Series) -> Claim:

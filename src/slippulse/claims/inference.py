@@ -62,15 +62,6 @@ def likely(level: float, parameters: int = 1) -> float:
     return float(chdtri(parameters, 1.0 - level))
 
 
-def region(curve: pd.DataFrame, level: float) -> tuple[float, float]:
-    """Confidence region of the damping ratio under one rule; NaN for an end that was not reached."""
-    inside = np.flatnonzero(curve["chi2"] <= curve["chi2"].min() + likely(level))
-    ratios = curve["damping_ratio"].to_numpy()
-    low = ratios[inside[0]] if inside[0] > 0 else np.nan
-    high = ratios[inside[-1]] if inside[-1] < ratios.size - 1 else np.nan
-    return float(low), float(high)
-
-
 def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic")) -> dict[str, Any]:
     """What the figure says of its parameters, under each release rule and over both.
 
@@ -137,11 +128,13 @@ def right_panel(table: pd.DataFrame) -> dict:
 
 
 def _regions(line: pd.DataFrame, level: float) -> dict[str, tuple[float, float]]:
-    """Regions of each parameter, the others being what fits best."""
+    """Regions of each parameter, the others being what fits best; NaN for an end that was not reached."""
     room = likely(level) - (line["chi2"] - line["chi2"].min())
     inside = line[room >= 0.0]
     reach = np.sqrt(room[room >= 0.0])
-    out = {"damping_ratio": region(line, level)}
+    ratios = inside["damping_ratio"].iloc[[0, -1]]
+    low, high = ratios.where(~ratios.index.isin([line.index[0], line.index[-1]]))
+    out = {"damping_ratio": (float(low), float(high))}
     for name in ("tau0", "gamma"):
         half = reach * inside[f"{name}_error"]
         out[name] = float((inside[name] - half).min()), float((inside[name] + half).max())

@@ -120,7 +120,8 @@ def _shown(evidence: Evidence, id: str, held: dict[str, int], **further: float) 
 def positive(evidence: Evidence) -> Claim:
     """No run of any simulation has a negative slip velocity; what friction must be for that."""
     id = "only_positive_velocities"
-    finest = pd.concat([tables[0] for tables in evidence.lattices_of.values()], ignore_index=True)
+    names = [name.removeprefix("coarser/") for name in evidence.tables if name.startswith("coarser/")]
+    finest = pd.concat([evidence.tables[name] for name in names], ignore_index=True)
     needed = float(finest["friction_ratio_needed"].max())
     decided = list(finest["min_velocity"] >= -evidence.tolerance(id))
     claim = evidence.qualitative(id, decided, condition=needed > 0.0)

@@ -48,12 +48,7 @@ def worst(verdicts: Iterable[str]) -> str:
 def exact(
     deviations: Sequence[float], uncertainties: Sequence[float], tolerance: float
 ) -> tuple[str, int | None]:
-    """Verdict on an equation, which leaves no run out: the worst verdict of any run that has numbers.
-
-    Parameters
-    ----------
-    deviations, uncertainties : one a run, relative to the prediction; NaN where a run has none
-    tolerance : as in `within`
+    """Verdict on an equation, which leaves no run out: the worst of the runs that have numbers, as `within`.
 
     Returns
     -------
@@ -78,9 +73,8 @@ def approximate(
     Parameters
     ----------
     median : of the relative deviations of all runs, and its uncertainty
-    tolerance : of that median
     exponent : of measured against predicted in logarithmic axes, and its uncertainty; None where none is claimed
-    tolerance_exponent : of its distance from 1
+    tolerance, tolerance_exponent : of the median, and of the distance of the exponent from 1
     """
     verdicts = [within(*median, tolerance)]
     if exponent is not None:
@@ -90,11 +84,6 @@ def approximate(
 
 def at_fractions(fractions: Sequence[str], last: str) -> str:
     """Verdict on a time that has no end, from those at several fractions of the way and at the last release.
-
-    Parameters
-    ----------
-    fractions : verdict at each
-    last : verdict at the last release on the lattice
 
     Returns
     -------
@@ -139,18 +128,12 @@ def existence(held: Sequence[int]) -> str:
 
 
 def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
-    """Verdict on a figure read off, from the chi-square of all its readings at the best fit.
-
-    Parameters
-    ----------
-    p : probability of a chi-square at least as large
-    degrees_of_freedom : readings less fitted parameters
-    tolerance : smallest p that counts as agreement
+    """Verdict on a figure read off, from the probability p of a chi-square at least as large as that of the best fit.
 
     Returns
     -------
-    "inconclusive" with fewer than two degrees of freedom; "not reproduced" below `EXCLUDED`, "reproduced with caveat"
-    below the tolerance, else "reproduced"
+    "inconclusive" with fewer than two degrees of freedom (readings less fitted parameters); "not reproduced" below
+    `EXCLUDED`, "reproduced with caveat" below the tolerance, else "reproduced"
     """
     if not np.isfinite(p):
         return "not testable"

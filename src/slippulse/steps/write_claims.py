@@ -27,7 +27,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     texts = read_entries(files["texts"], settings["claims"])
     sentences = yaml.safe_load(Path(files["statements"]).read_text(encoding="utf-8"))["statements"]
     _, tables = given(files)
-    evidence = Evidence.of(tables, texts["claims"], settings["measure"]["steady_tolerance"])
+    evidence = Evidence(tables, texts["claims"], settings["measure"]["steady_tolerance"])
     claims = all_claims(evidence, settings["published"], sentences)
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
