@@ -88,10 +88,10 @@ SHALLOW = [pytest.param(left, 0.02, marks=pytest.mark.slow) for left in (-0.1, -
 
 
 @pytest.mark.parametrize(("left", "right"), [(-0.02, 0.1), (-0.6, 0.6), *SHALLOW])
-def test_without_leaf_springs_a_barrier_before_a_positive_level_leaves_the_centre_a_share_of_the_velocity(
+def test_without_leaf_springs_a_barrier_before_a_positive_level_leaves_the_centre_part_of_the_velocity(
     left, right
 ):
-    """The share for large times, a crack or a pulse as it is above or below what counts as still."""
+    """Which fraction for large times, a crack or a pulse as it is above or below what counts as still."""
     times = np.array([1500.0, 3000.0])
     found = rupture(left, right, 0.0, times[1])
     speed = (found.front_ends[0][1].x - found.fronts_at(times[0])[1]) / np.diff(times)[0]

@@ -16,27 +16,26 @@ def state(level: float, duration: float, **values) -> str:
     return pulse_state(run, leading_pulse(run, 0.3))
 
 
-@pytest.mark.parametrize("level", [0.3, 0.6, 0.9])
-def test_a_pulse_that_has_run_long_enough_is_steady(level):
-    assert state(level, 60.0) == "steady"
+@pytest.mark.parametrize(
+    ("level", "duration", "values", "expected"),
+    [
+        (0.3, 60.0, {}, "steady"),
+        (0.6, 60.0, {}, "steady"),
+        (0.9, 60.0, {}, "steady"),
+        (0.5, 40.0, {}, "steady"),
+        # Just split from its twin: half as wide again as the pulse that it becomes.
+        (0.5, 5.0, {}, "unsteady"),
+        # The elastic rule under strong damping: slower than the waves; the formula without leaf springs says 1.19.
+        (0.3, 40.0, {"beta": 0.5, "release": "elastic", "max_step": 0.05}, "unsteady"),
+        # The damped layer is as wide as the pulse.
+        (0.05, 60.0, {"dx": 0.02, "beta": 0.006}, "thick_front"),
+        (0.5, 1.0, {}, "none"),
+        (0.5, 5.0, {"boundary": "stress", "gamma": 0.0}, "none"),
+    ],
+)
+def test_what_a_pulse_is_called(level, duration, values, expected):
+    assert state(level, duration, **values) == expected
 
 
-def test_a_young_pulse_is_unsteady():
-    """Just split from its twin: half as wide again as the pulse that it becomes."""
-    assert state(0.5, 5.0) == "unsteady"
-    assert state(0.5, 40.0) == "steady"
-
-
-def test_a_pulse_slower_than_the_waves_is_unsteady():
-    """The elastic rule under strong damping: 0.83, where the formula without leaf springs says 1.19."""
-    assert state(0.3, 40.0, beta=0.5, release="elastic", max_step=0.05) == "unsteady"
+def test_the_formula_without_leaf_springs_has_a_faster_front():
     assert sp.theory.front_speed(0.3, 10.0, "elastic") > 1.1
-
-
-def test_a_damped_layer_as_wide_as_the_pulse_is_told():
-    assert state(0.05, 60.0, dx=0.02, beta=0.006) == "thick_front"
-
-
-def test_without_a_pulse_there_is_no_state():
-    assert state(0.5, 1.0) == "none"
-    assert state(0.5, 5.0, boundary="stress", gamma=0.0) == "none"

@@ -74,7 +74,7 @@ def test_an_estimate_is_judged_by_median_and_exponent(median, exponent, verdict)
 
 
 @pytest.mark.parametrize(
-    ("shares", "last", "verdict"),
+    ("fractions", "last", "verdict"),
     [
         ([YES, YES, YES], NO, YES),
         ([YES, YES, NO], NO, CAVEAT),
@@ -85,8 +85,8 @@ def test_an_estimate_is_judged_by_median_and_exponent(median, exponent, verdict)
         ([NONE, NONE, NONE], NONE, NONE),
     ],
 )
-def test_a_time_without_an_end_is_judged_at_several_shares(shares, last, verdict):
-    assert at_fractions(shares, last) == verdict
+def test_a_time_without_an_end_is_judged_at_several_fractions(fractions, last, verdict):
+    assert at_fractions(fractions, last) == verdict
 
 
 @pytest.mark.parametrize(
