@@ -1,4 +1,4 @@
-"""What was measured on three lattices, beside what is predicted, and from it a claim of each kind."""
+"""What was measured on three lattices, with what is predicted, and from it a claim of each kind."""
 
 from __future__ import annotations
 

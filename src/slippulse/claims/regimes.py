@@ -15,10 +15,10 @@ from . import rules
 from .evidence import Claim, Evidence, Where
 from .pulses import every
 
-# A pulse about a block wide has at most so many that slide at once.
+# A pulse about a block wide has at most this many that slide at once.
 BLOCKS = 2.0
 LASTING = ("pulse, one-way, steady", "pulse, one-way, growing", "pulses, two-way")
-# A run tells of the transition if it lasts so many of the paper's T_trans; under a stress boundary, of |x_minus|, as
+# A run tells of the transition if it lasts this many of the paper's T_trans; under a stress boundary, of |x_minus|, as
 # the collapses of figure 5 are run.
 HALF_PERIODS, BALANCE_DISTANCES = 1.5, 2.6
 FRICTION = r"$\mu_k/(\mu_s-\mu_k)$"

@@ -60,12 +60,12 @@ def longest_wait(run: xr.Dataset, distance: float, side: str = "right") -> float
 
 
 def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[float, float, float]:
-    """Speed, intercept and standard error of a straight line through the last share of a front's path.
+    """Speed, intercept and standard error of a straight line through the last fraction of a front's path.
 
     Parameters
     ----------
     run : one run
-    window : share of the path, in (0, 1)
+    window : fraction of the path, in (0, 1)
     side : "right" or "left"
 
     Returns

@@ -24,9 +24,9 @@ NOT_COVERED = {
     "front_speed_error": "an error itself",
     "late_front_speed": "two samples of a front, a spacing of samples apart",
     "pulse": "under a stress boundary no pulse has a width of its own; its peak is largest_velocity",
-    "pulse_front": "a place at the end, with the lag of the whole path",
+    "pulse_front": "a position at the end, with the lag of the whole path",
     "pulse_acceleration": "the undamped lattice rings behind the front",
-    "trailing_edge": "a place at a stated time",
+    "trailing_edge": "a position at a stated time",
     "slip_time": "its slope vanishes where slip hardly reaches the stated value",
     "slip_length": "its slope vanishes where slip hardly reaches the stated value",
     "slip_variation": "near 0",
@@ -49,17 +49,17 @@ LOWEST_LEVEL = 0.05
 # With less damping the ringing of the lattice decides how long the left front stands still.
 LEAST_DAMPING = 0.05
 # The left front slows for ever: the time to cover more of its path takes a finer lattice than the one chosen.
-LARGEST_SHARE = 0.95
+LARGEST_FRACTION = 0.95
 
 
-def covers(run: Mapping, quantity: str, share: float) -> bool:
+def covers(run: Mapping, quantity: str, fraction: float) -> bool:
     """Whether a promise covers one number of one run.
 
     Parameters
     ----------
     run : a row of the measured table
     quantity : its column
-    share : share of |x_minus| that the left front covers at T_trans under a stress boundary
+    fraction : fraction of |x_minus| that the left front covers at T_trans under a stress boundary
     """
     if quantity not in COVERED[run["boundary"]] or run["run_flags"] or not math.isfinite(run[quantity]):
         return False
@@ -78,11 +78,11 @@ def covers(run: Mapping, quantity: str, share: float) -> bool:
     return (
         run["transition_state"] == "resolved"
         and run["damping_ratio"] >= LEAST_DAMPING
-        and share <= LARGEST_SHARE
+        and fraction <= LARGEST_FRACTION
     )
 
 
-def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, share: float) -> pd.DataFrame:
+def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction: float) -> pd.DataFrame:
     """A grid study with two more columns: `promised` (NaN where nothing is) and `kept` ("true", "false" or "").
 
     Parameters
@@ -90,7 +90,7 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, share: f
     study : of a sweep, one row a number (`slippulse.measure.uncertainty.grid_tables`)
     measured : the table at the finest spacing
     promise : largest relative uncertainty; NaN for a spacing of its own, which promises nothing
-    share : see `covers`
+    fraction : see `covers`
 
     A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept its promise.
     """
@@ -99,7 +99,7 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, share: f
     )
     rows = runs.to_dict("records")
     covered = [
-        math.isfinite(promise) and covers(rows[row.point], row.quantity, share) for row in study.itertuples()
+        math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction) for row in study.itertuples()
     ]
     within = study["uncertainty"] <= promise * study["value"].abs()
     return study.assign(

@@ -37,7 +37,7 @@ def leading_pulse(run: xr.Dataset, window: float, side: str = "right") -> Leadin
     Parameters
     ----------
     run : one run with fronts and fields
-    window : share of the front's path that its speed is measured on
+    window : fraction of the front's path that its speed is measured on
     side : "right" or "left"
     """
     sign = 1.0 if side == "right" else -1.0
@@ -59,7 +59,7 @@ def leading_pulse(run: xr.Dataset, window: float, side: str = "right") -> Leadin
     if stuck.size >= 4 and moving.size and distance.size:
         behind = stuck < at
         if np.count_nonzero(behind) >= 4:
-            # The trailing edge runs as fast as the front: its place now, from the blocks that stuck last.
+            # The trailing edge runs as fast as the front: its position now, from the blocks that stuck last.
             last = slice(max(0, np.count_nonzero(behind) - 4), np.count_nonzero(behind))
             trailing = float(np.mean(stuck[behind][last] + speed * (end - stick[behind][last])))
             width = front - trailing
@@ -71,7 +71,7 @@ def leading_pulse(run: xr.Dataset, window: float, side: str = "right") -> Leadin
 
 
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Largest value of sampled y and its place, from the parabola through the largest sample and its neighbours."""
+    """Largest value of sampled y and its position, from the parabola through the largest sample and its neighbours."""
     if y.size == 0:
         return float("nan"), float("nan")
     i = int(np.argmax(y))

@@ -27,9 +27,9 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     ----------
     run : one run with samples of slip velocity over time and position; how it ends is taken from the blocks themselves
         where their slip velocity at the end is there, since samples may miss what is narrow or far
-    still : a velocity below this share of the largest one now (or, for arrest, of the largest one sampled) is rest
-    steady_tolerance : a largest velocity that changes less than this share over the last third is steady; a front
-        this share slower than the waves still keeps up with them
+    still : a velocity below this fraction of the largest one now (or, for arrest, of the largest one sampled) is rest
+    steady_tolerance : a largest velocity that changes less than this fraction over the last third is steady; a front
+        this fraction slower than the waves still keeps up with them
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The shape of a pulse: how broad, how smooth, how many blocks, and whether it stays as it is."""
+"""The shape of a pulse: how broad, how even, how many blocks, and whether it stays as it is."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .pulses import LeadingPulse, comoving
 
 # Fewer sliding blocks show no waves of the lattice.
 FEWEST = 12
-# Beyond so many widths of the Gaussian the pre-stress is that of the side, to rounding of what is shown.
+# Beyond this many widths of the Gaussian the pre-stress is that of the side, to rounding of what is shown.
 FAR = 6.0
 NAN = float("nan")
 

@@ -1,4 +1,4 @@
-"""When and where a crack becomes a pulse: definitions that converge, and the paper's own beside them."""
+"""When and where a crack becomes a pulse: definitions that converge, and the paper's own next to them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from ..model.scene import scene_of
 from .fronts import arrival, longest_wait, path, position_at
 
 NAN = float("nan")
-# A left front that spends more than this share of T_trans between two blocks is held up by the lattice, not by the
-# pre-stress alone: the error of T_trans is up to one and a half times the share (five levels, three damping ratios).
+# A left front that spends more than this fraction of T_trans between two blocks is held up by the lattice, not by the
+# pre-stress alone: the error of T_trans is up to one and a half times the fraction (five levels, three damping ratios).
 STALL = 0.03
 
 
@@ -55,22 +55,22 @@ def slip_time(run: xr.Dataset, slip: float) -> float:
     i = int(beyond[0])
     if i == 0:
         return float(times[0])
-    share = (slip - history[i - 1]) / (history[i] - history[i - 1])
-    return float(times[i - 1] + share * (times[i] - times[i - 1]))
+    fraction = (slip - history[i - 1]) / (history[i] - history[i - 1])
+    return float(times[i - 1] + fraction * (times[i] - times[i - 1]))
 
 
-def transition_stress(run: xr.Dataset, share: float) -> dict[str, float | str]:
+def transition_stress(run: xr.Dataset, fraction: float) -> dict[str, float | str]:
     """Transition under a stress boundary, pre-stress 0 on the right and negative on the left.
 
-    T_trans is when the left front has covered ``share`` of |x_minus|, which converges with dx; the arrest (the last
+    T_trans is when the left front has covered ``fraction`` of |x_minus|, which converges with dx; the arrest (the last
     release on the left), which the paper draws, does not: in the continuum it never comes. ``transition_state`` is
     "resolved", "stalled" where the lattice held the left front up on its way, or "not reached".
     """
     distance = abs(prestress_balance_position(scene_of(run).prestress))
-    time = arrival(run, share * distance, "left")
+    time = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
     arrest = float(np.max(times)) if times.size else NAN
-    waited = longest_wait(run, share * distance, "left") / time
+    waited = longest_wait(run, fraction * distance, "left") / time
     return {
         "transition_time": time,
         "transition_longest_wait": waited,
@@ -79,7 +79,7 @@ def transition_stress(run: xr.Dataset, share: float) -> dict[str, float | str]:
         else "stalled"
         if waited > STALL
         else "resolved",
-        "transition_length": share * distance + float(position_at(run, time, "right"))
+        "transition_length": fraction * distance + float(position_at(run, time, "right"))
         if np.isfinite(time)
         else NAN,
         "balance_distance": distance,

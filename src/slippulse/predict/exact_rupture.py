@@ -1,4 +1,4 @@
-"""A finished run beside the exact solution of its scene: both at the same positions and times."""
+"""A finished run against the exact solution of its scene: both at the same positions and times."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from ..theory.rupture import Rupture
 
 NEEDS = {"sweeps": ["space_time_displacement", "steady_displacement", "stress_pulses"]}
 
-# The nucleation reaches so many widths of its Gaussian; a derivative in time by a difference over this, and one in
+# The nucleation reaches this many widths of its Gaussian; a derivative in time by a difference over this, and one in
 # space.
 BEGINNING, SHORTLY, STEP = 6.0, 1e-4, 1e-3
 # Points at which a profile is compared with itself.
@@ -23,7 +23,7 @@ POINTS = 41
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """What the exact solution has beside the paper, and what refining its panels changes.
+    """By how much the exact solution differs from the paper, and what refining its panels changes.
 
     Returns
     -------
