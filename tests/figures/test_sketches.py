@@ -10,6 +10,8 @@ import pytest
 from slippulse.figures import fig01_system_sketch, fig07_damage_zone
 from slippulse.studies import damage_zone
 
+SPAN, THICKNESSES = {"from": 1e-4, "to": 2.0, "count": 31}, [0.5, 2.0, 8.0]
+
 
 def named(axes, gid: str) -> list:
     """What is drawn under one name."""
@@ -22,7 +24,8 @@ def texts(axes) -> str:
 
 def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
     """Under a stress the mean stands for the interface; held, the mean of the displacement is half of the slip."""
-    table = fig01_system_sketch.table({}, {}, {})
+    table = fig01_system_sketch.table({}, {}, {"thickness": 2.0, "strip_width": 0.1})
+    assert table["strip_width"].iloc[0] == 0.2 and table["y"].max() == 2.0
     stress, held = fig01_system_sketch.plot(table).axes
     assert named(stress, "imposed stress") and not named(stress, "held top")
     assert named(held, "held top") and not named(held, "imposed stress")
@@ -31,7 +34,7 @@ def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
         x, y = line.get_xdata() - fig01_system_sketch.REST, line.get_ydata()
         assert np.trapezoid(x, y) == pytest.approx(mean * x[0]) and list(y) == [0.0, 1.0]
         (strip,) = named(axes, "strip")
-        assert (strip.get_y(), strip.get_height()) == (0.0, 1.0)
+        assert (strip.get_width(), strip.get_height()) == pytest.approx((0.1, 1.0))
         (friction,) = named(axes, "friction")
         assert np.diff(friction.get_path().vertices[:2, 0])[0] < 0.0, "friction opposes sliding"
         for symbol in ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$", "$y$"):
@@ -41,7 +44,8 @@ def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
 
 @pytest.fixture(scope="module")
 def zone():
-    table = fig07_damage_zone.table({}, {"damage_zone": damage_zone.table({}, {}, {})}, {})
+    settings = {"figures": {"fig07_damage_zone": {"stiffness_ratios": SPAN, "thickness_ratios": THICKNESSES}}}
+    table = fig07_damage_zone.table({}, {"damage_zone": damage_zone.table({}, {}, settings)}, {})
     return fig07_damage_zone.plot(table).axes
 
 
@@ -63,8 +67,9 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(zone):
     lines = named(zone[1], "curve")
     (limit,) = named(zone[1], "limit")
     assert set(limit.get_ydata()) == {1.0} and zone[1].get_xscale() == "log"
-    for line, thickness in zip(lines, damage_zone.THICKNESS_RATIOS, strict=True):
+    for line, thickness in zip(lines, THICKNESSES, strict=True):
         x, y = line.get_data()
+        assert x[[0, -1]] == pytest.approx([SPAN["from"], SPAN["to"]]) and x.size == SPAN["count"]
         assert y == pytest.approx(1.0 / (1.0 + thickness * x), rel=1e-6) and y.max() < 1.0
         assert f"{thickness:g}" in line.get_label()
     assert all((upper.get_ydata() > lower.get_ydata()).all() for upper, lower in pairwise(lines))

@@ -130,14 +130,15 @@ JOINED = {"join_data": 1, "join_measurements": 1, "join_uncertainties": 1}
 CONFIGURATIONS = {
     "another level": (
         {"simulations": {"space_time_displacement": {"left": [0.3]}}},
-        CHAIN | {"fig04_space_time": 1, "study_published_figure": 1},
+        CHAIN | {"fig04_space_time": 1, "study_of_exact_space_time": 1, "study_published_figure": 1},
     ),
     "swapped values": (
         {"simulations": {"own": {"left": [0.5, 0.3]}}}, dict.fromkeys(CHAIN, 2) | JOINED | {"draw_sweep": 1},
     ),
     "without chunks": ({"simulations": {"own": {"chunks": 1}}}, CHAIN | {"draw_sweep": 1}),
     "another sketch": (
-        {"figures": {"fig07_damage_zone": {"thickness_ratios": [0.3, 1.0]}}}, {"fig07_damage_zone": 1},
+        {"figures": {"fig07_damage_zone": {"thickness_ratios": [0.3, 1.0]}}},
+        {"study_of_damage_zone": 1, "fig07_damage_zone": 1},
     ),
     "another title": (
         {"scenes": {"barrier": {"title": "Uno"}}}, {"draw_scene": 1, "animate_scene": 1, "write_scenes_page": 1},

@@ -17,8 +17,9 @@ from .style import BLACK, BLUE, COLUMN, ORANGE, new_figure, panel_letter
 NEEDS = {"data": ()}
 
 TITLES = {"stress": r"$\Gamma = 0$: stress imposed", "displacement": r"$\Gamma = 1$: displacement held"}
-# In thicknesses: length of the layer, depth of what is rigid, width of the strip, largest displacement drawn.
-LENGTH, RIGID, STRIP, DISPLACEMENT = 3.5, 0.2, 0.25, 0.5
+# In thicknesses: length of the layer, depth of what is rigid, largest displacement drawn.
+LENGTH, RIGID, DISPLACEMENT = 3.5, 0.2, 0.5
+LENGTHS = ["y", "displacement", "strip_width"]
 # Where the strip is, and where the displacement is counted from.
 STRIP_AT, REST = 1.68, 2.38
 RED, MUTED = "#c00000", "0.25"
@@ -26,12 +27,16 @@ HATCHED: dict[str, Any] = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "/
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Displacement over the height since the start, as each condition is reduced with, in thicknesses.
+    """Displacement over the height since the start, as each condition is reduced with, and the strip.
+
+    Parameters
+    ----------
+    settings : thickness H, and strip_width in units of it
 
     Returns
     -------
-    panel ("stress" or "displacement"), y, displacement. Under an imposed stress the mean over the height stands for
-    the interface; with the top held the displacement falls linearly to 0 there, so that its mean is half of the slip.
+    panel ("stress" or "displacement"), y, displacement, strip_width. Under an imposed stress the mean over the height
+    stands for the interface; with the top held the displacement falls linearly to 0, so that its mean is half the slip.
 
     Source: section II and appendix A of the paper.
     """
@@ -41,15 +46,19 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         ("displacement", 0.0, 1.0),
         ("displacement", 1.0, 0.0),
     ]
-    found = pd.DataFrame(rows, columns=["panel", "y", "displacement"])
-    return found.assign(displacement=DISPLACEMENT * found["displacement"])
+    found = pd.DataFrame(rows, columns=["panel", *LENGTHS[:2]]).assign(strip_width=settings["strip_width"])
+    found["displacement"] *= DISPLACEMENT
+    found[LENGTHS] *= settings["thickness"]
+    return found
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """Two panels, one a boundary condition."""
     figure = new_figure(COLUMN, 3.4)
+    # Drawn in thicknesses.
+    table = table.assign(**(table[LENGTHS] / table["y"].max()))
     for axes, panel, letter in zip(figure.subplots(2, 1), TITLES, "ab", strict=True):
-        draw_layer(axes)
+        draw_layer(axes, table["strip_width"].iloc[0])
         (draw_stress if panel == "stress" else draw_held_top)(axes)
         rows = table[table["panel"] == panel]
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
@@ -61,12 +70,12 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_layer(axes: Axes) -> None:
+def draw_layer(axes: Axes, strip: float) -> None:
     """What both conditions have: layer, substrate, strip, friction, thickness and axes."""
     axes.add_patch(Rectangle((0.0, -RIGID), LENGTH, RIGID, **HATCHED))
     axes.add_patch(Rectangle((0.0, 0.0), LENGTH, 1.0, facecolor="#e6edf4", edgecolor=BLACK, linewidth=0.8))
     look: dict[str, Any] = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
-    axes.add_patch(Rectangle((STRIP_AT - 0.5 * STRIP, 0.0), STRIP, 1.0, gid="strip", **look))
+    axes.add_patch(Rectangle((STRIP_AT - 0.5 * strip, 0.0), strip, 1.0, gid="strip", **look))
     label(axes, STRIP_AT, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
     label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
     substrate = label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8)

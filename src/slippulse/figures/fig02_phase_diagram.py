@@ -16,21 +16,8 @@ from matplotlib.patches import Patch
 from ..data.numerals import setting
 from ..measure.regime import REGIMES
 from ..model.prestress import Prestress
-from .style import (
-    BLACK,
-    BLUE,
-    COLUMN,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    YELLOW,
-    entry,
-    legend_below,
-    new_figure,
-    panel_letter,
-)
+from . import style
+from .style import BLACK, GREY, entry, legend_below, new_figure, panel_letter
 
 NEEDS = {
     "measured": [
@@ -86,12 +73,12 @@ DIAGRAMS = {
 # Colour and marker of each regime; markers alone tell them apart in grey.
 LOOKS = {
     "arrested": (GREY, "X"),
-    "crack-like, two-way": (BLUE, "s"),
-    "crack-like, one-way": (SKY, "D"),
-    "pulses, two-way": (ORANGE, "*"),
-    "pulse, one-way, growing": (PURPLE, "^"),
-    "pulse, one-way, steady": (YELLOW, "o"),
-    "pulse, one-way, decaying": (GREEN, "v"),
+    "crack-like, two-way": (style.BLUE, "s"),
+    "crack-like, one-way": (style.SKY, "D"),
+    "pulses, two-way": (style.ORANGE, "*"),
+    "pulse, one-way, growing": (style.PURPLE, "^"),
+    "pulse, one-way, steady": (style.YELLOW, "o"),
+    "pulse, one-way, decaying": (style.GREEN, "v"),
 }
 SIZES = {"*": 5.0, "s": 3.4, "D": 3.0}
 RING: dict[str, Any] = {
@@ -136,7 +123,7 @@ def regime_of_run(runs: pd.DataFrame, letter: str, tolerance: float) -> pd.Serie
 
 def plot(table: pd.DataFrame) -> Figure:
     """Above each diagram an example of its pre-stress."""
-    figure = new_figure(COLUMN, 6.6)
+    figure = new_figure(style.COLUMN, 6.6)
     figure.set_layout_engine("constrained", w_pad=0.02, h_pad=0.02, hspace=0.02)
     grid = figure.add_gridspec(4, 2, height_ratios=(0.25, 1.3, 0.25, 1.15))
     for index, letter in enumerate(DIAGRAMS):

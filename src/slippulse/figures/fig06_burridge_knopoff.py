@@ -119,15 +119,11 @@ def plot(table: pd.DataFrame) -> Figure:
         draw_prestress(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
-    square: dict[str, Any] = {
-        "marker": "s",
-        "markersize": 6.0,
-        "markeredgecolor": "0.2",
-        "markeredgewidth": 0.5,
-    }
-    handles = [entry(name, **square | {"markerfacecolor": colour}) for name, colour in COLOURS.items()]
-    framed = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
-    legend_below(figure, [*handles, entry("never released: stops the left front", **square | framed)], 4)
+    square: dict[str, Any] = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
+    handles = [entry(name, markerfacecolor=colour, **square) for name, colour in COLOURS.items()]
+    square |= {"markeredgecolor": BLACK, "markeredgewidth": 1.8}
+    framed = entry("never released: stops the left front", markerfacecolor="none", **square)
+    legend_below(figure, [*handles, framed], 4)
     return figure
 
 

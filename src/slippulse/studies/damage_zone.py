@@ -9,16 +9,18 @@ import pandas as pd
 
 from ..theory.dimensional import damage_zone_stress_drop
 
-NEEDS = {"data": ()}
+NEEDS = {"settings": ["figures.fig07_damage_zone"]}
 
-# G/G_r, and H_r/H of the curves.
-STIFFNESS_RATIOS, THICKNESS_RATIOS = np.geomspace(1e-3, 1.0, 121), (0.3, 1.0, 3.0, 10.0)
 # The example, in thicknesses of the zone: host rock, slip and imposed displacement; and G/G_r.
 ROCK, SLIP, IMPOSED, STIFFNESS_RATIO = 1.6, 1.1, 1.9, 0.2
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Curves of the stress drop, and one example of the displacement over the height.
+
+    Parameters
+    ----------
+    settings : figures.fig07_damage_zone: stiffness_ratios (from, to, count; G/G_r) and thickness_ratios (H_r/H)
 
     Returns
     -------
@@ -27,15 +29,15 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Source: section IV C 2 of the paper.
     """
-    curves = [
-        pd.DataFrame({"role": "curve", "thickness_ratio": thickness, "stiffness_ratio": STIFFNESS_RATIOS})
-        for thickness in THICKNESS_RATIOS
-    ]
-    found = pd.concat(curves)
-    found["stress_drop"] = damage_zone_stress_drop(
-        1.0, 1.0, 1.0 / found["stiffness_ratio"].to_numpy(), 1.0, found["thickness_ratio"].to_numpy()
-    )
-    return pd.concat([found, displacement("before", 0.0), displacement("after", SLIP)], ignore_index=True)
+    wanted = settings["figures"]["fig07_damage_zone"]
+    span = wanted["stiffness_ratios"]
+    ratios = np.geomspace(span["from"], span["to"], int(span["count"]))
+    curves = []
+    for thickness in wanted["thickness_ratios"]:
+        drop = damage_zone_stress_drop(1.0, 1.0, 1.0 / ratios, 1.0, thickness)
+        columns = {"thickness_ratio": float(thickness), "stiffness_ratio": ratios, "stress_drop": drop}
+        curves.append(pd.DataFrame({"role": "curve", **columns}))
+    return pd.concat([*curves, displacement("before", 0.0), displacement("after", SLIP)], ignore_index=True)
 
 
 def displacement(role: str, slip: float) -> pd.DataFrame:

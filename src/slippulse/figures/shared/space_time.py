@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import matplotlib
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -134,16 +133,10 @@ def draw_map(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> AxesImage:
     grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
     times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
     dt, dx = np.diff(times)[0], np.diff(positions)[0]
-    image = axes.imshow(
-        grid.to_numpy(),
-        origin="lower",
-        extent=(times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2),
-        aspect="auto",
-        interpolation="bilinear",
-        cmap=matplotlib.colormaps[VELOCITY_MAP],
-        vmin=0.0,
-        vmax=roles["largest"]["value"].iloc[0],
-    )
+    extent = (times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2)
+    image = axes.imshow(grid, VELOCITY_MAP, origin="lower", extent=extent, interpolation="bilinear", vmin=0.0)
+    image.set_clim(vmax=roles["largest"]["value"].iloc[0])
+    axes.set_aspect("auto")
     draw_edges(axes, roles, times[-1])
     return image
 
