@@ -48,7 +48,7 @@ def best(run: Callable[[], object], repeats: int = REPEATS) -> float:
 
 
 def stencil_rates(blocks: int, seconds: float = 0.15) -> dict[str, float]:
-    """Block updates a second of the branch-free stencils on an array of so many blocks."""
+    """Block updates a second of the branch-free stencils on an array of ``blocks`` blocks."""
     tau = np.full(blocks, 0.5)
     w = np.zeros((6, blocks))
     force = np.zeros(blocks)
@@ -190,7 +190,7 @@ def textbook_errors(window: float) -> list[dict]:
 
 
 def textbook_numba_step(blocks: int) -> float:
-    """Seconds a step of the textbook scheme in compiled code over a lattice of so many blocks."""
+    """Seconds a step of the textbook scheme in compiled code over a lattice of ``blocks`` blocks."""
     # Bumps too small to do anything make the lattice as large as it will have to be.
     far = 0.5 * blocks * DX
     profile = Prestress(LEVEL, LEVEL, bumps=((far, 1e-12, DX), (-far, 1e-12, DX)))
@@ -206,7 +206,7 @@ def textbook_numba_step(blocks: int) -> float:
 
 
 def textbook_numpy_step(blocks: int) -> float:
-    """Seconds a step of the textbook scheme in plain numpy over a lattice of so many blocks."""
+    """Seconds a step of the textbook scheme in plain numpy over a lattice of ``blocks`` blocks."""
     x = DX * (np.arange(blocks) - blocks // 2)
     tau = Prestress(LEVEL, LEVEL)(x)
     steps = 60

@@ -36,9 +36,9 @@ def test_a_barrier_is_passed_if_and_only_if_it_is_shorter(study):
     assert ((rows["measured"] == 1.0) == (rows["length"] < 1.0)).all()
 
 
-def test_the_smooth_map_is_the_exact_depth(table):
-    smooth = table[table["part"] == "smooth"].iloc[::397]
-    for _, row in smooth.iterrows():
+def test_the_fine_map_is_the_exact_depth(table):
+    fine = table[table["part"] == "fine"].iloc[::397]
+    for _, row in fine.iterrows():
         exact = barrier_depth(row["tau0"], row["barrier"], 1.0, row["damping_ratio"])
         assert row["exact"] == pytest.approx(exact, rel=5e-3)
 

@@ -16,7 +16,7 @@ from .style import BLACK, BLUE, ORANGE, PAGE, colour_scale, new_figure, panel_le
 NEEDS = {"studies": ["barriers"]}
 
 MAP = "cividis"
-# Points of the smooth map along each axis, and contour lines on it.
+# Points of the interpolated map along each axis, and contour lines on it.
 FINE, CONTOURS = 41, (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
 MARKERS, COLOURS = ("o", "s", "^"), (BLUE, ORANGE)
 # gamma of the curves, for which the later estimate is drawn; exact depths scale to it.
@@ -25,11 +25,11 @@ LEVELS = (0.2, 0.5, 0.8)
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The lattices of the study, with smooth maps and curves of exact depths and of the estimate.
+    """The lattices of the study, with interpolated maps and curves of exact depths and of the estimate.
 
     Returns
     -------
-    rows of part "depth" as in the study; of part "smooth" (gamma = 1) exact and paper (the later estimate) on a fine
+    rows of part "depth" as in the study; of part "fine" (gamma = 1) exact and paper (the later estimate) on a fine
     grid; of part "curve" the same over the barrier's level at gamma = GAMMA
     """
     # Slow to load, and needed here only.
@@ -41,7 +41,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         # log depth over tau_0 and log |tau_b| is nearly straight.
         at = np.sort(rows["tau0"].unique()), np.sort(np.log(-rows["barrier"].unique()))
         x, y = (np.linspace(ends[0], ends[-1], FINE) for ends in at)
-        for part, levels, gamma in (("smooth", x, 1.0), ("curve", np.array(LEVELS), GAMMA)):
+        for part, levels, gamma in (("fine", x, 1.0), ("curve", np.array(LEVELS), GAMMA)):
             level, barrier = np.meshgrid(levels, -np.exp(y), indexing="ij")
             out = pd.DataFrame({"tau0": level.ravel(), "barrier": barrier.ravel()})
             for name, power in (("exact", 0.5), ("paper", 1.0)):
@@ -58,12 +58,12 @@ def plot(table: pd.DataFrame) -> Figure:
     """Above: maps without and with damping. Below: curves with the estimate, and convergence."""
     figure = new_figure(PAGE, 5.4)
     axes = figure.subplot_mosaic("ab;cd")
-    smooth, runs = (table[table["part"] == part] for part in ("smooth", "depth"))
+    fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
-    scale = LogNorm(float(smooth["exact"].min()), float(smooth["exact"].max()))
+    scale = LogNorm(float(fine["exact"].min()), float(fine["exact"].max()))
     ratios = np.sort(runs["damping_ratio"].unique())
     for name, ratio in zip("ab", ratios, strict=True):
-        at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (smooth, finest))
+        at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
         image = _draw_map(axes[name], at, marked, scale)
         axes[name].set_title(rf"$b = {ratio:g}$", loc="right")
     bar = figure.colorbar(image, ax=[axes["a"], axes["b"]], aspect=25, pad=0.02)
@@ -84,8 +84,8 @@ def _few_ticks(axis: matplotlib.axis.Axis, ticks: tuple[float, ...]) -> None:
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
-def _draw_map(axes: Axes, smooth: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm):
-    grid = smooth.pivot(index="barrier", columns="tau0", values="exact").sort_index()
+def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm):
+    grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
     image = axes.pcolormesh(x, y, grid.to_numpy(), norm=scale, cmap=MAP, shading="gouraud", rasterized=True)
     lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors="white", linewidths=0.5)

@@ -29,7 +29,7 @@ NAMES = {
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The study with smooth curves of the best trials.
+    """The study with interpolated curves of the best trials.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ MAP_BARRIERS = (-1.3, -0.85, -0.55, -0.36, -0.23, -0.15, -0.1)
 LENGTHS, PASSING_SPACING = (0.8, 0.95, 1.05, 1.2), 0.0125
 # Widths of the Gaussian after which the pre-stress is its level, and a width small enough for every pulse.
 TAIL, WIDTH = 5.0, 1.0
-# A pulse dies or passes before a wave would have gone so many times as deep.
+# A pulse dies or passes before a wave would have gone this many times as deep.
 CROSSINGS = 4.0
 
 

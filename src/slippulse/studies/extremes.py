@@ -215,7 +215,7 @@ def row(edge: Edge, window: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-# Three edges share the longest run.
+# Three edges are of the longest run.
 simulated = lru_cache(maxsize=1)(simulate)
 
 
