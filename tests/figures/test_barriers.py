@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slippulse.theory.barrier import barrier_depth
+from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +41,9 @@ def test_the_fine_map_is_the_exact_depth(table):
     for _, row in fine.iterrows():
         exact = barrier_depth(row["tau0"], row["barrier"], 1.0, row["damping_ratio"])
         assert row["exact"] == pytest.approx(exact, rel=5e-3)
+        assert row["paper"] == pytest.approx(
+            barrier_depth_estimate(row["tau0"], row["barrier"], 1.0), rel=5e-3
+        )
 
 
 def test_depth_falls_with_the_barrier_and_the_estimate_is_short_of_it_at_low_levels(table):

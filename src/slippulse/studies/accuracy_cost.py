@@ -1,7 +1,7 @@
 """Error against cost: what each scheme, order, step and spacing buys, the presets among them.
 
-Cost is counted, not timed: passes of the stencil over a block do not depend on the machine. The exact solution is sampled at
-the spacing of the textbook scheme.
+Cost is counted, not timed: passes of the stencil over a block do not depend on the machine. The exact solution is
+sampled at the spacing of the textbook scheme.
 """
 
 from __future__ import annotations
