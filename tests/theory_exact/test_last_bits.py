@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
+from nudges import nudged
 from tolerances import END, NUDGED, NUDGED_DOUBLE
 
 from slippulse.model.prestress import Prestress
@@ -38,26 +37,6 @@ def scene(number: int) -> dict:
         # At times that mean something too: a peak's transition, an odd multiple of it.
         "duration": float(rng.choice([1.0, 1.5, rng.uniform(0.5, 2.5)])) * np.pi / np.sqrt(gamma or 0.5),
     }
-
-
-def nudged(value, rng):
-    """A number, or each in tuples and arrays, moved by 1 to 4 units in the last place."""
-    if isinstance(value, Prestress):
-        parts = {
-            f.name: nudged(getattr(value, f.name), rng) for f in dataclasses.fields(value) if f.name != "peak"
-        }
-        if value.symmetric:
-            parts["left"] = parts["right"]
-            parts |= {} if not (value.steps or value.bumps) else {"steps": value.steps, "bumps": value.bumps}
-        return dataclasses.replace(value, **parts)
-    if isinstance(value, str):
-        return value
-    if isinstance(value, tuple):
-        return tuple(nudged(part, rng) for part in value)
-    value = np.asarray(value, dtype=float)
-    units = rng.integers(1, 5, value.shape) * rng.choice([-1.0, 1.0], value.shape)
-    moved = np.where(value == 0.0, 0.0, value + units * np.spacing(value))
-    return moved if moved.ndim else float(moved)
 
 
 def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarray]:

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterable
 from numbers import Integral, Real
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ def nearest(name: object, known: Iterable[str]) -> str:
 
 def check_number(
     key: str,
-    value: object,
+    value: Any,
     *,
     above: float | None = None,
     at_least: float | None = None,
@@ -41,10 +42,7 @@ def check_number(
 ) -> None:
     """Refuse anything but a finite number in the stated range, or a whole one.
 
-    Raises
-    ------
-    ValueError
-        Naming the key, the value and the range.
+    Raises ValueError: naming the key, the value and the range.
     """
     number = type(value) is float or (isinstance(value, Real) and not isinstance(value, (bool, np.bool_)))
     if (
@@ -67,20 +65,17 @@ def check_number(
     raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
 
 
-def _finite(value: Real) -> bool:
+def _finite(value: Any) -> bool:
     try:
         return math.isfinite(value)
     except OverflowError:
         return False
 
 
-def as_numbers(key: str, value: object, **bounds: float) -> np.ndarray:
+def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
     """An array of finite numbers within the bounds of `check_number`.
 
-    Raises
-    ------
-    ValueError
-        Naming the key, the value and what is allowed.
+    Raises ValueError: naming the key, the value and what is allowed.
     """
     if isinstance(value, Real):
         check_number(key, value, **bounds)
@@ -99,13 +94,10 @@ def as_numbers(key: str, value: object, **bounds: float) -> np.ndarray:
     return numbers
 
 
-def of_one_shape(**arrays: np.ndarray) -> list[np.ndarray]:
+def of_one_shape(**arrays: np.ndarray) -> tuple[np.ndarray, ...]:
     """Arrays broadcast to each other.
 
-    Raises
-    ------
-    ValueError
-        Naming the arrays and their shapes.
+    Raises ValueError: naming the arrays and their shapes.
     """
     try:
         return np.broadcast_arrays(*arrays.values())
@@ -117,10 +109,7 @@ def of_one_shape(**arrays: np.ndarray) -> list[np.ndarray]:
 def check_kind(key: str, value: object, kind: type) -> None:
     """Refuse anything that is not of a class.
 
-    Raises
-    ------
-    ValueError
-        Naming the key, the value and the class.
+    Raises ValueError: naming the key, the value and the class.
     """
     if not isinstance(value, kind):
         raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind.__name__}")
@@ -129,10 +118,7 @@ def check_kind(key: str, value: object, kind: type) -> None:
 def check_choice(key: str, value: object, choices: tuple) -> None:
     """Refuse anything that is not one of ``choices``.
 
-    Raises
-    ------
-    ValueError
-        Naming the key, the value and the choices.
+    Raises ValueError: naming the key, the value and the choices.
     """
     if not isinstance(value, str | int | float) or isinstance(value, bool) or value not in choices:
         raise ValueError(f"{key}: {short_repr(value)}; allowed: {', '.join(map(str, choices))}")

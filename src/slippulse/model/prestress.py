@@ -33,10 +33,7 @@ class Prestress:
     bumps : tuple of (centre, amplitude, width)
         Gaussians added to the profile: a barrier (amplitude < 0), an asperity, or a second nucleation point.
 
-    Raises
-    ------
-    ValueError
-        If a value is not a finite number, a width is not positive, or a step stands at x = 0.
+    Raises ValueError: if a value is not a finite number, a width is not positive, or a step stands at x = 0.
 
     Source: section III of the paper; steps and bumps are this project's addition.
     """
@@ -80,7 +77,7 @@ class Prestress:
             and set(self.bumps) == mirrored_bumps
         )
 
-    def level(self, x: np.ndarray) -> np.ndarray:
+    def level(self, x: np.ndarray | float) -> np.ndarray:
         """Side level at positions x, steps included, the Gaussian and the bumps not."""
         x = np.asarray(x, dtype=float)
         level = np.where(x < 0.0, self.left, self.right)
@@ -96,7 +93,7 @@ class Prestress:
                 level = value
         return float(level)
 
-    def __call__(self, x: np.ndarray) -> np.ndarray:
+    def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 when there are no bumps."""
         x = np.asarray(x, dtype=float)
         # peak + (level - peak)(1 - exp): no cancellation near x = 0, where the release threshold is met.
@@ -120,10 +117,7 @@ class Prestress:
     def integral(self, lower: float, upper: float) -> float:
         """Integral of tau from ``lower`` to ``upper``, in closed form between the steps.
 
-        Raises
-        ------
-        ValueError
-            If an end is not a finite number.
+        Raises ValueError: if an end is not a finite number.
         """
         check_number("lower", lower)
         check_number("upper", upper)

@@ -10,10 +10,7 @@ def root_between(
 ) -> float:
     """Root of a continuous function whose signs differ between lower and upper, to xtol + rtol |root|.
 
-    Raises
-    ------
-    ValueError
-        If the signs at both ends are equal, or a value is not a number.
+    Raises ValueError: if the signs at both ends are equal, or a value is not a number.
 
     Source: Brent's method, of scipy.
     """

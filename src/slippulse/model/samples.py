@@ -21,10 +21,7 @@ class Samples:
     times : increasing times >= 0, up to the duration of the scene, shape (n_times,)
     positions : positions, shape (n_positions,); the nearest block answers
 
-    Raises
-    ------
-    ValueError
-        If they are not one-dimensional, or the times do not increase.
+    Raises ValueError: if they are not one-dimensional, or the times do not increase.
     """
 
     times: np.ndarray
@@ -41,10 +38,7 @@ class Samples:
     def check_within(self, duration: float) -> None:
         """Refuse samples after the end of a run.
 
-        Raises
-        ------
-        ValueError
-            Naming the last time and the duration.
+        Raises ValueError: naming the last time and the duration.
         """
         if np.any(self.times > duration):
             raise ValueError(

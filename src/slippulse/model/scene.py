@@ -68,10 +68,7 @@ class Scene:
     resolved_blocks : int
         A pulse of fewer sliding blocks is flagged as unresolved.
 
-    Raises
-    ------
-    ValueError
-        One line naming the key, the value and what is allowed.
+    Raises ValueError: one line naming the key, the value and what is allowed.
 
     Source: equation (5) of the paper with the damping's sign corrected, its section II A, and its appendix B.
     """
@@ -209,10 +206,7 @@ class Scene:
         ----------
         attributes : the attributes of a Dataset, or a row of a measured table
 
-        Raises
-        ------
-        ValueError
-            If a parameter is missing or is none that `attributes` writes.
+        Raises ValueError: if a parameter is missing or is none that `attributes` writes.
         """
         if not hasattr(attributes, "keys"):
             raise ValueError(f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values")
@@ -243,10 +237,7 @@ class Scene:
 def scene_of(run: Any) -> Scene:
     """The scene of a run: of a Dataset, of its attributes, or of a row of a measured table (itertuples or Series).
 
-    Raises
-    ------
-    ValueError
-        As `Scene.from_attributes`.
+    Raises as `Scene.from_attributes` does.
     """
     if hasattr(run, "_asdict"):
         return Scene.from_attributes(run._asdict())
@@ -257,12 +248,7 @@ def scene_of(run: Any) -> Scene:
 def prestress_from(attributes: Mapping) -> Prestress:
     """The pre-stress of a run, from its attributes.
 
-    Raises
-    ------
-    ValueError
-        If a value is none that `Scene.attributes` writes.
-    KeyError
-        If one is missing.
+    Raises ValueError if a value is none that `Scene.attributes` writes, KeyError if one is missing.
     """
     steps, bumps = _steps_and_bumps(attributes["steps_and_bumps"])
     left, right, width, peak = (attributes[name] for name in ("left", "right", "width", "peak"))

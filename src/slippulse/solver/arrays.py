@@ -86,7 +86,7 @@ class Segments(NamedTuple):
 
     starts: np.ndarray
     ends: np.ndarray
-    count: np.record
+    count: np.record  # type: ignore[assignment]
 
 
 class Event(NamedTuple):
@@ -122,7 +122,7 @@ class Changed(NamedTuple):
     first: np.ndarray
     last: np.ndarray  # the one after the last
     stuck: np.ndarray  # the block that stuck, -1: a release
-    count: np.record
+    count: np.record  # type: ignore[assignment]
     kinks: np.record
 
 
@@ -173,7 +173,8 @@ def make_motion(rows: int, size: int) -> Motion:
 
 def make_segments(size: int) -> Segments:
     """No segments, on a lattice of ``size`` blocks."""
-    return Segments(*np.zeros((2, size), dtype=np.int64), record(COUNT))
+    starts, ends = np.zeros((2, size), dtype=np.int64)
+    return Segments(starts, ends, record(COUNT))
 
 
 def make_forecast(size: int, order: int) -> Forecast:
@@ -189,11 +190,12 @@ def make_forecast(size: int, order: int) -> Forecast:
 
 def make_scratch(size: int, order: int) -> Scratch:
     """Scratch arrays of a lattice of ``size`` blocks."""
+    first, last, stuck = np.zeros((3, MOST_EVENTS), dtype=np.int64)
     return Scratch(
         make_segments(size),
         make_forecast(size, order),
         Difference(np.zeros((order + 2, COLUMNS)), np.zeros(order + 4), np.zeros(COLUMNS)),
-        Changed(*np.zeros((3, MOST_EVENTS), dtype=np.int64), record(COUNT), record(KINKS)),
+        Changed(first, last, stuck, record(COUNT), record(KINKS)),
     )
 
 

@@ -11,7 +11,7 @@ from .run import run_scene
 
 def compile_all() -> None:
     """Compile the kernels of both schemes, unless they are in the cache or the compiler is switched off."""
-    if numba.config.DISABLE_JIT:
+    if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
     for scheme in SCHEMES:
         run_scene(Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme))

@@ -19,6 +19,7 @@ from __future__ import annotations
 import hashlib
 import os
 from pathlib import Path
+from typing import Any
 
 import numba
 from numba.extending import register_jitable
@@ -39,18 +40,16 @@ def source_digest(folder: Path = SOURCES) -> str:
 
 def cache_folder() -> Path:
     """Where compiled kernels live: SLIPPULSE_CACHE, or the user's cache folder, under a digest of the sources."""
-    base = os.environ.get("SLIPPULSE_CACHE")
-    if not base:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
-    return Path(base) / f"kernels-{source_digest()}"
+    user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "slippulse"
+    return Path(os.environ.get("SLIPPULSE_CACHE") or user) / f"kernels-{source_digest()}"
 
 
 if not os.environ.get("NUMBA_CACHE_DIR"):
-    numba.config.CACHE_DIR = str(cache_folder())
+    numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
 
 # Sums may be reordered so that they vectorise; NaN keeps its meaning, since it is how a failed run is noticed.
 REORDER = {"reassoc", "contract", "nsz"}
-FLAGS = {"error_model": "numpy", "_nrt": False, "fastmath": {"contract"}}
+FLAGS: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "fastmath": {"contract"}}
 
 # A function that Python calls. Only these are cached: their machine code holds all that they call.
 entry = numba.njit(cache=True, nogil=True, **FLAGS)

@@ -181,10 +181,8 @@ class Lattice:
         -------
         why the kernel stopped: DONE or ALL_STUCK
 
-        Raises
-        ------
-        UnstableRun
-            When slip velocity is not finite or beyond anything the pre-stress can drive, or time no longer advances.
+        Raises UnstableRun: when slip velocity is not finite or beyond anything the pre-stress can drive, or time no
+        longer advances.
         """
         while True:
             before = float(self.tally.time)

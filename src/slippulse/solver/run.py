@@ -75,7 +75,7 @@ def stress(lattice: Lattice) -> np.ndarray:
 
 def numbers_of(lattice: Lattice, status: int) -> dict:
     """Energies, counters and extremes of a run."""
-    totals = dict(zip(TALLY.names, lattice.tally.tolist(), strict=True))
+    totals = dict(zip(TALLY.names or (), lattice.tally.tolist(), strict=True))
     stuck_stress = stress(lattice)[1:-1][~lattice.sliding[1:-1]]
     lowest = float(min(totals["min_stuck_stress"], np.min(stuck_stress, initial=np.inf)))
     first_stuck = (totals["first_stuck_block"] + lattice.first_block) * lattice.scene.dx

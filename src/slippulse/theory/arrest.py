@@ -28,10 +28,8 @@ class ArrestingCrack:
     damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges, or if the levels are otherwise; of every method: outside the ranges that it states.
+    Raises ValueError: outside these ranges, or if the levels are otherwise; of every method: outside the ranges that
+    it states.
     """
 
     def __init__(self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total") -> None:

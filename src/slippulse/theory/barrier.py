@@ -38,10 +38,7 @@ def barrier_depth(
     damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: the free boundary (`slow_front`) behind a front at constant speed, in the continuum limit.
     """
@@ -81,10 +78,7 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
     tau_barrier : pre-stress of the barrier, <= -1e-100
     gamma : elasticity ratio, >= 1e-100
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: the authors' public code of later work.
     """

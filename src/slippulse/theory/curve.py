@@ -29,10 +29,10 @@ CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
 SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
 # From values at the nodes to coefficients by powers, which are quicker to evaluate.
-TO_POWERS = sum(
-    np.outer(np.pad(legendre.leg2poly([0.0] * k + [1.0]), (0, COUNT - 1 - k)), TO_SERIES[k])
-    for k in range(COUNT)
-)
+TO_POWERS = np.array(
+    [np.pad(legendre.leg2poly([0.0] * k + [1.0]), (0, COUNT - 1 - k)) for k in range(COUNT)]
+).T
+TO_POWERS = TO_POWERS @ TO_SERIES
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from ..model.checks import as_numbers, check_choice, check_number, of_one_shape
 
 # So that no product overflows.
 LARGEST = 1e100
-POSITIVE = {"at_least": 1.0 / LARGEST, "at_most": LARGEST}
+POSITIVE: dict[str, Any] = {"at_least": 1.0 / LARGEST, "at_most": LARGEST}
 
 
 @dataclass(frozen=True)
@@ -26,11 +27,8 @@ class Layer:
     static_friction, kinetic_friction : mu_s > mu_k >= 0
     normal_stress : sigma_n (Pa), > 0
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges, naming the key and the value; its methods too, at a number that is not finite, a speed
-        outside 1e-100 to 1e100 or a pre-stress outside (0, 1).
+    Raises ValueError: outside these ranges, naming the key and the value; its methods too, at a number that is not
+    finite, a speed outside 1e-100 to 1e100 or a pre-stress outside (0, 1).
 
     Source: sections II and IV A and appendix B of the paper.
     """
@@ -131,10 +129,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     float or array
         G delta / (H + (G/G_r) H_r) in Pa; G delta / H when G << G_r.
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges, naming the value and the range.
+    Raises ValueError: outside these ranges, naming the value and the range.
 
     Source: section IV C 2 of the paper.
     """

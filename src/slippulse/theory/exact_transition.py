@@ -36,11 +36,8 @@ class Fronts:
     ----------
     ends : by side, -1 or 1, the distance at which tau turns negative and the front slow; infinite beyond ``reach``
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges; if the profile does not nucleate at x = 0, or nucleates elsewhere too; or if a side needs
-        more than 20000 panels.
+    Raises ValueError: outside these ranges; if the profile does not nucleate at x = 0, or nucleates elsewhere too; or
+    if a side needs more than 20000 panels.
     """
 
     def __init__(
@@ -62,20 +59,15 @@ class Fronts:
     def arrival(self, x) -> np.ndarray:
         """T(x): when the front reaches x; NaN beyond where it outruns the waves.
 
-        Raises
-        ------
-        ValueError
-            If x is not a finite number or an array of them.
+        Raises ValueError: if x is not a finite number or an array of them.
         """
         return self.curve.arrival(as_numbers("x", x))
 
     def reached(self, time: float, sign: float) -> float:
         """How far from x = 0 the front on one side (+1 right, -1 left) is at a time.
 
-        Raises
-        ------
-        ValueError
-            If the time is negative or not before the fronts have gone as far as was asked for, or the side is none.
+        Raises ValueError: if the time is negative or not before the fronts have gone as far as was asked for, or the
+        side is none.
         """
         check_choice("sign", sign, (-1, 1))
         last = 0 if sign < 0.0 else -1
@@ -98,10 +90,8 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     gamma : elasticity ratio, >= 0, whose waves the panels of the fronts must resolve; 0 under a stress boundary
     y, time : the point, finite; 0 where no front has been
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges, or if the point's past leaves the part of the fronts that outruns the waves.
+    Raises ValueError: outside these ranges, or if the point's past leaves the part of the fronts that outruns the
+    waves.
 
     Source: Riemann's solution (`riemann`).
     """
@@ -140,11 +130,8 @@ def exact_transition_displacement(
     damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges; if the profile is not symmetric and positive, or nucleates elsewhere too; or if a front
-        needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
+    Raises ValueError: outside these ranges; if the profile is not symmetric and positive, or nucleates elsewhere too;
+    or if a front needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
 
     Source: the first zero of du/dt at x = 0; symmetric scenes stick there first. For others, `Rupture`.
     """
@@ -178,10 +165,7 @@ def uniform_transition_time(
     damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v: with q = sqrt(gamma) t/(1 + 1/v) it is
     that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, w = 1/v, and depends on v alone.

@@ -32,10 +32,7 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
     ----------
     tau0 : float or array, in [0, 1)
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
     """
     return _undamped(as_numbers("tau0", tau0, at_least=0.0, below=1.0))
 
@@ -57,10 +54,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     float or array
         Speed in units of the wave speed, >= 1 (1 where the excess is below rounding).
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0 the paper's
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
@@ -87,10 +81,7 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     damping_ratio : float or array, broadcast with speed, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
     """
     check_choice("release", release, RELEASES)
     speeds = as_numbers("speed", speed, above=1.0, at_most=1e100)
@@ -116,13 +107,10 @@ def lattice_front_speed(
     damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Where no front outruns the waves: tau_0 not above the least pre-stress of any front faster than the waves
-        (and than sqrt(4 + gamma dx^2)/pi, beyond 1 for gamma dx^2 > pi^2 - 4). Where that least lies at a speed
-        above 1 (rule "total", strong damping), two speeds belong to one tau_0: the faster is returned, which grows
-        with tau_0.
+    Raises ValueError: where no front outruns the waves: tau_0 not above the least pre-stress of any front faster than
+    the waves (and than sqrt(4 + gamma dx^2)/pi, beyond 1 for gamma dx^2 > pi^2 - 4). Where that least lies at a speed
+    above 1 (rule "total", strong damping), two speeds belong to one tau_0: the faster is returned, which grows with
+    tau_0.
 
     Source: the lattice symbol with leaf springs (`wiener_hopf`); without damping it has a closed form, and as
     gamma dx^2 -> 0 it tends to `front_speed`. Sticking behind the front is left out (module docstring). Relative error
@@ -166,10 +154,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     gamma : elasticity ratio, >= 0; 0 leaves the leaf springs out
     beta : damping, > 0
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges, or where the front would not outrun the waves.
+    Raises ValueError: outside these ranges, or where the front would not outrun the waves.
 
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y below the real axis,
     beta v Y^3 = (v^2 - 1) Y^2 + gamma, and the rule reads Y/(Y + 1/(beta v)) = tau.

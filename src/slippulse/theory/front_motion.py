@@ -65,10 +65,7 @@ def steady_front(
     release : "total" or "elastic"
     blocks : kept behind the front, 10 to 500; many more than b v/(v^2 - 1), the layer through which damping looks ahead
 
-    Raises
-    ------
-    ValueError
-        Outside these ranges, naming the key and the value.
+    Raises ValueError: outside these ranges, naming the key and the value.
 
     Source: module docstring.
     """
@@ -129,10 +126,7 @@ def admissibility_table(speeds, ratios, springs, release: str = "total") -> list
     speeds, ratios, springs : values of v, beta/dx and gamma dx^2, as in `steady_front`; arrays or lists
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        Outside their ranges, naming the key and the value.
+    Raises ValueError: outside their ranges, naming the key and the value.
     """
     rows = []
     speeds, ratios = (

@@ -37,10 +37,7 @@ def _slowness(tau: bytes, shape: tuple[int, ...], damping_ratio: float, release:
 class FrontLaw:
     """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma.
 
-    Raises
-    ------
-    ValueError
-        If a value is outside its domain (`Rupture`), or panels would be too many.
+    Raises ValueError: if a value is outside its domain (`Rupture`), or panels would be too many.
     """
 
     def __init__(

@@ -9,7 +9,7 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial import Polynomial, chebyshev
+from numpy.polynomial import chebyshev
 from scipy.special import i0, i1, j0, j1
 
 # Beyond this the polynomial would cancel.
@@ -41,11 +41,10 @@ def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.nd
 @lru_cache(maxsize=256)
 def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
     """Coefficients by powers of the scaled variable, which runs from -1 to 1 between the bounds."""
-    series = chebyshev.chebinterpolate(
-        lambda s: _bessel(0.5 * (lower + upper) + 0.5 * (upper - lower) * s, order), 40
-    )
-    series = chebyshev.chebtrim(series, 1e-14 * np.max(np.abs(series)))
-    return tuple(Polynomial(chebyshev.cheb2poly(series)).coef.tolist())
+    points = chebyshev.chebpts1(41)
+    values = _bessel(0.5 * (lower + upper) + 0.5 * (upper - lower) * points, order)
+    series = chebyshev.chebfit(points, values, 40)
+    return tuple(chebyshev.cheb2poly(chebyshev.chebtrim(series, 1e-14 * np.max(np.abs(series)))).tolist())
 
 
 def _bessel(z: np.ndarray, order: int) -> np.ndarray:

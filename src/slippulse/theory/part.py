@@ -235,7 +235,7 @@ class Part:
             ahead = slow[k] or (not slow[k + 1] and stick[k] >= stick[k + 1])
             fast = k + 1 if ahead else k
             if stuck[fast]:
-                out.append(self._last_fast(fast, 2 * k + 1 - fast))
+                out.append(self._last_fast(int(fast), int(2 * k + 1 - fast)))
         return out
 
     def _slow(self, edge: Edge) -> np.ndarray:

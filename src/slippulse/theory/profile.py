@@ -85,7 +85,7 @@ def pieces(prestress: Prestress) -> list[Piece]:
 
 def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     """The intervals (points, where tau only touches 1) with tau >= 1, from left to right."""
-    found = []
+    found: list[tuple[float, float]] = []
     for left, right, level in _between_jumps(prestress):
         x = _samples(prestress, left, right)
         excess = analytic(prestress, level, x) - 1.0

@@ -44,10 +44,7 @@ class SteadyPulse:
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Slip, slip velocity and slip acceleration at xi: at rest ahead of the front, stuck behind the pulse.
 
-        Raises
-        ------
-        ValueError
-            If xi is not a finite number or an array of them.
+        Raises ValueError: if xi is not a finite number or an array of them.
         """
         xi = as_numbers("xi", xi)
         p, q, v = self.growth, self.wavenumber, self.speed
@@ -74,10 +71,7 @@ def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> Steady
     beta : damping, >= 0
     speed : front speed, > 1 (see `front_speed`)
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of roots; the
     real root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. beta = 0 gives appendix C of the
@@ -134,10 +128,7 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     tau0 : pre-stress, in (0, 1)
     gamma : elasticity ratio, > 0
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: section III A and appendix C of the paper.
     """

@@ -63,11 +63,9 @@ class Rupture:
     refinement : int
         Panels are cut into so many more, to see what the result owes to them; 1 to 10.
 
-    Raises
-    ------
-    ValueError
-        If a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than 20000 panels.
-        Of every method: if a position or a time is not a finite number (where arrays are taken, an array of them).
+    Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
+    20000 panels. Of every method: if a position or a time is not a finite number (where arrays are taken, an array of
+    them).
 
     Source: derived for this project; verified against the lattice, which tends to it at first order in dx.
     """
@@ -126,10 +124,7 @@ class Rupture:
     def fronts_at(self, time: float, x: float = 0.0) -> tuple[float, float]:
         """Positions of the two fronts of the connected part around x at a time.
 
-        Raises
-        ------
-        ValueError
-            If the time is outside (0, duration], or x has not slipped by then.
+        Raises ValueError: if the time is outside (0, duration], or x has not slipped by then.
         """
         time = self._time(time)
         check_number("x", x)

@@ -37,10 +37,7 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
-    Raises
-    ------
-    ValueError
-        If damping_ratio or release is not as stated.
+    Raises ValueError: if damping_ratio or release is not as stated.
 
     Source: the inverse of `prestress_for_speed`, to 1e-11.
     """
@@ -73,10 +70,7 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
 def check_law(damping_ratio: float, release: str) -> None:
     """Refuse what `slowness` has no law for.
 
-    Raises
-    ------
-    ValueError
-        Naming the value and the range.
+    Raises ValueError, naming the value and the range.
     """
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
     check_choice("release", release, RELEASES)

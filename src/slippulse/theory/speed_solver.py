@@ -12,19 +12,10 @@ from .wiener_hopf import log_prestress
 SLOWEST, FASTEST = -80.0, 280.0
 # Elements solved at once: bounds memory.
 CHUNK = 128
-# From so many levels at one damping ratio on, their speeds come from a Chebyshev series, ...
-MANY = 40
-# ... with so many terms at first and at most; its last terms must be below the tolerance.
-TERMS, MOST_TERMS = 24, 200
-SERIES_TOLERANCE = 1e-13
 
 
 def log_excess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     """ln(v - 1) for 1-d arrays, b > 0."""
-    if tau.size >= MANY and np.all(ratio == ratio[0]):
-        found = _by_series(tau, float(ratio[0]), release)
-        if found is not None:
-            return found
     # Neighbours in the order of the speed share a contour.
     guess = first_guess(tau, ratio, release)
     order = np.argsort(guess)
@@ -39,40 +30,7 @@ def log_excess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     return out
 
 
-def _by_series(tau: np.ndarray, ratio: float, release: str) -> np.ndarray | None:
-    """ln(v - 1) of many levels at one ratio, from ln(tau/(1 - tau)) as a Chebyshev series in ln(v - 1).
-
-    None where the series does not reach its tolerance.
-    """
-    ends = np.array([tau.min(), tau.max()])
-    x = log_excess(ends, np.full(2, ratio), release)
-    if not SLOWEST < x[0] < x[1]:
-        return None
-    terms = TERMS
-    while terms <= MOST_TERMS:
-        place = np.cos(np.pi * (np.arange(terms) + 0.5) / terms)
-        at = 0.5 * (x[0] + x[1]) + 0.5 * (x[1] - x[0]) * place
-        values = _odds(in_chunks(np.exp(at), np.full(terms, ratio), release))
-        series = np.polynomial.Chebyshev(np.polynomial.chebyshev.chebfit(place, values, terms - 1))
-        # The floor is the rounding of ln(tau/(1 - tau)) itself where tau is next to 1.
-        floor = SERIES_TOLERANCE * max(1.0, 1e-3 / (1.0 - ends[1]))
-        if np.max(np.abs(series.coef[-3:])) < floor:
-            break
-        terms *= 2
-    else:
-        return None
-    target = np.log(tau) - np.log1p(-tau)
-    slope = series.deriv()
-    at = np.interp(target, values[::-1], place[::-1])
-    for _ in range(8):
-        step = (series(at) - target) / slope(at)
-        at = np.clip(at - step, -1.0, 1.0)
-        if np.max(np.abs(step)) < 1e-14:
-            break
-    return 0.5 * (x[0] + x[1]) + 0.5 * (x[1] - x[0]) * at
-
-
-def _odds(level: np.ndarray) -> np.ndarray:
+def _logit(level: np.ndarray) -> np.ndarray:
     """ln(tau/(1 - tau)) from ln tau; beyond the floating range below 1 the stress is faster than any target."""
     return level - np.log(np.maximum(-np.expm1(level), 1e-17))
 
@@ -98,8 +56,8 @@ def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     if release == "elastic":
         damped = np.log(tau) - np.log(rest + np.sqrt(rest))
         return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
-    share = np.minimum(ratio, 1.0)
-    return (1.0 - share) * undamped + share * (np.log(tau / rest) + np.log(np.maximum(ratio, 1.0)))
+    weight = np.minimum(ratio, 1.0)
+    return (1.0 - weight) * undamped + weight * (np.log(tau / rest) + np.log(np.maximum(ratio, 1.0)))
 
 
 def root(
@@ -116,7 +74,7 @@ def root(
     target = np.log(tau) - np.log1p(-tau)
 
     def mismatch(x: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        return _odds(levels(x, alive)) - target[alive]
+        return _logit(levels(x, alive)) - target[alive]
 
     alive = np.arange(tau.size)
     x = np.clip(guess, low + 0.1, high - 1.0)

@@ -30,6 +30,7 @@ class Stretch:
         it comes from beyond this stretch), or None while it goes on
     restarts : by side, where a front that was slow outran the waves again
     joins : where fronts from different nucleation points met
+    limits : how far, seen going right, a front may go before it meets another nucleation point
     """
 
     def __init__(self, left: float, right: float) -> None:
@@ -38,6 +39,7 @@ class Stretch:
         self.stopped: dict[float, str | None] = {-1.0: None, 1.0: None}
         self.restarts: dict[float, list[float]] = {-1.0: [], 1.0: []}
         self.joins: list[float] = []
+        self.limits = {-1.0: np.inf, 1.0: np.inf}
 
     def curve(self) -> Curve:
         """Its panels, as one curve."""
@@ -76,10 +78,7 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
     law : pre-stress, front law and gamma
     until : time up to which T(x) is wanted
 
-    Raises
-    ------
-    ValueError
-        If the pre-stress nowhere reaches 1.
+    Raises ValueError: if the pre-stress nowhere reaches 1.
     """
     starts = nucleations(law.prestress)
     if not starts:
@@ -92,15 +91,13 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
             panels, *_ = law.rightwards(left, 0.0, right, np.inf)
             stretch.add(1.0, panels, right, 0.0)
         stretches.append(stretch)
-    barriers = {
-        1.0: [left for left, _ in starts[1:]] + [np.inf],
-        -1.0: [np.inf] + [-right for _, right in starts[:-1]],
-    }
-    limits = {(id(s), side): barriers[side][n] for n, s in enumerate(stretches) for side in (-1.0, 1.0)}
-    for stretch in stretches:
+    for stretch, (_, right), (left, _) in zip(
+        stretches, [(0.0, -np.inf), *starts], [*starts[1:], (np.inf, 0.0)], strict=False
+    ):
+        stretch.limits = {-1.0: -right, 1.0: left}
         for side in (-1.0, 1.0):
-            _run(laws[side], stretch, side, limits[id(stretch), side], until)
-    stretches = _joined(stretches, limits)
+            _run(laws[side], stretch, side, until)
+    stretches = _joined(stretches)
     # The slow fronts, the earliest first: each follows from what the others did before.
     while True:
         going = [
@@ -112,16 +109,11 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
         if not going:
             break
         _, n, side = min(going)
-        stretch = stretches[n]
-        _step(laws[side], stretch, side, limits[id(stretch), side], until)
-        stretches = _joined(stretches, limits)
-    ends = [
-        (*s.ends[side], UNKNOWN[s.stopped[side]])
-        for s in stretches
-        for side in (-1.0, 1.0)
-        if s.stopped[side] in UNKNOWN
-    ]
-    return stretches, ends + _overrun(stretches)
+        _step(laws[side], stretches[n], side, until)
+        stretches = _joined(stretches)
+    stops = [(s.ends[side], str(s.stopped[side])) for s in stretches for side in (-1.0, 1.0)]
+    unknown = [(*end, UNKNOWN[reason]) for end, reason in stops if reason in UNKNOWN]
+    return stretches, unknown + _overrun(stretches)
 
 
 def _overrun(stretches: list[Stretch]) -> list[tuple[float, float, str]]:
@@ -138,9 +130,10 @@ def _overrun(stretches: list[Stretch]) -> list[tuple[float, float, str]]:
     return out
 
 
-def _run(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: float) -> None:
+def _run(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
     """Let a front go on while it outruns the waves, as far as the next nucleation point."""
     x, time = stretch.ends[side]
+    limit = stretch.limits[side]
     panels, x, time = law.rightwards(side * x, time, limit, until)
     if panels:
         stretch.add(side, panels, x, time)
@@ -150,11 +143,11 @@ def _run(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: floa
         stretch.stopped[side] = "met"
 
 
-def _step(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: float) -> None:
+def _step(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
     """One panel of a slow front, and where its negative piece ends the fast front that follows."""
     x, _ = stretch.ends[side]
     piece = law.piece_right_of(side * x)
-    mark = min(piece.right, limit)
+    mark = min(piece.right, stretch.limits[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
     step = advance(curve, law.prestress, piece.level, law.gamma, mark)
     if step.panel is not None:
@@ -164,14 +157,14 @@ def _step(law: FrontLaw, stretch: Stretch, side: float, limit: float, until: flo
     elif stretch.ends[side][1] >= until:
         stretch.stopped[side] = "duration"
     elif step.stop == "mark":
-        if mark >= limit:
+        if mark >= stretch.limits[side]:
             stretch.stopped[side] = "met"
         elif law.piece_right_of(mark).supersonic:
             stretch.restarts[side].append(side * mark)
-            _run(law, stretch, side, limit, until)
+            _run(law, stretch, side, until)
 
 
-def _joined(stretches: list[Stretch], limits: dict) -> list[Stretch]:
+def _joined(stretches: list[Stretch]) -> list[Stretch]:
     """Neighbours whose fronts have met, made one: where both have been, the earlier counts."""
     out = [stretches[0]]
     for right in stretches[1:]:
@@ -202,9 +195,6 @@ def _joined(stretches: list[Stretch], limits: dict) -> list[Stretch]:
         both.joins = [*left.joins, x, *right.joins]
         for side in (-1.0, 1.0):
             both.restarts[side] = left.restarts[side] + right.restarts[side] + ([x] if slow else [])
-        limits[id(both), -1.0] = limits[id(left), -1.0]
-        limits[id(both), 1.0] = limits[id(right), 1.0]
-        # Kept alive: its identity is a key.
-        both.parts = (left, right)
+        both.limits = {-1.0: left.limits[-1.0], 1.0: right.limits[1.0]}
         out[-1] = both
     return out

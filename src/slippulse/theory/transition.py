@@ -17,10 +17,7 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
     tau0 : pre-stress on both sides, in (0, 1)
     gamma : elasticity ratio, > 0
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain, naming the value and the range.
 
     Source: section III B of the paper. It neglects the elastic coupling and the Gaussian at nucleation.
     """
@@ -33,10 +30,7 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
     """The paper's T_trans = |x_minus| and L_trans = 2 |x_minus|, stress boundary, front speeds taken as 1.
 
-    Raises
-    ------
-    ValueError
-        As `prestress_balance_position`.
+    Raises ValueError: as `prestress_balance_position`.
 
     Source: section III C of the paper.
     """

@@ -1,0 +1,27 @@
+"""Inputs moved in their last bits."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from slippulse.model.prestress import Prestress
+
+
+def nudged(value, rng: np.random.Generator):
+    """A number, or each in tuples, arrays and a pre-stress, moved by 1 to 4 units in the last place; 0 stays."""
+    if isinstance(value, Prestress):
+        keys = {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.name != "peak"}
+        moved = {name: nudged(key, rng) for name, key in keys.items()}
+        if value.symmetric:
+            moved |= {"right": moved["left"], "steps": value.steps, "bumps": value.bumps}
+        return dataclasses.replace(value, **moved)
+    if isinstance(value, tuple):
+        return tuple(nudged(part, rng) for part in value)
+    if not isinstance(value, float | np.ndarray):
+        return value
+    value = np.asarray(value)
+    units = rng.integers(1, 5, value.shape) * rng.choice([-1.0, 1.0], value.shape)
+    moved = np.where(value == 0.0, 0.0, value + units * np.spacing(value))
+    return moved if moved.ndim else float(moved)
