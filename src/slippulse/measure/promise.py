@@ -99,7 +99,8 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction
     )
     rows = runs.to_dict("records")
     covered = [
-        math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction) for row in study.itertuples()
+        math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction)
+        for row in study.itertuples()
     ]
     within = study["uncertainty"] <= promise * study["value"].abs()
     return study.assign(
