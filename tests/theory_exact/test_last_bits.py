@@ -10,7 +10,8 @@ from tolerances import END, NUDGED, NUDGED_DOUBLE
 from slippulse.model.prestress import Prestress
 from slippulse.theory.rupture import Rupture
 
-SCENES = 200
+# Some in each run of the tests, the others with the slow ones.
+SCENES = [*range(20), *(pytest.param(number, marks=pytest.mark.slow) for number in range(20, 200))]
 # How far before its end a rupture is looked at, relative.
 BEFORE = 1e-7
 
@@ -82,7 +83,7 @@ def positions(rupture: Rupture, number: int) -> np.ndarray:
     return np.concatenate([inside, [0.0], going])
 
 
-@pytest.mark.parametrize("number", range(SCENES))
+@pytest.mark.parametrize("number", SCENES)
 def test_inputs_nudged_in_their_last_bits(number):
     """The error bounded is that of roots, 1e-11 in time over the slope of what is 0 there."""
     keys, rng = scene(number), np.random.default_rng((number, 2))
@@ -99,7 +100,7 @@ def test_inputs_nudged_in_their_last_bits(number):
         assert found[name] == pytest.approx(value, rel=tolerance, abs=tolerance, nan_ok=True), name
 
 
-@pytest.mark.parametrize("number", range(SCENES))
+@pytest.mark.parametrize("number", SCENES)
 def test_the_end_is_a_time_like_any_other(number):
     """Answers at the end of a rupture are those of one that goes on, and their own limit from below."""
     keys = scene(number)
