@@ -108,10 +108,10 @@ class Prestress:
         """The largest pre-stress, at the peak and the bumps and around them; with dx, at the blocks there."""
         if not self.bumps:
             return max(self.peak, *(level for _, level in self.steps), self.left, self.right)
-        places = np.array([0.0, *(centre for centre, *_ in self.bumps)])
+        centres = np.array([0.0, *(centre for centre, *_ in self.bumps)])
         widths = np.array([self.width, *(width for *_, width in self.bumps)])
-        near = places[:, None, None] + np.linspace(-3.0, 3.0, 601) * widths[:, None]
-        x = np.concatenate([near.ravel(), places])
+        near = centres[:, None, None] + np.linspace(-3.0, 3.0, 601) * widths[:, None]
+        x = np.concatenate([near.ravel(), centres])
         return float(np.max(self(np.round(x / dx) * dx if dx else x)))
 
     def integral(self, lower: float, upper: float) -> float:

@@ -12,7 +12,7 @@ ROUNDING = 1e-12
 # Orders whose Taylor polynomial grows slightly on the imaginary axis (5, 6) are held to this growth a step.
 WEAK_GROWTH = 1e-4
 WEAK_ORDERS = (5, 6)
-# Steps are chosen at most this share of the bound: measured boundaries meet it within a hundredth.
+# Steps are chosen at most this fraction of the bound: measured boundaries meet it within a hundredth.
 MARGIN = 0.9
 # The bound is found in rounds, each looking at so many parts of the interval that is left.
 ROUNDS, PARTS = 4, 32

@@ -40,7 +40,7 @@ TALLY = np.dtype(
             ("first_stick_time", np.float64),
             ("samples_taken", np.int64),
             ("viscous_loss", np.float64),
-            # Step whose viscous loss still lacks the share of the dissipation at its end.
+            # Step whose viscous loss still lacks the part of the dissipation at its end.
             ("pending_step", np.float64),
             ("stick_loss", np.float64),
             ("min_velocity", np.float64),

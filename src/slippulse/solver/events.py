@@ -13,7 +13,7 @@ import numpy as np
 from .arrays import CENTRE, COLUMNS
 from .foresight import find_sticks, foresee_releases, forget_sticks
 from .jit import inner
-from .polynomials import SHARE, taylor_shift
+from .polynomials import RECIPROCAL, taylor_shift
 from .segments import sliding_beside
 from .stencils import blocks, derivative
 
@@ -23,7 +23,7 @@ def velocity_at(w, i, top, s):
     """Velocity of a block a time s after the step began."""
     value = w[top, i]
     for k in range(top - 1, 0, -1):
-        value = w[k, i] + s * SHARE[k] * value
+        value = w[k, i] + s * RECIPROCAL[k] * value
     return value
 
 
@@ -77,18 +77,18 @@ def evaluate(out, rows, lowest, top, s):
     columns = np.uint64(COLUMNS - 1)
     j = top - 1
     if (top - lowest) % 2 == 1:
-        share = s * SHARE[top - lowest]
+        weight = s * RECIPROCAL[top - lowest]
         for p in range(columns):
-            out[p] = rows[j, p] + share * rows[top, p]
+            out[p] = rows[j, p] + weight * rows[top, p]
         j -= 1
     else:
         for p in range(columns):
             out[p] = rows[top, p]
     # Two levels of the polynomial at once halve the traffic with memory.
     while j > lowest:
-        share, lower_share = s * SHARE[j + 1 - lowest], s * SHARE[j - lowest]
+        weight, lower_weight = s * RECIPROCAL[j + 1 - lowest], s * RECIPROCAL[j - lowest]
         for p in range(columns):
-            out[p] = rows[j - 1, p] + lower_share * (rows[j, p] + share * out[p])
+            out[p] = rows[j - 1, p] + lower_weight * (rows[j, p] + weight * out[p])
         j -= 2
 
 
@@ -135,10 +135,10 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
         start(difference.own, medium, motion, block, now, top)
     if medium.beta > 0.0:
         # Only the block of the event changes its acceleration, and it is at rest.
-        beside = velocity_at(w, block + 1, top, now)
+        neighbours = velocity_at(w, block + 1, top, now)
         if not middle:
-            beside += velocity_at(w, block - 1, top, now)
-        kink = -difference.own[2] * beside
+            neighbours += velocity_at(w, block - 1, top, now)
+        kink = -difference.own[2] * neighbours
     spread(difference, medium, left, right, stick, top)
     if stick:
         # `stop` has changed it already.

@@ -6,7 +6,7 @@ import math
 
 from .arrays import REACH, Event
 from .jit import inner
-from .polynomials import SHARE, crossing, highest_possible, polynomial, slope, turning_point
+from .polynomials import RECIPROCAL, crossing, highest_possible, polynomial, slope, turning_point
 
 # How many times within a step a stress is evaluated, besides where its slope changes sign.
 LOOKS = 4
@@ -30,10 +30,10 @@ def stress_polynomial(out, medium, motion, block, top):
     )
     scale, damping = 1.0, medium.damping if medium.total and medium.beta > 0.0 else 0.0
     for k in range(1, top + 1):
-        beside = w[k, block - 1] + w[k, block + 1]
-        out[k - 1] += scale * damping * beside
-        scale *= SHARE[k]
-        out[k] = scale * medium.per_dx2 * beside
+        neighbours = w[k, block - 1] + w[k, block + 1]
+        out[k - 1] += scale * damping * neighbours
+        scale *= RECIPROCAL[k]
+        out[k] = scale * medium.per_dx2 * neighbours
 
 
 @inner()
@@ -98,7 +98,7 @@ def next_event(segments, forecast, mirror):
 
 
 @inner(inline=True)
-def crowded(segments, forecast, mirror, block, latest):
+def simultaneous(segments, forecast, mirror, block, latest):
     """Whether the reach of an event meets that of another until ``latest``, its own mirror image included.
 
     Taken one after the other they would not come out as they do in the mirror.

@@ -15,8 +15,8 @@ from . import arrays, fixed_step, taylor
 CALL_STEPS, CALL_WORK = 20_000, 1e7
 # Blocks on each side at first; the lattice doubles whenever a front comes near its end.
 FIRST_BLOCKS = 512
-# Length of a row modulo a page of memory, in blocks. Rows that begin at one place of their pages compete for the same
-# lines of the cache: cracks took a quarter to a third longer.
+# Length of a row modulo a page of memory, in blocks. Rows that begin at one position in their pages compete for the
+# same lines of the cache: cracks took a quarter to a third longer.
 PAGE, BEYOND_PAGES = 512, 200
 
 
@@ -25,7 +25,7 @@ class UnstableRun(RuntimeError):
 
 
 def _row_length(size: int) -> int:
-    """The next length from ``size`` on at which rows begin at different places of their pages."""
+    """The next length from ``size`` on at which rows begin at different positions in their pages."""
     return size + (BEYOND_PAGES - size) % PAGE
 
 
@@ -175,7 +175,7 @@ class Lattice:
 
         Parameters
         ----------
-        progress : called with the share of the duration done, several times a second
+        progress : called with the fraction of the duration done, several times a second
 
         Returns
         -------

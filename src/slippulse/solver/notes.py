@@ -88,7 +88,7 @@ def viscous_loss(h, rate, change, kinks):
     start since velocities are continuous: h (2 D_0 + D_1)/3 + h^2 D_0'/6. An event at s that changes D' by k adds
     k (h - s)^2/2, and takes back h k (h - s)/3, its part of h D_1/3.
     """
-    smooth = h * 2.0 * rate / 3.0 + h * h * change / 6.0
+    without_events = h * 2.0 * rate / 3.0 + h * h * change / 6.0
     first = kinks.k * h - kinks.ks
     second = kinks.k * h * h - 2.0 * kinks.ks * h + kinks.kss
-    return smooth + second / 2.0 - h * first / 3.0
+    return without_events + second / 2.0 - h * first / 3.0

@@ -8,7 +8,7 @@ from .arrays import REACH
 from .jit import inner
 
 # 1/j, for Taylor polynomials in derivatives.
-SHARE = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
+RECIPROCAL = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
 
 
 @inner()
@@ -17,7 +17,7 @@ def taylor_shift(derivatives, lowest, last, top, s):
     for m in range(lowest, last + 1):
         value = derivatives[top]
         for j in range(top - 1, m - 1, -1):
-            value = derivatives[j] + s * SHARE[j - m + 1] * value
+            value = derivatives[j] + s * RECIPROCAL[j - m + 1] * value
         derivatives[m] = value
 
 

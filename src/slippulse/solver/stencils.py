@@ -69,10 +69,10 @@ def next_derivative(w, k, first, last, per_dx2, leaf, damping):
 
 
 @inner(inline=True)
-def nest(inner, w, k, share, lower_share, first, last):
-    """Two levels of a Taylor polynomial from the inside out, in place: w[k-1] + lower_share (w[k] + share inner)."""
+def nest(inner, w, k, weight, lower_weight, first, last):
+    """Two levels of a Taylor polynomial from the inside out, in place: w[k-1] + lower_weight (w[k] + weight inner)."""
     for i in blocks(first, last):
-        inner[i] = w[k - 1, i] + lower_share * (w[k, i] + share * inner[i])
+        inner[i] = w[k - 1, i] + lower_weight * (w[k, i] + weight * inner[i])
 
 
 @inner(inline=True)
@@ -87,9 +87,9 @@ def may_stop(after, now, tangent):
 @inner(inline=True)
 def velocity_after(out, w, first, last, step, order):
     """Velocity of blocks first..last-1 a time ``step`` later, and how many of them may stop on the way."""
-    share = step / order
+    weight = step / order
     for i in blocks(first, last):
-        out[i] = w[order, i] + share * w[order + 1, i]
+        out[i] = w[order, i] + weight * w[order + 1, i]
     k = order - 1
     while k > 3:
         nest(out, w, k, step / k, step / (k - 1), first, last)

@@ -18,7 +18,7 @@ import numpy as np
 
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
-from .foresight import crowded, due_releases, find_sticks, foresee_releases, next_event
+from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
 from .jit import entry, inner
 from .notes import (
     dissipation,
@@ -31,7 +31,7 @@ from .notes import (
 from .segments import copy_segments, holds, release_block, stick_block
 from .stencils import advance_slip, advance_strain, first_acceleration, next_derivative, velocity_after
 
-# Events closer than this share of the largest step are one: fronts of a symmetric scene that meet.
+# Events closer than this fraction of the largest step are one: fronts of a symmetric scene that meet.
 SIMULTANEOUS = 1e-11
 # Velocities beyond this many times the largest that any pre-stress could have driven by now mean a blow-up.
 BLOW_UP = 100.0
@@ -208,7 +208,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
             event = next_event(segments, forecast, medium.mirror)
             if event.time == math.inf:
                 break
-            early = changed.count.n == MOST_EVENTS or crowded(
+            early = changed.count.n == MOST_EVENTS or simultaneous(
                 segments, forecast, medium.mirror, event.block, event.time + same
             )
             if early:

@@ -46,8 +46,8 @@ class Fronts:
         law = FrontLaw(prestress, gamma, damping_ratio, release)
         check_number("reach", reach, at_least=NARROWEST)
         check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
-        places = nucleations(prestress)
-        if len(places) > 1 or places[0][0] != places[0][1]:
+        starts = nucleations(prestress)
+        if len(starts) > 1 or starts[0][0] != starts[0][1]:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
         self.prestress = prestress
         reach = float(reach)
@@ -101,10 +101,10 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     check_number("time", time)
     if not float(fronts.curve.arrival(y)) < time:
         return 0.0
-    cones = Past(fronts.curve, float(gamma), np.array([float(y)]), np.array([float(time)]))
-    if not (cones.left.known[0] and cones.right.known[0]):
-        raise ValueError(f"time: {time!r}; allowed: earlier, the cone leaves the part that outruns the waves")
-    velocity = float(cones.slip_velocity()[0])
+    past = Past(fronts.curve, float(gamma), np.array([float(y)]), np.array([float(time)]))
+    if not (past.left.known[0] and past.right.known[0]):
+        raise ValueError(f"time: {time!r}; allowed: earlier, its past leaves the part that outruns the waves")
+    velocity = float(past.slip_velocity()[0])
     if not np.isfinite(velocity):
         raise ValueError(f"gamma: {gamma!r}; allowed: numbers whose waves the panels of the fronts resolve")
     return velocity
@@ -144,7 +144,7 @@ def exact_transition_displacement(
 
 def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTransition:
     period = np.pi / np.sqrt(gamma)
-    # The cone of (0, t) enters at x + T(x) = t, so x < t.
+    # The past of (0, t) begins at x + T(x) = t, so x < t.
     fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
     stick = float(Part(fronts.curve, gamma, 2.0 * period).scan(np.zeros(1))[0])
     level = float(prestress.level(np.asarray(1e300)))

@@ -21,7 +21,7 @@ LARGEST_RATIO = 1e100
 NEARLY_ONE = {"total": 1e-10, "elastic": 1e-13}
 # With leaf springs, where no reference takes the rounding out of 1 - M_+(0), it is felt from here on.
 NEARLY_ONE_WITH_SPRINGS = 1e-7
-# Where the pre-stress is looked at for its least, and how often the place is narrowed.
+# Where the pre-stress is looked at for its least, and how often the range is narrowed.
 SCAN, NARROWINGS = 64, 6
 
 
@@ -195,8 +195,8 @@ def _nearly_free(speed: float, springs: float, damping: float) -> float:
 
     The factor of g/v^2 is 1/24 without damping, from the closed form, and 1/6 for b v >> 1, found by quadrature.
     """
-    share = damping * speed
-    return speed * (1.0 - springs / speed**2 * (share / 6.0 + 1.0 / 24.0) / (share + 1.0))
+    strength = damping * speed
+    return speed * (1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0))
 
 
 def _no_front(tau0: float, least: float, gamma: float, dx: float, ratio: float) -> ValueError:

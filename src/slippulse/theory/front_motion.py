@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import product
 
 import numpy as np
 
@@ -128,20 +129,16 @@ def admissibility_table(speeds, ratios, springs, release: str = "total") -> list
 
     Raises ValueError: outside their ranges, naming the key and the value.
     """
+    axes = (as_numbers(name, values).ravel().tolist() for name, values in
+            (("springs", springs), ("ratios", ratios), ("speeds", speeds)))  # fmt: skip
     rows = []
-    speeds, ratios = (
-        as_numbers("speeds", speeds).ravel().tolist(),
-        as_numbers("ratios", ratios).ravel().tolist(),
-    )
-    for g in as_numbers("springs", springs).ravel().tolist():
-        for b in ratios:
-            for v in speeds:
-                front = steady_front(v, b, g, release)
-                rows.append(
-                    {
-                        "speed": v, "damping_ratio": b, "springs": g, "release": release,
-                        "prestress": front.prestress, "stress_ahead": float(front.ahead[:-1].max()),
-                        "rest": front.first_rest, "admissible": front.admissible,
-                    }
-                )  # fmt: skip
+    for g, b, v in product(*axes):
+        front = steady_front(v, b, g, release)
+        rows.append(
+            {
+                "speed": v, "damping_ratio": b, "springs": g, "release": release, "prestress": front.prestress,
+                "stress_ahead": float(front.ahead[:-1].max()), "rest": front.first_rest,
+                "admissible": front.admissible,
+            }
+        )  # fmt: skip
     return rows

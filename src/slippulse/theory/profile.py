@@ -64,18 +64,7 @@ def pieces(prestress: Prestress) -> list[Piece]:
     """The pieces from left to right."""
     out = []
     for left, right, level in _between_jumps(prestress):
-        x = _samples(prestress, left, right)
-        tau = analytic(prestress, level, x)
-        positive = tau > -ROUNDING
-
-        def value(z: float, level=level) -> float:
-            return float(analytic(prestress, level, np.asarray(z)))
-
-        marks = []
-        for k in np.flatnonzero(positive[1:] != positive[:-1]):
-            crossing = tau[k] * tau[k + 1] < 0.0
-            marks.append(root_between(value, x[k], x[k + 1], xtol=1e-14) if crossing else float(x[k + 1]))
-        sign = bool(positive[0])
+        sign, marks = _crossings(prestress, left, right, level, 0.0)
         for a, b in pairwise([left, *marks, right]):
             if b > a:
                 out.append(Piece(a, b, level, sign))
@@ -87,22 +76,9 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     """The intervals (points, where tau only touches 1) with tau >= 1, from left to right."""
     found: list[tuple[float, float]] = []
     for left, right, level in _between_jumps(prestress):
-        x = _samples(prestress, left, right)
-        excess = analytic(prestress, level, x) - 1.0
-        # What is 1 but for rounding, as under the far tail of a bump, is 1.
-        excess[np.abs(excess) <= ROUNDING] = 0.0
-        over = excess >= 0.0
-
-        def above(z: float, level=level) -> float:
-            return float(analytic(prestress, level, np.asarray(z))) - 1.0
-
-        marks = [float(x[0])] if over[0] else []
-        for k in np.flatnonzero(over[1:] != over[:-1]):
-            touching = [float(x[n]) for n in (k, k + 1) if excess[n] == 0.0]
-            marks.append(touching[0] if touching else root_between(above, x[k], x[k + 1], xtol=1e-14))
-        if over[-1]:
-            marks.append(float(x[-1]))
-        found += zip(marks[::2], marks[1::2], strict=True)
+        over, marks = _crossings(prestress, left, right, level, 1.0)
+        marks = [left, *marks] if over else marks
+        found += zip(marks[::2], [*marks[1::2], right], strict=False)
     merged: list[tuple[float, float]] = []
     for a, b in sorted(found):
         if merged and a <= merged[-1][1]:
@@ -110,6 +86,26 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
         else:
             merged.append((a, b))
     return merged
+
+
+def _crossings(prestress, left: float, right: float, level: float, value: float) -> tuple[bool, list[float]]:
+    """Whether an interval begins with the pre-stress at a value or above, and where that changes; it touches twice."""
+    x = _samples(prestress, left, right)
+
+    def excess(x: np.ndarray | float) -> np.ndarray:
+        return analytic(prestress, level, np.asarray(x)) - value
+
+    # What is at the value but for rounding, as under the far tail of a bump, is there.
+    at = excess(x)
+    at[np.abs(at) <= ROUNDING] = 0.0
+    above = at >= 0.0
+    marks = []
+    for k in np.flatnonzero(above[1:] != above[:-1]):
+        touching = x[k : k + 2][at[k : k + 2] == 0.0]
+        marks.append(
+            float(touching[0]) if touching.size else root_between(excess, x[k], x[k + 1], xtol=1e-14)
+        )
+    return bool(above[0]), marks
 
 
 def _gaussians(prestress: Prestress) -> list[tuple[float, float]]:

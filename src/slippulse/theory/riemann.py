@@ -1,7 +1,7 @@
 """Riemann's formula behind a rupture front: slip, velocity and strain as integrals along the curve t = T(x).
 
 Each position feels its pre-stress from T(x) on, and the undamped equation u_tt = u_xx - gamma u + tau has the
-retarded solution J0/2 inside the cone. With xi = t - y, eta = t + y, g = T - x, h = T + x and K(z) = J0(sqrt z) at
+retarded solution J0/2 in its future. With xi = t - y, eta = t + y, g = T - x, h = T + x and K(z) = J0(sqrt z) at
 z = gamma (xi - g)(eta - h), between the points x_l, x_r where the characteristics through (y, t) meet the curve,
 
     2 du/dt = Int tau K dx

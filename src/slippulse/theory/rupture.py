@@ -52,7 +52,7 @@ class Rupture:
     Parameters
     ----------
     prestress : Prestress
-        Reaching 1 somewhere; each place where it does at t = 0 is a nucleation point.
+        Reaching 1 somewhere; each position where it does at t = 0 is a nucleation point.
     gamma : float
         Elasticity ratio, > 0; or 0 for the stress boundary.
     damping_ratio : float
