@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import math
 import os
 import random
 import signal
@@ -19,6 +20,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -83,6 +85,44 @@ def digests(folder: Path) -> dict[str, str]:
         and not path.name.startswith(".")
         and path.relative_to(results).parts[0] not in ("logs", "benchmarks", "records")
     }
+
+
+def start_by_make(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
+    """The same as `make replicate` starts it."""
+    options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
+    with open(folder / "said.txt", "w", encoding="utf-8") as said:
+        return subprocess.Popen(
+            [sys.executable, "workflow/run.py", "replicate"], cwd=folder, env=os.environ | options,
+            stdout=said, stderr=said, start_new_session=True,
+        )  # fmt: skip
+
+
+def at_work(folder: Path) -> list[int]:
+    """Processes whose working directory is the folder."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            with suppress(OSError):
+                if (entry / "cwd").resolve() == folder.resolve() and (entry / "cmdline").read_bytes():
+                    found.append(int(entry.name))
+    return found
+
+
+def stop_at(folder: Path, number: int, instant: float, targets: Iterable[str] = TARGETS) -> float:
+    """Send a signal to the group of a run at an instant; seconds until nothing of it is left, NaN where it was over."""
+    run = start_by_make(folder, targets)
+    with suppress(subprocess.TimeoutExpired):
+        run.wait(timeout=instant)
+        return math.nan
+    os.killpg(run.pid, number)
+    sent = time.monotonic()
+    run.wait(timeout=60)
+    while at_work(folder):
+        assert time.monotonic() - sent < 60.0, "what a run has started goes on after its end"
+        time.sleep(0.02)
+    said = (folder / "said.txt").read_text(encoding="utf-8")
+    assert "Traceback" not in said and "Exception" not in said, said[-4000:]
+    return time.monotonic() - sent
 
 
 def group(leader: int) -> list[int]:
