@@ -14,7 +14,6 @@ from slippulse.report.html import PAGES
 PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE = PROJECT / "src/slippulse"
 TEXTS = PROJECT / "manuscript"
-LOCK = "requirements.lock"
 # A user-defined sweep, in chunks so that there are the rules that join them, and a scene.
 OVERLAY = {
     "simulations": {
@@ -39,11 +38,18 @@ STUDIED = {
 }
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")}
 # Every rule but those that only name targets.
-RULES = (
-    (STEPS - {"__init__", "job", "libraries", "reach", "inputs", "draw_figure", "run_study"})
-    | DRAWN
-    | set(STUDIED)
-)
+NO_RULES = {
+    "__init__",
+    "inputs",
+    "job",
+    "libraries",
+    "origins",
+    "reach",
+    "targets",
+    "draw_figure",
+    "run_study",
+}
+RULES = (STEPS - NO_RULES) | DRAWN | set(STUDIED)
 # Pages, by the rule that writes them: the template that each begins with.
 PAGE_OF = {
     "draw_scene": "scene.html",
@@ -121,16 +127,19 @@ def templates_of(page: str) -> set[str]:
     return found
 
 
+def modules_of_rule(rule: str) -> tuple[str, ...]:
+    """Modules that a rule runs."""
+    if rule in DRAWN:
+        return ("steps.draw_figure", f"figures.{rule}")
+    if rule in STUDIED:
+        return ("steps.run_study", f"studies.{STUDIED[rule]}")
+    return (f"steps.{rule}",)
+
+
 @cache
 def expected(rule: str) -> set[str]:
     """Files of the package and texts that a rule depends on."""
-    if rule in DRAWN:
-        modules = ("steps.draw_figure", f"figures.{rule}")
-    elif rule in STUDIED:
-        modules = ("steps.run_study", f"studies.{STUDIED[rule]}")
-    else:
-        modules = (f"steps.{rule}",)
-    found = reached_by(*modules)
+    found = reached_by(*modules_of_rule(rule))
     found |= templates_of(PAGE_OF[rule]) if rule in PAGE_OF else set()
     found |= {"src/slippulse/report/templates/report.typ"} if rule == "write_report" else set()
     found |= {f"manuscript/{name}" for name, rules in READ_BY.items() if rule in rules}

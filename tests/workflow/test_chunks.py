@@ -62,19 +62,15 @@ def test_numbers_do_not_need_the_joined_data(folder):
     result = snakemake(
         folder, "--dry-run", "--forceall", "--", *targets("in_three", files=FILES[1:]), overlay="overlay.yaml"
     )
-    joins = {"join_measurements": 1, "join_uncertainties": 1}
-    assert planned(result) == {"compile_kernels": 1, "simulate": 3, "measure": 3, "study_grid": 3} | joins
+    assert planned(result) == {"compile_kernels": 1, "simulate": 3, "measure": 3, "study_grid": 3, "join": 3}
 
 
 @pytest.mark.parametrize(
     ("lost", "jobs"),
     [
-        (
-            FILES,
-            {"simulate", "measure", "study_grid", "join_data", "join_measurements", "join_uncertainties"},
-        ),
-        (FILES[1:], {"measure", "study_grid", "join_measurements", "join_uncertainties"}),
-        (FILES[2:], {"study_grid", "join_uncertainties"}),
+        (FILES, {"simulate": 1, "measure": 1, "study_grid": 1, "join": 4}),
+        (FILES[1:], {"measure": 1, "study_grid": 1, "join": 3}),
+        (FILES[2:], {"study_grid": 1, "join": 2}),
     ],
     ids=["all files", "all but its data", "its grid study"],
 )
@@ -83,7 +79,7 @@ def test_a_killed_chunk_is_made_again_alone(folder, lost, jobs):
     kept = [path.rename(path.with_suffix(".kept")) for path in paths]
     try:
         result = snakemake(folder, "--dry-run", "--", *targets("in_two", files=lost), overlay="overlay.yaml")
-        assert planned(result) == dict.fromkeys(jobs, 1)
+        assert planned(result) == jobs
     finally:
         for path, away in zip(paths, kept, strict=True):
             away.rename(path)
@@ -106,8 +102,7 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
 def test_another_number_of_chunks_takes_nothing_from_the_old_ones(folder):
     overlay = write_overlay(folder, "other.yaml", {"in_two": 3})
     result = snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay=overlay)
-    joins = {"join_data": 1, "join_measurements": 1, "join_uncertainties": 1}
-    assert planned(result) == {"simulate": 3, "measure": 3, "study_grid": 3} | joins
+    assert planned(result) == {"simulate": 3, "measure": 3, "study_grid": 3, "join": 4}
     overlay = write_overlay(folder, "none.yaml", {"in_two": None})
     result = snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay=overlay)
     assert planned(result) == {"simulate": 1, "measure": 1, "study_grid": 1}
@@ -116,7 +111,7 @@ def test_another_number_of_chunks_takes_nothing_from_the_old_ones(folder):
 def test_another_level_runs_all_chunks_again(folder):
     overlay = write_overlay(folder, "level.yaml", {"in_two": 2}, left=[0.3, -0.2, 0.5, 0.4, 0.1, 0.6, 0.7])
     result = snakemake(folder, "--dry-run", "--", *targets("in_two", files=FILES[1:2]), overlay=overlay)
-    assert planned(result) == {"simulate": 2, "measure": 2, "join_measurements": 1}
+    assert planned(result) == {"simulate": 2, "measure": 2, "join": 1}
 
 
 @pytest.mark.parametrize(

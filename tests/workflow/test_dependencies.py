@@ -10,17 +10,18 @@ import yaml
 from dependencies import (
     EVERY_SOURCE,
     FILES,
-    LOCK,
     OVERLAY,
     PACKAGE,
     PROJECT,
     READ_BY,
     RULES,
-    STUDIED,
     TEXTS,
+    modules_of_rule,
     rules_of,
 )
 from pipeline_copy import copy_project, snakemake
+
+from slippulse.steps.reach import sources
 
 pytestmark = pytest.mark.workflow
 
@@ -45,9 +46,10 @@ def inputs(tmp_path_factory) -> dict[str, set[str]]:
 
 @pytest.fixture(scope="module")
 def seen(inputs) -> dict[str, set[str]]:
-    """Sources that each rule depends on."""
+    """Sources that each rule depends on: what its modules reach, and the texts that it takes."""
     return {
         name: {file for file in files if not file.startswith(("results/", "<"))}
+        | {*sources(*modules_of_rule(name))}
         for name, files in inputs.items()
         if name not in ("all", "everything", "scenes")
     }
@@ -74,26 +76,12 @@ def test_no_rule_depends_on_another_file_of_the_sources(seen):
     others = {
         rule: extra
         for rule, inputs in seen.items()
-        if rule not in EVERY_SOURCE and (extra := inputs - set(FILES) - {LOCK})
+        if rule not in EVERY_SOURCE and (extra := inputs - set(FILES))
     }
     # The report says what differs from the shipped configuration.
     assert others == {"write_report": {"config/config.yaml"}}
     workflow = {"Snakefile", "workflow/rules/common.smk"}
     assert workflow <= seen["write_provenance"]
-
-
-def test_what_computes_depends_on_the_packages_it_is_computed_with(seen):
-    """The lock of versions; what only draws or measures does not begin anew with each of them."""
-    computing = {
-        "compile_kernels",
-        "simulate",
-        "predict",
-        "study_grid",
-        "write_report",
-        "write_provenance",
-        *STUDIED,
-    }
-    assert {rule for rule, inputs in seen.items() if LOCK in inputs} == computing
 
 
 def test_every_text_has_a_reader():

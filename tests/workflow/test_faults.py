@@ -5,8 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import random
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -14,9 +16,10 @@ import time
 from pathlib import Path
 
 import pytest
-from faults import TARGETS, Report, digests, fault_run, prepare
+from faults import TARGETS, Report, digests, fault_run, prepare, start_by_make, stop_at
 from pipeline_copy import copy_project, snakemake
 
+from slippulse.data.records import Origin
 from slippulse.steps.job import JobFailed, Jobs
 
 pytestmark = pytest.mark.workflow
@@ -75,6 +78,28 @@ def test_it_can_be_started_from_anywhere(finished, tmp_path):
     assert "Nothing to be done" in result.stdout + result.stderr
 
 
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL)
+# Seconds; SIGKILL leaves nobody who could wait, and what it has started notices that.
+AT_ONCE = 2.0
+
+
+@pytest.mark.parametrize("each", [1, pytest.param(20, marks=pytest.mark.slow)])
+def test_a_signal_ends_a_run_at_once_and_the_next_gives_the_same(tmp_path, each):
+    targets = (FIGURE,) if each == 1 else (FIGURE, SCENE)
+    quiet, harmed = prepare(tmp_path / "quiet"), prepare(tmp_path / "harmed")
+    began = time.monotonic()
+    assert start_by_make(quiet, targets).wait(timeout=600) == 0
+    duration, chance = time.monotonic() - began, random.Random(5)
+    expected = digests(quiet)
+    for number in SIGNALS * each:
+        seconds = stop_at(harmed, number, chance.uniform(0.02, 0.9) * duration, targets)
+        assert not seconds > AT_ONCE, (number, seconds)
+        if chance.random() < 0.3:
+            shutil.rmtree(harmed / "results", ignore_errors=True)
+    assert start_by_make(harmed, targets).wait(timeout=600) == 0
+    assert digests(harmed) == expected
+
+
 HARM = {
     "truncated": lambda whole: whole[: len(whole) // 2],
     "corrupted": lambda whole: b"\0" * 600 + whole[600:],
@@ -92,7 +117,7 @@ def test_a_harmed_data_file_is_made_anew_to_the_same_bytes(finished, harm):
     os.utime(data, ns=(moment, moment))
     result = snakemake(finished, "--", DATA, SCENE, overlay="overlay.yaml")
     assert result.returncode == 0, result.stderr
-    assert f"{DATA} was changed since it was made" in result.stderr
+    assert f"as {DATA}: not what its job wrote; removed, and made anew where needed" in result.stderr
     assert data.read_bytes() == whole and table.read_bytes() == before
 
 
@@ -106,7 +131,7 @@ def test_a_data_file_without_a_record_is_made_anew(finished, tmp_path):
     (folder / DATA).write_bytes(b"of another job")
     result = snakemake(folder, "--", SCENE, overlay="overlay.yaml")
     assert result.returncode == 0, result.stderr
-    assert f"{DATA} was changed since it was made, or has no record: it is removed" in result.stderr
+    assert f"as {DATA}: no record; removed, and made anew where needed" in result.stderr
     assert digests(folder) == digests(finished)
 
 
@@ -117,11 +142,8 @@ def test_only_a_run_removes_what_was_changed(finished, tmp_path):
     (folder / f"results/records/{Path(DATA).relative_to('results')}.json").unlink()
     for option in ("--dry-run", "--summary", "--rulegraph"):
         result = snakemake(folder, option, "--", SCENE, overlay="overlay.yaml")
-        assert "it would be removed, and made anew where it is needed" in result.stderr, option
+        assert f"as {DATA}: no record; would be removed, and made anew" in result.stderr, option
         assert (folder / DATA).exists(), option
-    (folder / ".snakemake/locks/0.input.lock").write_text(str(folder / SCENE))
-    snakemake(folder, "--", SCENE, overlay="overlay.yaml")
-    assert (folder / DATA).exists()
 
 
 @pytest.mark.slow
@@ -217,7 +239,8 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
 
 def test_a_job_that_fails_has_said_why(tmp_path, capfd):
     with pytest.raises(JobFailed, match="exit code 1"):
-        Jobs().run("no_such_step", "a job", {}, {}, {}, tmp_path / "logs/one.log")
+        origin = Origin("one", "no_such_step", "", "", frozenset())
+        Jobs().run(origin, "a job", {}, {}, {}, tmp_path / "logs/one.log")
     said = capfd.readouterr().err
     assert said.count("\n") == 1 and "No module named" in said and "one.traceback" in said
     assert "Traceback" in (tmp_path / "logs/one.traceback").read_text()
@@ -257,24 +280,3 @@ def test_sources_that_cannot_be_written_are_enough():
         assert result.returncode != 0 and "Permission denied" in result.stdout + result.stderr
     finally:
         shutil.rmtree(base)
-
-
-def test_a_stale_lock_is_removed_and_a_live_one_is_not(tmp_path):
-    unlock = [sys.executable, str(Path(__file__).resolve().parents[2] / "workflow/unlock.py"), "."]
-    lock = tmp_path / ".snakemake/locks/0.input.lock"
-    lock.parent.mkdir(parents=True)
-    assert subprocess.run(unlock, cwd=tmp_path, check=True, capture_output=True).stderr == b""
-    lock.touch()
-    # Any program of that name, at work in that folder.
-    alive = subprocess.Popen(
-        ["snakemake", "-c", "import time; time.sleep(60)"], executable=sys.executable, cwd=tmp_path
-    )
-    try:
-        time.sleep(0.2)
-        refused = subprocess.run(unlock, cwd=tmp_path, capture_output=True, text=True, check=False)
-        assert refused.returncode == 1 and f"process {alive.pid}" in refused.stderr and lock.exists()
-    finally:
-        alive.kill()
-        alive.wait()
-    done = subprocess.run(unlock, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 0 and "its lock is removed" in done.stderr and not lock.exists()
