@@ -77,11 +77,11 @@ def third_parameter(evidence: Evidence) -> dict[str, float]:
     """Exact front speeds at one pre-stress, without damping and at the largest damping ratio of the collapses."""
     ratio = float(evidence.tables["damping_displacement"]["damping_ratio"].max())
     table = evidence.tables["front_speed"]
-    table = table[(table["right"] == LEVEL) & (table["release"] == "total")].set_index("damping_ratio")
-    if not {0.0, ratio} <= {*table.index}:
+    table = table[(table["right"] == LEVEL) & (table["release"] == "total")]
+    speeds = table.groupby("damping_ratio")["exact_front_speed_right"].first().to_dict()
+    if not {0.0, ratio} <= {*speeds}:
         raise NoRuns("front_speed")
-    slowest, fastest = (float(table["exact_front_speed_right"].loc[b]) for b in (0.0, ratio))
-    return {"level": LEVEL, "ratio": ratio, "slowest": slowest, "fastest": fastest}
+    return {"level": LEVEL, "ratio": ratio, "slowest": speeds[0.0], "fastest": speeds[ratio]}
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:

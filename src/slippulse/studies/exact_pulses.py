@@ -37,12 +37,19 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     for simulation, quantities in QUANTITIES.items():
         scenes, _ = expand(settings["sweeps"][simulation])
         for run, scene in enumerate(scenes):
-            for quantity, find in quantities.items():
-                if quantity == "strain_term" or scene.beta == 0.0:
+            for quantity, (find, applies) in quantities.items():
+                if applies(scene):
                     values = [find(scene, refinement) for refinement in (1, 2)]
-                    row = {"simulation": simulation, "run": run, "quantity": quantity}
-                    rows.append(row | {"difference": values[0], "change": abs(values[0] - values[1])})
-    return pd.DataFrame(rows)
+                    rows.append((simulation, run, quantity, values[0], abs(values[0] - values[1])))
+    return pd.DataFrame(rows, columns=["simulation", "run", "quantity", "difference", "change"])
+
+
+def _undamped(scene: Scene) -> bool:
+    return scene.beta == 0.0
+
+
+def _symmetric_pulse(scene: Scene) -> bool:
+    return scene.beta == 0.0 and 0.0 < scene.prestress.left == scene.prestress.right
 
 
 def _late(scene: Scene, refinement: int) -> tuple[Rupture, float]:
@@ -83,16 +90,21 @@ def profile_change(scene: Scene, refinement: int) -> float:
 
 
 def strain_term(scene: Scene, refinement: int) -> float:
-    """Curvature of slip at x = 0, halfway to the transition, where the pre-stress is 1."""
+    """Curvature of slip at x = 0, halfway to the transition, where the pre-stress is 1; NaN without a transition."""
     rupture = Rupture(
         scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration, refinement
     )
-    strain = rupture.strain(np.array([STEP]), 0.5 * rupture.transition_time)
-    return float(abs(strain[0] / STEP))
+    if not np.isfinite(rupture.transition_time):
+        return float("nan")
+    return float(abs(rupture.strain(np.array([STEP]), 0.5 * rupture.transition_time)[0] / STEP))
 
 
-QUANTITIES: dict[str, dict[str, Callable[[Scene, int], float]]] = {
-    "steady_displacement": {"pulse_width": pulse_width, "pulse_acceleration": pulse_acceleration},
-    "stress_pulses": {"profile_change": profile_change},
-    "space_time_displacement": {"strain_term": strain_term},
+# How to compute each, and for which scenes there is one.
+QUANTITIES: dict[str, dict[str, tuple[Callable[[Scene, int], float], Callable[[Scene], bool]]]] = {
+    "steady_displacement": {
+        "pulse_width": (pulse_width, _symmetric_pulse),
+        "pulse_acceleration": (pulse_acceleration, _symmetric_pulse),
+    },
+    "stress_pulses": {"profile_change": (profile_change, _undamped)},
+    "space_time_displacement": {"strain_term": (strain_term, lambda scene: scene.gamma > 0.0)},
 }
