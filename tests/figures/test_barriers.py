@@ -41,9 +41,6 @@ def test_the_fine_map_is_the_exact_depth(table):
     for _, row in fine.iterrows():
         exact = barrier_depth(row["tau0"], row["barrier"], 1.0, row["damping_ratio"])
         assert row["exact"] == pytest.approx(exact, rel=5e-3)
-        assert row["paper"] == pytest.approx(
-            barrier_depth_estimate(row["tau0"], row["barrier"], 1.0), rel=5e-3
-        )
 
 
 def test_depth_falls_with_the_barrier_and_the_estimate_is_short_of_it_at_low_levels(table):
@@ -51,5 +48,7 @@ def test_depth_falls_with_the_barrier_and_the_estimate_is_short_of_it_at_low_lev
     for (tau0, _), line in curves.groupby(["tau0", "damping_ratio"]):
         line = line.sort_values("barrier")
         assert (np.diff(line["exact"]) > 0.0).all()
+        estimate = [barrier_depth_estimate(*row) for row in line[["tau0", "barrier", "gamma"]].to_numpy()]
+        assert line["paper"].to_numpy() == pytest.approx(estimate, rel=1e-3)
         if tau0 < 0.3:
             assert (line["paper"] < 0.5 * line["exact"]).all()

@@ -29,8 +29,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Returns
     -------
-    rows of part "depth" as in the study; of part "fine" (gamma = 1) exact and paper (the later estimate) on a fine
-    grid; of part "curve" the same over the barrier's level at gamma = GAMMA
+    rows of part "depth" as in the study; of part "fine" exact at gamma = 1 on a fine grid; of part "curve" exact and
+    paper (the later estimate) over the barrier's level at gamma = GAMMA
     """
     # Slow to load, and needed here only.
     from scipy.interpolate import RectBivariateSpline
@@ -41,14 +41,15 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         # log depth over tau_0 and log |tau_b| is nearly straight.
         at = np.sort(rows["tau0"].unique()), np.sort(np.log(-rows["barrier"].unique()))
         x, y = (np.linspace(ends[0], ends[-1], FINE) for ends in at)
-        for part, levels, gamma in (("fine", x, 1.0), ("curve", np.array(LEVELS), GAMMA)):
+        for part, levels, gamma, powers in (
+            ("fine", x, 1.0, {"exact": 0.5}),
+            ("curve", np.array(LEVELS), GAMMA, {"exact": 0.5, "paper": 1.0}),
+        ):
             level, barrier = np.meshgrid(levels, -np.exp(y), indexing="ij")
             out = pd.DataFrame({"tau0": level.ravel(), "barrier": barrier.ravel()})
-            for name, power in (("exact", 0.5), ("paper", 1.0)):
-                depths = rows.pivot(index="tau0", columns="barrier", values=name).sort_index(
-                    axis=1, ascending=False
-                )
-                depth = np.exp(RectBivariateSpline(*at, np.log(depths.to_numpy()))(levels, y))
+            for name, power in powers.items():
+                depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
+                depth = np.exp(RectBivariateSpline(*at, np.log(depths))(levels, y))
                 out[name] = depth.ravel() / gamma**power
             parts.append(out.assign(part=part, gamma=gamma, damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
