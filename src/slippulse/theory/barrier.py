@@ -53,7 +53,7 @@ def barrier_depth(
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     # T rises to the right, as behind a pulse that comes from far away.
-    panels = [_incoming(a, b, 1.0 / speed, tau0) for a, b in pairwise(edges.tolist())]
+    panels = [straight_panel(a, b, 1.0 / speed, tau0) for a, b in pairwise(edges.tolist())]
     level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
     stop = None
     while stop is None:
@@ -86,11 +86,3 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
     check_number("tau_barrier", tau_barrier, at_most=-SMALLEST)
     check_number("gamma", gamma, at_least=SMALLEST)
     return 2.0 / gamma * math.log((tau_barrier - tau0) / tau_barrier)
-
-
-def _incoming(left: float, right: float, rate: float, tau: float):
-    """A panel of a front that comes from the left and is at x = 0 at t = 0."""
-    panel = straight_panel(-right, -left, rate, tau)
-    return type(panel)(
-        -panel.x[::-1], -panel.time[::-1], panel.source, (left, right), (rate * left, rate * right)
-    )

@@ -139,11 +139,8 @@ def exact_transition_displacement(
     check_number("gamma", gamma, above=0.0)
     if not prestress.symmetric or float(prestress.level(np.asarray(1e300))) <= 0.0:
         raise ValueError("prestress: not symmetric and positive; allowed: equal levels > 0 on both sides")
-    return _first_stick_at_centre(prestress, float(gamma), damping_ratio, release)
-
-
-def _first_stick_at_centre(prestress, gamma, damping_ratio, release) -> ExactTransition:
-    period = np.pi / np.sqrt(gamma)
+    gamma = float(gamma)
+    period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.
     fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
     stick = float(Part(fronts.curve, gamma, 2.0 * period).scan(np.zeros(1))[0])
@@ -179,5 +176,5 @@ def uniform_transition_time(
     # Beyond where its waves come from, a slow front need not be known.
     reach = 12.0 / max(1.0 - rate**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
-    curve = Curve([straight_panel(a, b, rate, tau) for a, b in pairwise(edges.tolist())])
+    curve = Curve([straight_panel(a, b, np.copysign(rate, a + b), tau) for a, b in pairwise(edges.tolist())])
     return float(Part(curve, 1.0, 10.0).scan(np.zeros(1))[0]) / float(np.sqrt(float(gamma)))

@@ -34,7 +34,7 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
 
     Raises ValueError: outside the domain, naming the value and the range.
     """
-    return _undamped(as_numbers("tau0", tau0, at_least=0.0, below=1.0))
+    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
@@ -62,7 +62,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     check_choice("release", release, RELEASES)
     tau = as_numbers("tau0", tau0, above=0.0, below=1.0)
     tau, ratio = of_one_shape(tau0=tau, damping_ratio=_ratios(damping_ratio))
-    out = np.array(_undamped(tau))
+    out = np.array(front_speed_undamped(tau))
     damped = ratio > 0.0
     near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
     out[near] = 1.0 / slowest(tau[near], ratio[near], release)
@@ -204,10 +204,6 @@ def _no_front(tau0: float, least: float, gamma: float, dx: float, ratio: float) 
         f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
         f" dx = {dx:g}, damping_ratio = {ratio:g}"
     )
-
-
-def _undamped(tau: np.ndarray) -> np.ndarray:
-    return 1.0 / np.sqrt(1.0 - tau**2)
 
 
 def _ratios(damping_ratio) -> np.ndarray:

@@ -152,9 +152,8 @@ class FrontLaw:
         )
 
 
-def straight_panel(left: float, right: float, rate: float, tau: float) -> Panel:
-    """A panel of a front at constant speed in uniform pre-stress, T = rate |x|."""
+def straight_panel(left: float, right: float, slope: float, tau: float) -> Panel:
+    """A panel of a front at constant speed in uniform pre-stress, T = slope x."""
     half = 0.5 * (right - left)
     x = left + half * (1.0 + NODES)
-    ends = (left, right)
-    return Panel(x, rate * np.abs(x), np.full(COUNT, tau * half), ends, (rate * abs(left), rate * abs(right)))
+    return Panel(x, slope * x, np.full(COUNT, tau * half), (left, right), (slope * left, slope * right))

@@ -92,11 +92,11 @@ def _crossings(prestress, left: float, right: float, level: float, value: float)
     """Whether an interval begins with the pre-stress at a value or above, and where that changes; it touches twice."""
     x = _samples(prestress, left, right)
 
-    def excess(x: np.ndarray | float) -> np.ndarray:
-        return analytic(prestress, level, np.asarray(x)) - value
+    def excess(position: float) -> float:
+        return float(analytic(prestress, level, np.asarray(position))) - value
 
     # What is at the value but for rounding, as under the far tail of a bump, is there.
-    at = excess(x)
+    at = analytic(prestress, level, x) - value
     at[np.abs(at) <= ROUNDING] = 0.0
     above = at >= 0.0
     marks = []

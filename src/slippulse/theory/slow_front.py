@@ -40,17 +40,9 @@ class Advance(NamedTuple):
 def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark: float) -> Advance:
     """Continue the right end of a curve into negative pre-stress, by the entries of one panel at most.
 
-    Parameters
-    ----------
-    curve : all that has slipped, from left to right
-    prestress, level : the pre-stress, and the side level where the front is
-    gamma : elasticity ratio, or 0
-    mark : where the negative piece ends (may be infinite)
-
-    Returns
-    -------
-    The new panel; stop is "mark" where it ends at the mark, "dead" where the front stops for good, and "unknown"
-    where its characteristic comes from beyond the curve's left end; "unresolved" where no panel is short enough.
+    level is the side level where the front is, mark where the negative piece ends (may be infinite). The stop is "mark"
+    where the new panel ends there, "dead" where the front stops for good, "unknown" where its characteristic comes from
+    beyond the curve's left end, and "unresolved" where no panel is short enough.
     """
     front = _Chunk(curve, prestress, level, gamma)
     entry = front.entry()

@@ -29,18 +29,7 @@ LARGEST_RATIO = 1e6
 
 
 def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
-    """1/v of a front into pre-stress tau: 0 where tau >= 1, 1 where tau <= 0.
-
-    Parameters
-    ----------
-    tau : array
-    damping_ratio : beta/dx, from 0 to 1e6
-    release : "total" or "elastic"
-
-    Raises ValueError: if damping_ratio or release is not as stated.
-
-    Source: the inverse of `prestress_for_speed`, to 1e-11.
-    """
+    """1/v of a front into pre-stress tau, to 1e-11 (1e-8 next to tau = 1): 0 where tau >= 1, 1 where tau <= 0."""
     check_law(damping_ratio, release)
     tau = np.clip(np.asarray(tau, dtype=float), 0.0, 1.0)
     if damping_ratio == 0.0:
@@ -68,10 +57,7 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
 
 
 def check_law(damping_ratio: float, release: str) -> None:
-    """Refuse what `slowness` has no law for.
-
-    Raises ValueError, naming the value and the range.
-    """
+    """Refuse what `slowness` has no law for: a ratio outside 0 to 1e6, or another release rule."""
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
     check_choice("release", release, RELEASES)
 

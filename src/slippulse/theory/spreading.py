@@ -73,11 +73,6 @@ class Stretch:
 def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float, float, str]]]:
     """All connected parts of the rupture until a time, from left to right, and points where more is not known.
 
-    Parameters
-    ----------
-    law : pre-stress, front law and gamma
-    until : time up to which T(x) is wanted
-
     Raises ValueError: if the pre-stress nowhere reaches 1.
     """
     starts = nucleations(law.prestress)

@@ -77,11 +77,7 @@ def log_factor(
 ) -> tuple[np.ndarray, np.ndarray]:
     """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1, and its value at z = 0.
 
-    Parameters
-    ----------
-    z, bent, curved : nodes, e^{iz} - 1 and e^{iz} - 1 - iz
-    excess, ratio : columns
-    springs : g >= 0
+    bent and curved are e^{iz} - 1 and e^{iz} - 1 - iz at the nodes z, excess and ratio columns.
     """
     iw = 1j * z * (1.0 + excess)
     q, r = roots(iw, ratio, springs)
