@@ -32,7 +32,14 @@ def inputs(tmp_path_factory) -> dict[str, set[str]]:
     folder = copy_project(PROJECT, tmp_path_factory.mktemp("dependencies"), link=True)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
     result = snakemake(
-        folder, "--forceall", "--filegraph", "--", "everything", "scenes", overlay="overlay.yaml"
+        folder,
+        "--forceall",
+        "--filegraph",
+        "--",
+        "everything",
+        "scenes",
+        "results/predictions/own.csv",
+        overlay="overlay.yaml",
     )
     assert result.returncode == 0, result.stderr
     found = {}
