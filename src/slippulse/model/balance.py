@@ -12,16 +12,18 @@ from .roots import root_between
 def prestress_balance_position(prestress: Prestress) -> float:
     """x_minus < 0, where the integral of the pre-stress from x_minus to infinity vanishes.
 
-     Parameters
-     ----------
-     prestress : a profile whose level is 0 far to the right and negative far to the left
+    Parameters
+    ----------
+    prestress : a profile whose level is 0 far to the right and negative far to the left
 
-     Raises ValueError: if it is no Prestress, or the levels are otherwise: the integral has no finite value, or never
-    returns to 0.
-     ArithmeticError
-         If numbers are too large to compute with.
+    Raises
+    ------
+    ValueError
+        If it is no Prestress, or the levels are otherwise: the integral has no finite value, or never returns to 0.
+    ArithmeticError
+        If numbers are too large to compute with.
 
-     Source: equation (11) of the paper, section III C.
+    Source: equation (11) of the paper, section III C.
     """
     check_kind("prestress", prestress, Prestress)
     far = _far(prestress)
