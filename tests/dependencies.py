@@ -62,7 +62,7 @@ PAGE_OF = {
 # Texts beside the package, by the rules that read them.
 READ_BY = {
     "captions.yaml": {"write_report", "write_index"},
-    "claims.yaml": {"write_claims"},
+    "claims.yaml": {"write_claims", "write_report"},
     "errata.yaml": {"write_report"},
     "metadata.yaml": {"write_report"},
     "references.bib": {"write_report"},
