@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from slippulse.claims.entries import read_entries
-from slippulse.claims.evidence import Evidence, NoRuns, agreeing, compared, line
+from slippulse.claims.evidence import Evidence, NoRuns, agreeing, line
 from slippulse.claims.paper import written
 from slippulse.claims.rules import VERDICTS
 from slippulse.measure.uncertainty import grid_tables
@@ -38,7 +38,7 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
         tables[0].loc[flagged, "run_flags"] = "unresolved"
     study = grid_tables(tuple(tables), (2.0, 4.0), ("left", "run_flags"))
     coarser = [table.assign(factor=factor) for table, factor in zip(tables[1:], (2.0, 4.0), strict=True)]
-    finest = tables[0].assign(paper=LEVELS)
+    finest = tables[0].assign(paper=LEVELS, exact_number=[level / 1.1 for level in LEVELS])
     return Evidence(
         {
             "sweep": finest,
@@ -114,9 +114,13 @@ def test_a_qualitative_claim_counts_runs():
 
 
 def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
-    claim = compared(exact(evidence()), pd.Series([1.0, 1.1, np.nan]), pd.Series([1.0, 1.0, 1.0]))
+    claim = evidence().compared(exact(evidence()), "sweep", "number")
     found = written(claim, ENTRIES["equation"], "III A")
-    assert found["exact_median"] == pytest.approx(0.05) and found["counted"] and found["follows_from"] == []
+    assert (
+        found["exact_median"] == found["exact_largest"] == pytest.approx(0.1)
+        and found["counted"]
+        and found["follows_from"] == []
+    )
     assert found["figure_or_section"] == "III A" and found["tolerance"] == 0.01 and found["why"] == ""
     nothing = evidence().approximate("estimate", [pd.DataFrame({"a": [np.nan], "b": 1.0})], "a", "b")
     found = written(nothing, ENTRIES["estimate"] | {"sentences": []}, "")

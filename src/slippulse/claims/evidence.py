@@ -240,12 +240,11 @@ class Evidence:
             if chosen
         ]
 
-
-def compared(claim: Claim, values: pd.Series, exact: pd.Series) -> Claim:
-    """The claim with the median and the largest relative deviation of its runs from the exact theory."""
-    deviation = np.abs(values.to_numpy(float) / exact.to_numpy(float) - 1.0)
-    deviation = deviation[np.isfinite(deviation)]
-    if deviation.size == 0:
-        return claim
-    beside = {"exact_median": float(np.median(deviation)), "exact_largest": float(deviation.max())}
-    return replace(claim, numbers={**claim.numbers, **beside})
+    def compared(self, claim: Claim, simulation: str, quantity: str) -> Claim:
+        """The claim with the median and the largest deviation of its runs at spacing 0 from the exact theory."""
+        deviation = deviations(self.points(simulation, quantity), "extrapolated", f"exact_{quantity}")
+        deviation = deviation[np.isfinite(deviation)]
+        if deviation.size == 0:
+            return claim
+        exact = {"exact_median": float(np.median(deviation)), "exact_largest": float(deviation.max())}
+        return replace(claim, numbers={**claim.numbers, **exact})

@@ -127,39 +127,28 @@ def unique(evidence: Evidence) -> Claim:
         pd.concat([evidence.points(name, size) for name in sweeps], ignore_index=True) for size in SIZES
     ]
     groups = studies[0].groupby(["beyond", "gamma", "damping_ratio"]).groups.values()
-    decided = [
-        alike([(study.loc[i], study.loc[j]) for study in studies], evidence.tolerance(id))
+    found = [
+        apart([(study.loc[i], study.loc[j]) for study in studies], evidence.tolerance(id), sure=False)
         for rows in groups
         for i, j in combinations(rows, 2)
     ]
-    return evidence.qualitative(id, decided)
+    return evidence.qualitative(id, [None if different is None else not different for different in found])
 
 
-def differences(pairs: Pairs) -> list[tuple[float, float]]:
-    """How far each pair of values is apart, relatively, and the uncertainty of that."""
-    return [
-        (
-            abs(one["value"] / other["value"] - 1.0),
-            (one["uncertainty"] + other["uncertainty"]) / abs(other["value"]),
-        )
-        for one, other in pairs
-    ]
+def apart(pairs: Pairs, allowed: float, sure: bool) -> bool | None:
+    """Whether any pair of values differs by more than a tolerance; None where their uncertainty leaves that open.
 
-
-def alike(pairs: Pairs, allowed: float) -> bool | None:
-    """Whether pairs of values are equal within a tolerance; None where only their uncertainty sets them apart."""
-    found = differences(pairs)
-    if all(apart <= allowed for apart, _ in found):
+    Parameters
+    ----------
+    sure : whether it takes the uncertainty too to say that none does
+    """
+    found = []
+    for one, other in pairs:
+        blur = (one["uncertainty"] + other["uncertainty"]) / abs(other["value"])
+        found.append((abs(one["value"] / other["value"] - 1.0), blur))
+    if any(difference - blur > allowed for difference, blur in found):
         return True
-    return False if any(apart - blur > allowed for apart, blur in found) else None
-
-
-def different(pairs: Pairs, allowed: float) -> bool | None:
-    """Whether any pair of values differs by more than a tolerance; None where their uncertainty leaves that open."""
-    found = differences(pairs)
-    if any(apart - blur > allowed for apart, blur in found):
-        return True
-    return False if all(apart + blur <= allowed for apart, blur in found) else None
+    return False if all(difference + sure * blur <= allowed for difference, blur in found) else None
 
 
 def settle(evidence: Evidence) -> Claim:
@@ -276,7 +265,7 @@ def not_unique(evidence: Evidence) -> Claim:
     ratio = studies[0].loc[studies[0]["damping_ratio"] > 0.0, "damping_ratio"].min()
     studies = [study[study["damping_ratio"] == ratio] for study in studies]
     decided = [
-        different([(study.loc[i], study.loc[j]) for study in studies], evidence.tolerance(id))
+        apart([(study.loc[i], study.loc[j]) for study in studies], evidence.tolerance(id), sure=True)
         for i, j in combinations(studies[0].index, 2)
     ]
     return evidence.qualitative(id, decided)

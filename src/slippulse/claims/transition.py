@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from . import rules
-from .evidence import NAN, Claim, Evidence, agreeing, compared
+from .evidence import NAN, Claim, Evidence, agreeing
 
 # Fractions of |x_minus| at which a time that has no end is judged.
 FRACTIONS = (0.9, 0.95, 0.99)
@@ -35,12 +35,6 @@ def transition_claims(evidence: Evidence) -> list[Claim]:
     ]  # fmt: skip
 
 
-def beside_theory(evidence: Evidence, claim: Claim, sweep: str, what: str) -> Claim:
-    """The claim with how far the runs at spacing 0 are from the exact theory."""
-    points = evidence.points(sweep, f"transition_{what}")
-    return compared(claim, points["extrapolated"], points[f"exact_transition_{what}"])
-
-
 def displacement(evidence: Evidence, name: str) -> Claim:
     """An estimate under a displacement boundary, at the first stick."""
     what, (sweep, levels) = ESTIMATES[name], SWEEPS["displacement"]
@@ -48,7 +42,7 @@ def displacement(evidence: Evidence, name: str) -> Claim:
     claim = evidence.approximate(
         f"{name}_displacement", evidence.lattices(sweep), quantity, f"paper_{quantity}", levels
     )
-    return beside_theory(evidence, claim, sweep, what)
+    return evidence.compared(claim, sweep, f"transition_{what}")
 
 
 def arrests(evidence: Evidence) -> dict[str, list[pd.DataFrame]]:
@@ -104,7 +98,7 @@ def stress(evidence: Evidence, name: str) -> Claim:
     claim = at_fractions(
         evidence, lambda tables: evidence.approximate(f"{name}_stress", tables, what, predicted, levels)
     )
-    return beside_theory(evidence, claim, sweep, what)
+    return evidence.compared(claim, sweep, f"transition_{what}")
 
 
 def speeds_near_one(evidence: Evidence) -> Claim:
