@@ -41,7 +41,7 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
-	@echo "make verify      whether results/ is what it was; AGAINST=other/results compares numbers within uncertainties"
+	@echo "make verify      whether results/ is as made by what is here now; AGAINST=other/results compares numbers within uncertainties"
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
 	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility, narrow screens"
@@ -109,7 +109,7 @@ rulegraph: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py rulegraph
 
 verify: $(READY)
-	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.data.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
+	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)
 
 faults: $(READY)
 	@$(call CHECK_COUNT,KILLS)

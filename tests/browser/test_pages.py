@@ -12,8 +12,6 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
-from slippulse.data.columns import is_described
-
 RESULTS = os.environ.get("PAGES", "")
 PAGES = (
     "index.html", "claims.html", "manuscript/replication.html", "explorer.html", "scenes/barrier.html",
@@ -34,12 +32,18 @@ def results(project) -> Path:
     return folder
 
 
-def test_every_column_of_every_table_is_explained(results):
+def test_every_column_of_every_table_is_explained(results, project):
+    rows = (project / "docs/columns.md").read_text(encoding="utf-8").splitlines()
+    described = {row.split("`")[1] for row in rows if row.startswith("| `")}
     tables = sorted(results.rglob("*.csv"))
     assert len(tables) > 100
     for path in tables:
         columns = path.open(encoding="utf-8").readline().rstrip("\n").split(",")
-        assert [column for column in columns if not is_described(column)] == [], path
+        assert [
+            column
+            for column in columns
+            if column not in described and not column.startswith("trailing_edge_")
+        ] == [], path
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from slippulse.data.compare import compare, main
+from slippulse.report.compare import compare, main
 
 RUN = {
     "boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65, "damping_ratio": 0.1,

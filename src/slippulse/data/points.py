@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -41,13 +42,14 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
             f"sweep: {short_repr(sweep)}; allowed: a Dataset that run_sweep returned, or of results/data"
         )
     check_number("index", index, whole=True, at_least=0, at_most=sweep.sizes["point"] - 1)
-    values = {name: variable.values for name, variable in sweep.variables.items()}
+    values: dict[Hashable, np.ndarray] = {name: variable.values for name, variable in sweep.variables.items()}
     scalars = [
         name
         for name, variable in sweep.variables.items()
         if variable.dims == ("point",) and name != "row_size"
     ]
-    fields, coordinates = {}, {}
+    fields: dict[Hashable, Any] = {}
+    coordinates: dict[Hashable, Any] = {}
     if "row_size" in values:
         size = values["row_size"]
         if "x" not in values or np.any(size < 0) or np.sum(size) != values["x"].size:
@@ -102,7 +104,7 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
         for name in ("sample_slip", "sample_velocity"):
             out[name] = (("point", "time", "position"), np.stack([result[name].values for result in results]))
     for name in out.variables:
-        out[name].attrs = {"units": "1", "long_name": VARIABLES[name][1]}
+        out[name].attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
     out.attrs = FILE | {"versions": first.attrs["versions"]}
     if "row_size" in out:
         # CF's contiguous ragged array: the profiles of the runs over x, one after the other.

@@ -104,8 +104,9 @@ def read_record(path: str | Path) -> Record:
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
-        texts = (str(content[key]) for key in ("step", "configuration", "sources"))
-        return Record(*texts, *(dict(content[key]) for key in ("outputs", "inputs", "used")))
+        step, configuration, sources = (str(content[key]) for key in ("step", "configuration", "sources"))
+        outputs, inputs, used = (dict(content[key]) for key in ("outputs", "inputs", "used"))
+        return Record(step, configuration, sources, outputs, inputs, used)
     except (KeyError, TypeError, RecursionError) as error:
         raise ValueError(str(error)) from error
 

@@ -18,6 +18,7 @@ import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from importlib import import_module
 from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from threading import Lock, Thread
 
@@ -50,7 +51,10 @@ class Jobs:
 
     def __init__(self, program: Sequence[str] = ()) -> None:
         # Elsewhere libraries of the system do not all survive a fork.
-        self._processes = multiprocessing.get_context("forkserver" if sys.platform == "linux" else "spawn")
+        linux = sys.platform == "linux"
+        self._processes = (
+            multiprocessing.get_context("forkserver") if linux else multiprocessing.get_context("spawn")
+        )
         self._processes.set_forkserver_preload([*program, "slippulse.steps.libraries"])
         # A process that starts looks after those that have ended: not while another thread does.
         self._turn = Lock()
@@ -62,7 +66,7 @@ class Jobs:
         ------
         JobFailed
         """
-        process = self._processes.Process(target=run_job, args=job)
+        process: BaseProcess = self._processes.Process(target=run_job, args=job)
         try:
             with self._turn:
                 process.start()

@@ -1,6 +1,6 @@
 """Whether two trees of results agree within their uncertainties.
 
-python -m slippulse.data.compare results other/results
+python -m slippulse.report.compare results other/results
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from .alterations import changes
-from .columns import is_text
-from .store import UnreadableFile, load_table
+from ..data.alterations import changes
+from ..data.store import UnreadableFile, load_table
 
 # What makes a run the same run in another tree, whatever its lattice.
 SAME = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
+TEXTS = ("boundary", "release", "quantity")
 # What a number without uncertainty depends on besides.
 LATTICE = ["scheme", "dx", "order", "max_step"]
 # Numbers that agree to this need no uncertainty: tables have nine digits. On one lattice those without agree to so much
@@ -64,8 +64,13 @@ def compare(here: Path, there: Path) -> Comparison:
     other = [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
     other += _configurations(trees) + [line for part in parts for line in part.other] + _verdicts(trees)
     apart = [line for part in parts for line in part.apart]
-    compared, agree, unknown = (sum(part[index] for part in parts) for index in range(3))
-    return Comparison(compared, agree, unknown, apart, other)
+    return Comparison(
+        sum(part.compared for part in parts),
+        sum(part.agree for part in parts),
+        sum(part.unknown for part in parts),
+        apart,
+        other,
+    )
 
 
 def _compare_tables(trees: tuple[Path, Path], name: str) -> Comparison:
@@ -119,8 +124,7 @@ def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
         for column in needed:
             if column not in table:
                 raise ValueError(f"no column {column}")
-        for column in table:
-            if table[column].dtype.kind not in "biuf" and not is_text(column):
+            if table[column].dtype.kind not in "biuf" and column not in TEXTS:
                 raise ValueError(f"text in column {column}")
     return table
 
