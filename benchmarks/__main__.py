@@ -18,8 +18,7 @@ from . import measure
 def main(config_path: str, folder: str) -> None:
     """Run every measurement and say the ratios."""
     Path(folder).mkdir(parents=True, exist_ok=True)
-    config = read_overlay(config_path)
-    read_config(config, config)
+    config = read_config(read_overlay(config_path)).plain()
     accuracy, window = config["presets"]["paper"], config["measure"]["front_window"]
     parts = {
         "machine": measure.machine,

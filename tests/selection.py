@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterable
 
-from slippulse.configuration.expand import resolve
+from slippulse.configuration.resolve import resolve
 
 # A few points of each list are enough to draw.
 THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}

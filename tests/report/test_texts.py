@@ -13,8 +13,8 @@ from report.conftest import read
 
 from slippulse.claims.entries import coverage, problems
 from slippulse.claims.rules import KINDS
-from slippulse.configuration.parameters import parameters
 from slippulse.report.gallery import NAMED, Gallery
+from slippulse.report.parameters import parameters
 from slippulse.report.tables import sticking
 from slippulse.report.texts import ERRATUM, PARTS, Caption, read_captions, read_errata
 

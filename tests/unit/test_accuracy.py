@@ -6,7 +6,10 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.configuration.expand import accuracy_of, expand, promise_of, resolve
+from slippulse.configuration.accuracy import promised
+from slippulse.configuration.expand import expand, promise_of
+from slippulse.configuration.resolve import accuracy_of, resolve
+from slippulse.configuration.schema import Configuration
 
 PULSE = {"boundary": "displacement", "gamma": 0.65, "prestress": sp.Prestress(0.5, 0.5), "damping_ratio": 0.1}
 CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}
@@ -68,8 +71,8 @@ def test_what_has_no_settings_is_refused(change, named):
 def test_without_an_accuracy_every_block_is_what_it_was(config):
     preset = config["presets"][config["preset"]]
     for value in ({}, {"accuracy": None}):
-        accuracy = accuracy_of(config | value)
-        assert accuracy == preset
+        accuracy = accuracy_of(Configuration.model_validate(config | value))
+        assert accuracy == preset | {"whole": True}
         for simulation in config["simulations"].values():
             block = resolve(simulation, config["model"], accuracy)
             assert block["accuracy"] == {key: preset[key] for key in ("dx", "max_step", "order")}
@@ -78,15 +81,15 @@ def test_without_an_accuracy_every_block_is_what_it_was(config):
 
 def test_with_an_accuracy_each_scene_has_its_own_spacing(config):
     simulation = config["simulations"]["scaling_displacement"]
-    accuracy = accuracy_of(config | {"accuracy": 1e-2})
-    scenes, _ = expand(resolve(simulation, config["model"], accuracy))
+    accuracy = accuracy_of(Configuration.model_validate(config | {"accuracy": 1e-2}))
+    scenes, _ = expand(promised(resolve(simulation, config["model"], accuracy)))
     for scene in scenes:
         expected = sp.settings_for(
             1e-2, boundary=scene.boundary, prestress=scene.prestress, gamma=scene.gamma,
             damping_ratio=0.1, fields="fields" in simulation["record"],
         )  # fmt: skip
         assert {key: getattr(scene, key) for key in expected} == pytest.approx(expected)
-    coarser, _ = expand(resolve(simulation, config["model"], accuracy, 2.0))
+    coarser, _ = expand(promised(resolve(simulation, config["model"], accuracy, 2.0)))
     assert [scene.dx for scene in coarser] == pytest.approx([2.0 * scene.dx for scene in scenes])
 
 
@@ -103,9 +106,13 @@ def test_a_spacing_that_is_the_question_stays(config, name, own):
     assert own in simulation
     if own == "beta":
         simulation.pop("dx")
-    before, _ = expand(resolve(simulation, config["model"], accuracy_of(config)))
-    block = resolve(simulation, config["model"], accuracy_of(config | {"accuracy": 1e-3}))
-    after, _ = expand(block)
+    before, _ = expand(
+        resolve(simulation, config["model"], accuracy_of(Configuration.model_validate(config)))
+    )
+    block = resolve(
+        simulation, config["model"], accuracy_of(Configuration.model_validate(config | {"accuracy": 1e-3}))
+    )
+    after, _ = expand(promised(block))
     assert [scene.dx for scene in after] == [scene.dx for scene in before]
     assert promise_of(block) != promise_of(block)  # NaN
     assert all(a.max_step <= b.max_step for a, b in zip(after, before, strict=True))
@@ -114,7 +121,9 @@ def test_a_spacing_that_is_the_question_stays(config, name, own):
 def test_the_textbook_scheme_promises_nothing(config):
     model = config["model"] | {"scheme": "fixed_step"}
     block = resolve(
-        config["simulations"]["steady_displacement"], model, accuracy_of(config | {"accuracy": 1e-2})
+        config["simulations"]["steady_displacement"],
+        model,
+        accuracy_of(Configuration.model_validate(config | {"accuracy": 1e-2})),
     )
     with pytest.raises(ValueError, match=r"scheme: 'fixed_step'; allowed: 'localised' where accuracy"):
-        expand(block)
+        promised(block)

@@ -14,7 +14,7 @@ from slippulse.configuration.overlay import read_overlay
 
 
 def test_the_schema_is_the_one_that_the_definition_makes(project):
-    assert (project / describe.SCHEMA).read_text(encoding="utf-8") == describe.json_schema()
+    assert (project / describe.SCHEMA).read_text(encoding="utf-8") == describe.schema_text()
 
 
 def test_the_tables_of_the_manual_are_those_that_the_definition_makes(project):
@@ -27,8 +27,8 @@ def test_the_tables_of_the_manual_are_those_that_the_definition_makes(project):
 
 def test_every_key_of_the_definition_is_in_a_table(project):
     text = (project / describe.README).read_text(encoding="utf-8")
-    for name, model in yaml.safe_load(describe.json_schema())["$defs"].items():
-        for key in model["properties"] if name != "Studies" else ():
+    for name, model in yaml.safe_load(describe.schema_text())["$defs"].items():
+        for key in model["properties"]:
             assert re.search(rf"^\| `(\w+\.)*{key}` \|", text, re.MULTILINE), (name, key)
 
 
@@ -38,8 +38,8 @@ def test_another_definition_changes_both(project, tmp_path, monkeypatch):
         (tmp_path / path).write_bytes((project / path).read_bytes())
     describe.main(str(tmp_path))
     assert (tmp_path / describe.SCHEMA).read_bytes() == (project / describe.SCHEMA).read_bytes()
-    field = describe.schema.Model.model_fields["release"]
-    monkeypatch.setattr(field, "description", "something else")
+    key = describe.json_schema()["$defs"]["Model"]["properties"]["release"]
+    monkeypatch.setitem(key, "description", "something else")
     describe.main(str(tmp_path))
     changed = (tmp_path / describe.README).read_text(encoding="utf-8")
     assert "| `release` | something else |" in changed
@@ -47,13 +47,13 @@ def test_another_definition_changes_both(project, tmp_path, monkeypatch):
 
 def test_the_schema_accepts_what_is_shipped(config):
     jsonschema = pytest.importorskip("jsonschema", reason="comes with Snakemake")
-    jsonschema.validate(config, yaml.safe_load(describe.json_schema()))
+    jsonschema.validate(config, yaml.safe_load(describe.schema_text()))
 
 
 def test_jobs_do_not_load_what_only_the_check_needs():
     program = (
-        "import sys, slippulse.configuration.expand, slippulse.configuration.accuracy, slippulse.configuration.cost;"
-        "print(sorted({'pydantic', 'yaml', 'jsonschema'} & set(sys.modules)))"
+        "import sys, slippulse.configuration.expand, slippulse.steps.simulate;"
+        "print(sorted({'pydantic', 'ruamel.yaml', 'jsonschema'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

@@ -9,10 +9,11 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.configuration.expand import expand, resolve
+from slippulse.configuration.expand import expand
+from slippulse.configuration.resolve import resolve
 from slippulse.model.scene import LATTICE_SCHEMES, ORDERS
 from slippulse.model.stability import largest_step
-from slippulse.simulation.simulate import judge
+from slippulse.simulation.dataset import judge
 from slippulse.solver.lattice import UnstableRun
 from slippulse.solver.run import run_scene
 

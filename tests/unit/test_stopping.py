@@ -53,7 +53,7 @@ def test_a_bar_shows_the_share_and_the_time_left():
     draw(0.5)
     time.sleep(0.25)
     draw(1.0)
-    assert " 50%" in out.getvalue() and "s left" in out.getvalue() and out.getvalue().count("\n") == 1
+    assert " 50%" in out.getvalue() and " left" in out.getvalue() and out.getvalue().count("\n") == 1
 
 
 def test_a_short_run_draws_no_bar(capsys):

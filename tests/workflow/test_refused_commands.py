@@ -10,14 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.configuration.cost import HOW_TO_GO_ON
+from slippulse.configuration.bound import HOW_TO_GO_ON
 
 STEADY = "simulations: {steady_displacement: "
 
 # The pipeline's own command: overlay, more arguments, what is named.
 COMMANDS = {
     "misspelt key": ("simulations: {steady_displacement: {gama: [0.3]}}", [], ["did you mean 'gamma'"]),
-    "cost": (STEADY + "{duration: {time: 1.0e+8}}}", [], ["hours on one core", "allow_large=true"]),
+    "cost": (STEADY + "{duration: {time: 1.0e+8}}}", [], ["steady_displacement.cost: up to", "allow_large=true"]),
     "alias": ("model: &a {release: total}\n", [], ["anchor or alias"]),
     "python tag": ("preset: !!python/name:os.system\n", [], ["no tags"]),
     "list": ("[1, 2]\n", [], ["with keys at top level"]),
@@ -25,7 +25,7 @@ COMMANDS = {
     "accuracy that costs too much": (
         "accuracy: 1.0e-4\n",
         ["results/figures/fig05_scaling.png"],
-        ["simulations.scaling_stress.cost", "hours on one core", "allow_large=true"],
+        ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
     ),
     "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
     "rule for many files": ("preset: draft\n", ["simulate"], ["target: 'simulate'", "results/data/{simulation}.nc"]),

@@ -6,13 +6,15 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from slippulse.configuration.expand import ConfigError, accuracy_of, resolve
-from slippulse.configuration.job_limits import joining_limits, sweep_limits
-from slippulse.configuration.limits import run_count
+from slippulse.configuration.accuracy import promised
+from slippulse.configuration.bound import bound_of_sweep
+from slippulse.configuration.expand import run_count
 from slippulse.configuration.overlay import read_overlay
 from slippulse.configuration.read import read_config
+from slippulse.configuration.resolve import accuracy_of, resolve
 from slippulse.configuration.scenes import all_simulations
 from slippulse.data.alterations import changes
+from slippulse.model.checks import ConfigError
 from slippulse.steps.job import Jobs, end_with
 from slippulse.steps.origins import below
 from slippulse.steps.reach import PACKAGE, declared
@@ -28,16 +30,19 @@ try:
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     SHIPPED = read_overlay(Path(workflow.basedir) / "config/config.yaml")
     # A job on another node starts Snakemake anew, with scenes that were checked here.
-    read_config(config, SHIPPED, workflow.config_settings.config, every_run=workflow.is_main_process)
+    CONFIG = read_config(SHIPPED, OVERLAYS, workflow.config_settings.config, workflow.is_main_process)
 except ConfigError as error:
     refuse(f"The configuration is refused:\n{error}")
 
-ACCURACY = accuracy_of(config)
+# Snakemake's own merge has read YAML 1.1.
+config.clear()
+config.update(CONFIG.given())
+ACCURACY = accuracy_of(CONFIG)
 SCENES = config.get("scenes", {})
 # A scene is a simulation of one run that records everything.
-SIMULATIONS = all_simulations(config)
+SIMULATIONS = all_simulations(CONFIG)
 # What an overlay adds is made with the rest.
-OWN_SIMULATIONS = [name for name in config["simulations"] if name not in SHIPPED["simulations"]]
+OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 JOBS = Jobs(program=["snakemake.cli"])
@@ -63,15 +68,17 @@ STUDY_NEEDS = {
     for path in sorted((PACKAGE / "studies").glob("*.py"))
     if (needs := declared(f"studies.{path.stem}", "NEEDS")) is not None
 }
-ALL_STUDIES = sorted(STUDY_NEEDS)
+if unknown := {*(CONFIG.studies or ())} - {*STUDY_NEEDS}:
+    refuse(f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(sorted(STUDY_NEEDS))}")
+ALL_STUDIES = sorted(CONFIG.studies or STUDY_NEEDS)
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 EXPLORER_SIMULATIONS = declared("steps.write_explorer", "SIMULATIONS")
 
 # Sweeps that several jobs share. How many is in the name of each chunk: files left by another number are never taken.
 CHUNKS = {
-    name: [f"{name}/{place}-of-{sweep['chunks']}" for place in range(1, sweep["chunks"] + 1)]
+    name: [f"{name}/{place}-of-{sweep.chunks}" for place in range(1, sweep.chunks + 1)]
     for name, sweep in SIMULATIONS.items()
-    if sweep.get("chunks", 1) > 1
+    if sweep.chunks > 1
 }
 # What is made of each simulation, by chunks or not.
 KINDS = {
@@ -87,7 +94,7 @@ VALUES = {
     "simulation": [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])],
     "joined": [f"{kind}/{name}.{ending}" for name in CHUNKS for kind, ending in KINDS.items()],
     "scene": [*SCENES],
-    "sweep": [*config["simulations"]],
+    "sweep": [*CONFIG.simulations],
 }
 
 
@@ -108,7 +115,7 @@ def sweep_of(name, coarser=1.0):
     """All that the data of a simulation depend on."""
     if name not in SIMULATIONS:
         refuse(f"simulation: {name!r}; allowed: {', '.join(SIMULATIONS)}")
-    return resolve(SIMULATIONS[name], config["model"], ACCURACY, coarser)
+    return resolve(SIMULATIONS[name], CONFIG.model, ACCURACY, coarser)
 
 
 @cache
@@ -116,7 +123,9 @@ def sweep_of_job(job, coarser=1.0):
     """The same of a simulation or of a chunk of it, NAME/3-of-8."""
     name, _, chunk = job.partition("/")
     found = sweep_of(name, coarser)
-    return found | {"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else found
+    if chunk:
+        found = found | {"chunk": [int(number) for number in chunk.split("-of-")]}
+    return promised(found)
 
 
 @cache
@@ -189,29 +198,32 @@ def tables(kind, names):
 
 
 @cache
-def limits_of(job):
-    """Limits of a job that simulates, found once, since several things of it follow from them."""
-    return sweep_limits(sweep_of_job(job))
+def bound_of_job(job):
+    """What a job that simulates takes at most."""
+    name = Path(job).parts[0]
+    return bound_of_sweep(sweep_of(name), SIMULATIONS[name].chunks)
 
 
 def job_threads(wildcards):
-    """Threads of a simulation: both cores for a long one; two short ones side by side waste less on starting."""
-    return limits_of(wildcards.simulation).threads
+    return bound_of_job(wildcards.simulation).threads
 
 
 def job_minutes(wildcards, attempt):
-    """Time limit of a simulation, and of its grid study, which is coarser."""
-    return attempt * limits_of(wildcards.simulation).minutes
+    return attempt * bound_of_job(wildcards.simulation).minutes
 
 
 def job_megabytes(wildcards, attempt):
-    """Memory limit of a simulation."""
-    return attempt * limits_of(wildcards.simulation).megabytes
+    return attempt * bound_of_job(wildcards.simulation).megabytes
 
 
-def joining(wildcards):
-    """Limits for joining the chunks of a simulation."""
-    return joining_limits(run_count(sweep_of(Path(wildcards.joined).stem)))
+def joining_megabytes(wildcards, attempt):
+    """Measured over a million runs: 1.2 kB a run, and as much again for other sweeps."""
+    return attempt * (1000 + run_count(sweep_of(Path(wildcards.joined).stem)) // 400)
+
+
+def step_for(step, wildcards):
+    """A step that runs scenes, by their scheme: an edit of the theory re-runs exact solutions alone."""
+    return f"{step}_exact" if sweep_of(Path(wildcards.simulation).parts[0])["scheme"] == "continuum" else step
 
 
 def chunks_of(joined):

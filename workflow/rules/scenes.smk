@@ -81,7 +81,7 @@ rule draw_sweep:
     log:
         "results/logs/draw_sweep/{sweep}.log",
     wildcard_constraints:
-        sweep="|".join(config["simulations"]),
+        sweep="|".join(CONFIG.simulations),
     params:
         step="draw_sweep",
     message:

@@ -32,7 +32,7 @@ rule simulate:
         runtime=job_minutes,
         mem_mb=job_megabytes,
     params:
-        step="simulate",
+        step=lambda wildcards: step_for("simulate", wildcards),
         simulation=lambda wildcards: wildcards.simulation,
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
     message:
@@ -88,7 +88,7 @@ rule study_grid:
         runtime=job_minutes,
         mem_mb=job_megabytes,
     params:
-        step="study_grid",
+        step=lambda wildcards: step_for("study_grid", wildcards),
         simulation=lambda wildcards: wildcards.simulation,
         sweeps=lambda wildcards: coarser_sweeps(wildcards.simulation),
         measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
@@ -108,12 +108,12 @@ rule join:
         "results/logs/join/{joined}.log",
     priority: 1
     resources:
-        runtime=lambda wildcards, attempt: attempt * joining(wildcards).minutes,
-        mem_mb=lambda wildcards, attempt: attempt * joining(wildcards).megabytes,
+        runtime=lambda wildcards, attempt: attempt * 30,
+        mem_mb=joining_megabytes,
     params:
         step="join",
         kind=lambda wildcards: Path(wildcards.joined).parent.as_posix(),
-        record=lambda wildcards: SIMULATIONS[Path(wildcards.joined).stem]["record"],
+        record=lambda wildcards: SIMULATIONS[Path(wildcards.joined).stem].record,
     message:
         "Putting {wildcards.joined} together"
     run:

@@ -7,8 +7,7 @@ from types import SimpleNamespace
 
 from snakemake.cli import get_argument_parser
 
-from slippulse.configuration.expand import expand as expand_sweep
-from slippulse.configuration.limits import check_affordable
+from slippulse.configuration.problems import format_problems
 from slippulse.data.files import write_text
 from slippulse.data.lock import take
 from slippulse.data.records import Tree, record_path
@@ -53,12 +52,11 @@ def jobs_of(rule):
         settings = {
             key: entry(wildcards) if callable(entry) else entry
             for key, entry in rule.params.items()
-            if key != "step"
         }
         inputs, outputs = (
             tuple(path for item in items for path in filled(item)) for items in (rule.input, rule.output)
         )
-        yield Job(rule.params.step, inputs, outputs, settings)
+        yield Job(settings.pop("step"), inputs, outputs, settings)
 
 
 ORIGINS = origins_of(job for rule in RULES.values() if "step" in rule.params.keys() for job in jobs_of(rule))
@@ -88,10 +86,14 @@ def refuse_unknown_targets():
 
 
 def refuse_expensive_targets(wanted):
-    """With `accuracy` the cost of what is asked for is checked, and not that of the whole paper."""
-    if "promise" in ACCURACY and not config.get("allow_large", False):
-        names = {Path(file).parts[1].removesuffix(".nc") for file in wanted if file.startswith("data/")}
-        check_affordable({f"simulations.{name}": expand_sweep(sweep_of(name)) for name in sorted(names)})
+    """What is asked for takes no more than is allowed, unless it was asked for twice."""
+    names = sorted({Path(file).parts[1].removesuffix(".nc") for file in wanted if file.startswith("data/")})
+    problems = []
+    for name in names if not CONFIG.allow_large else ():
+        if reason := bound_of_job(name).exceeded(SIMULATIONS[name].chunks):
+            problems.append(f"{'scenes' if name in SCENES else 'simulations'}.{name}.{reason}")
+    if problems:
+        raise ConfigError(format_problems(problems))
 
 
 def lock_folder():

@@ -9,14 +9,17 @@ spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1, gamma W^2 = 0.001 to 64 under a 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import Any, TypedDict
 
-from ..model.checks import check_choice, check_number, short_repr
+from ..model.checks import ConfigError, check_choice, check_kind, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.scene import BOUNDARIES, RELEASES, Scene
 from ..model.stability import MARGIN, largest_step
 from ..theory.front_law import front_speed
 from ..theory.pulse import steady_pulse
+from .expand import promise_of, runs
 
 SMALLEST, LARGEST = 1e-4, 0.1
 # At beta/dx = 10 the longest stable step alone errs by 3e-3 in the front speed, at any spacing, which a grid study does
@@ -46,6 +49,15 @@ VELOCITY, VELOCITY_DAMPED = 0.6, 0.6
 FREE_SPEED = 0.25
 
 
+class Settings(TypedDict):
+    """Arguments of a `Scene`."""
+
+    dx: float
+    beta: float
+    max_step: float
+    order: int
+
+
 def settings_for(
     accuracy: float,
     *,
@@ -55,7 +67,7 @@ def settings_for(
     damping_ratio: float = 0.0,
     release: str = "total",
     fields: bool = True,
-) -> dict[str, float | int]:
+) -> Settings:
     """Spacing, step and order that keep a scene's numbers within a largest relative error.
 
     Parameters
@@ -79,8 +91,9 @@ def settings_for(
     check_number("accuracy", accuracy, at_least=SMALLEST, at_most=LARGEST)
     check_choice("boundary", boundary, BOUNDARIES)
     check_choice("release", release, RELEASES)
-    if not isinstance(prestress, Prestress):
-        raise ValueError(f"prestress: {short_repr(prestress)}; allowed: a Prestress")
+    check_kind("prestress", prestress, Prestress)
+    if not isinstance(fields, bool):
+        raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0)
     if damping_ratio > STRONGEST_DAMPING:
@@ -94,10 +107,33 @@ def settings_for(
         spacings = _free(SHARE * accuracy, prestress, damping_ratio, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
     bound = MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2)
-    settings = {"dx": dx, "beta": damping_ratio * dx, "max_step": min(STEP, bound), "order": ORDER}
+    settings: Settings = {"dx": dx, "beta": damping_ratio * dx, "max_step": min(STEP, bound), "order": ORDER}
     # Refuses what is left to refuse.
     Scene(boundary=boundary, prestress=prestress, gamma=gamma, release=release, duration=1.0, **settings)
     return settings
+
+
+def promised(simulation: Mapping) -> Mapping[str, Any]:
+    """A resolved simulation, with the spacing of each run where an accuracy is promised.
+
+    Raises
+    ------
+    ConfigError
+        Where another scheme is asked for: the error of its step is not seen by a grid study.
+    """
+    promise = promise_of(simulation)
+    if promise is not None and simulation["scheme"] != "localised":
+        raise ConfigError(f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given")
+    if promise is None or math.isnan(promise):
+        return simulation
+    spacings = [
+        settings_for(
+            promise, boundary=simulation["boundary"], prestress=run.profile, gamma=run.gamma,
+            damping_ratio=run.damping[1], release=run.release, fields="fields" in simulation["record"],
+        )["dx"]
+        for run in runs(simulation)
+    ]  # fmt: skip
+    return {**simulation, "spacings": spacings}
 
 
 def _over_springs(

@@ -3,53 +3,35 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..data.chunks import runs_of
 from ..model.balance import prestress_balance_position
-from ..model.checks import ConfigError
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
-from .accuracy import ORDER, STEP, settings_for
 
 
-def accuracy_of(config: Mapping) -> dict:
-    """The preset that a configuration names; with `accuracy` another step and order, and the promise."""
-    preset = dict(config["presets"][config["preset"]])
-    promise = config.get("accuracy")
-    if promise is None:
-        return preset
-    return preset | {"max_step": STEP, "order": ORDER, "promise": float(promise)}
+class Run(NamedTuple):
+    """One entry of each list of a simulation: what a run is, but for its spacing."""
+
+    release: str
+    profile: Prestress
+    gamma: float
+    dx: float | None
+    damping: tuple[str, float]
 
 
 def promise_of(simulation: Mapping) -> float | None:
     """The relative uncertainty that a resolved simulation promises: None unasked, NaN with a spacing of its own."""
     promise = simulation["accuracy"].get("promise")
-    own = "dx" in simulation or "fixed" in simulation.get("spacing", {}) or any(simulation.get("beta", []))
+    own = "dx" in simulation or "fixed" in simulation["spacing"] or any(simulation.get("beta", []))
     return math.nan if promise is not None and own else promise
-
-
-def resolve(simulation: Mapping, model: Mapping, accuracy: Mapping, coarser: float = 1.0) -> dict:
-    """A simulation with everything that its data depend on, as builtins: what a rule passes as params.
-
-    Parameters
-    ----------
-    simulation, model : entries of the configuration; the number of chunks is left out, since the runs are the same
-    accuracy : as `accuracy_of` returns it
-    coarser : multiplies the spacing, at fixed beta/dx and step/dx; a fixed spacing stays, and its step is multiplied
-    """
-    resolved = {key: value for key, value in simulation.items() if key != "chunks"}
-    for key, value in model.items():
-        resolved.setdefault(key, [value] if key == "damping_ratio" else value)
-    return resolved | {
-        "accuracy": {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy},
-        "coarser": coarser,
-    }
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
@@ -65,42 +47,20 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
         If a scene is refused, naming the key, the value and what is allowed.
     """
     scenes, samples = [], []
-    promise = promise_of(simulation)
-    if promise is not None:
-        check_scheme("scheme", simulation["scheme"])
-    damping = [("beta", value) for value in simulation.get("beta", [])] or [
-        ("damping_ratio", value) for value in simulation["damping_ratio"]
-    ]
-    releases = [simulation["release"]] if isinstance(simulation["release"], str) else simulation["release"]
-    axes = [
-        releases,
-        *_shapes(simulation),
-        simulation.get("gamma", [0.0]),
-        simulation.get("dx", [None]),
-        damping,
-    ]
-    runs = math.prod(len(axis) for axis in axes)
-    profile_of = cache(partial(_profile, simulation))
-    for run in runs_of(*simulation["chunk"], runs) if "chunk" in simulation else range(runs):
-        release, *shape, gamma, spacing, (kind, value) = _entries(axes, run)
-        profile = profile_of(*shape)
-        if promise is None or math.isnan(promise):
-            dx = _spacing(simulation, profile.width, gamma, spacing)
-        else:
-            dx = _promised_spacing(simulation, promise, profile, gamma, value, release)
-        duration = _duration(simulation["duration"], profile, gamma)
+    for place, run in enumerate(runs(simulation)):
+        kind, value = run.damping
+        dx = _spacing(simulation, run, place)
         beta = value if kind == "beta" else value * dx
-        ratio = beta / dx
         scene = Scene(
             boundary=simulation["boundary"],
-            prestress=profile,
-            duration=duration,
+            prestress=run.profile,
+            duration=_duration(simulation["duration"], run.profile, run.gamma),
             dx=dx,
-            gamma=gamma,
+            gamma=run.gamma,
             beta=beta,
-            release=release,
+            release=run.release,
             scheme=simulation["scheme"],
-            max_step=_step(simulation, gamma * dx**2, ratio),
+            max_step=_step(simulation, run.gamma * dx**2, beta / dx),
             order=simulation["accuracy"]["order"],
             friction_ratio=simulation["friction_ratio"],
             resolved_blocks=simulation["resolved_blocks"],
@@ -110,22 +70,48 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     return scenes, samples
 
 
-def _entries(axes: Sequence[Sequence], run: int) -> list:
+def runs(simulation: Mapping) -> Iterator[Run]:
+    """The runs of a resolved simulation or of a chunk of it, one after the other."""
+    axes, profile_of = _axes(simulation), cache(partial(_profile, simulation))
+    count = run_count(simulation)
+    chunk = simulation.get("chunk")
+    for run in runs_of(chunk[0], chunk[1], count) if chunk else range(count):
+        release, *shape, gamma, dx, damping = _entries(axes, run)
+        yield Run(release, profile_of(*shape), gamma, dx, damping)
+
+
+def run_count(simulation: Mapping) -> int:
+    """How many runs a resolved simulation is the product of."""
+    return math.prod(len(axis) for axis in _axes(simulation))
+
+
+def _axes(simulation: Mapping) -> list[Sequence]:
+    """The lists whose product the runs are."""
+    release, rule = simulation["release"], simulation.get("beyond")
+    if "profiles" in simulation:
+        shapes: list[Sequence] = [range(len(simulation["profiles"]))]
+    else:
+        right = simulation["right"]
+        # One step a level, at the position from which the level holds.
+        steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
+        shapes = [simulation["left"], [None] if right == "same" else right, simulation["width"], steps]
+    kind = "beta" if "beta" in simulation else "damping_ratio"
+    return [
+        [release] if isinstance(release, str) else release,
+        *shapes,
+        simulation.get("gamma", [0.0]),
+        simulation.get("dx", [None]),
+        [(kind, value) for value in simulation[kind]],
+    ]
+
+
+def _entries(axes: Sequence[Sequence], run: int) -> list[Any]:
     """One entry of each list: those of a run of their product, without the runs before it."""
     entries = []
     for axis in reversed(axes):
         run, place = divmod(run, len(axis))
         entries.append(axis[place])
     return entries[::-1]
-
-
-def _shapes(simulation: Mapping) -> list[Sequence]:
-    """The lists whose product its profiles are."""
-    if "profiles" in simulation:
-        return [range(len(simulation["profiles"]))]
-    rights = [None] if simulation["right"] == "same" else simulation["right"]
-    widths = simulation.get("width", [Prestress.width])
-    return [simulation["left"], rights, widths, _steps_beyond(simulation.get("beyond"))]
 
 
 def _profile(simulation: Mapping, *shape) -> Prestress:
@@ -135,59 +121,27 @@ def _profile(simulation: Mapping, *shape) -> Prestress:
     return Prestress(left=left, right=left if right is None else right, width=width, steps=steps)
 
 
-def _steps_beyond(rule: Mapping | None) -> list[tuple]:
-    """One step a level, at the position from which the level holds."""
-    return [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
-
-
-def _spacing(simulation: Mapping, width: float, gamma: float, spacing: float | None) -> float:
-    if spacing is not None:
-        return float(f"{simulation['coarser'] * spacing:.12g}")
-    rule = simulation.get("spacing", {})
+def _spacing(simulation: Mapping, run: Run, place: int) -> float:
+    """Of twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label."""
+    rule, coarser = simulation["spacing"], simulation["coarser"]
+    if "spacings" in simulation:
+        return float(f"{coarser * simulation['spacings'][place]:.12g}")
+    if run.dx is not None:
+        return float(f"{coarser * run.dx:.12g}")
     if "fixed" in rule:
         return float(rule["fixed"])
-    scale = simulation["coarser"] * rule.get("scale", 1.0) * width ** rule.get("width_power", 0.0)
-    if "gamma_power" in rule:
-        scale *= gamma ** rule["gamma_power"]
-    # Twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label.
+    scale = coarser * rule["scale"] * run.profile.width ** rule["width_power"]
+    scale *= run.gamma ** rule["gamma_power"]
     return float(f"{simulation['accuracy']['dx'] * scale:.12g}")
 
 
-def check_scheme(key: str, scheme: str) -> None:
-    """Refuse to promise an accuracy of another scheme: the textbook scheme's error is not seen by a grid study.
-
-    Raises
-    ------
-    ConfigError
-        Naming the scheme.
-    """
-    if scheme != "localised":
-        raise ConfigError(f"{key}: {scheme!r}; allowed: 'localised' where accuracy is given")
-
-
-def _promised_spacing(
-    simulation: Mapping, promise: float, profile: Prestress, gamma: float, ratio: float, release: str
-) -> float:
-    """What the scene's own lengths ask for, whatever its rule for the preset's spacing."""
-    settings = settings_for(
-        promise,
-        boundary=simulation["boundary"],
-        prestress=profile,
-        gamma=gamma,
-        damping_ratio=ratio,
-        release=release,
-        fields="fields" in simulation["record"],
-    )
-    return float(f"{simulation['coarser'] * settings['dx']:.12g}")
-
-
 def _step(simulation: Mapping, gamma_dx2: float, ratio: float) -> float:
-    """The simulation's own step, or the preset's, or the safe share of the bound where strong damping allows less."""
+    """The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less."""
     bound = largest_step(simulation["scheme"], simulation["accuracy"]["order"], ratio, gamma_dx2)
     step = simulation.get("max_step", min(simulation["accuracy"]["max_step"], MARGIN * bound))
     if "promise" in simulation["accuracy"]:
         step = min(step, simulation["accuracy"]["max_step"])
-    return float(step * simulation["coarser"] if "fixed" in simulation.get("spacing", {}) else step)
+    return float(step * simulation["coarser"] if "fixed" in simulation["spacing"] else step)
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
@@ -207,7 +161,7 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
 def _samples(rule: Mapping | None, scene: Scene) -> Samples | None:
     if rule is None:
         return None
-    positions = (
-        np.linspace(-rule["extent"], rule["extent"], rule["positions"]) if rule["positions"] > 1 else [0.0]
-    )
+    positions = np.zeros(1)
+    if rule["positions"] > 1:
+        positions = np.linspace(-rule["extent"], rule["extent"], rule["positions"])
     return Samples(times=np.linspace(0.0, scene.duration, rule["times"]), positions=positions)

@@ -1,85 +1,90 @@
-"""The configuration as Snakemake merged it, brought into its plain form and checked."""
+"""The configuration: what is shipped, the overlays and the command line, merged and checked."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
+from pydantic import ValidationError
+
+from ..model.checks import ConfigError, nearest
+from .check import simulation_problems
 from .overlay import read_scalar
-from .validate import validate
+from .problems import dotted, format_problems, refused
+from .schema import Configuration
 
 # What make and the command line may say for a switch.
 SWITCHES = dict.fromkeys(("1", "true", "yes", "on"), True) | dict.fromkeys(("0", "false", "no", "off"), False)
 
 
 def read_config(
-    config: dict, shipped: Mapping, command_line: Mapping | None = None, every_run: bool = True
-) -> None:
-    """Bring a merged configuration into its plain form, in place, and refuse what is wrong with it.
+    shipped: Mapping,
+    overlays: Sequence[Mapping] = (),
+    command_line: Mapping | None = None,
+    every_run: bool = True,
+) -> Configuration:
+    """The configuration, checked.
 
     Parameters
     ----------
-    config : config/config.yaml with the overlays and the command line merged into it; where an overlay says null, the
-        key is removed
-    shipped : the configuration without overlays
+    shipped : config/config.yaml
+    overlays : what differs, one after the other; null removes a key
     command_line : what was given by --config, in which Snakemake leaves nested numbers text
-    every_run : see `validate`
+    every_run : whether the scenes of all simulations are checked too
 
     Raises
     ------
     ConfigError
         One line a problem: the key, the value, what is allowed.
     """
-    merged = merge(_plain(config), _typed(_plain(command_line or {})))
-    removed = list(_nulls(merged))
-    merged = _without_nulls(merged)
-    validate(merged, _plain(shipped), every_run, removed)
-    config.clear()
-    config.update(merged)
+    merged = dict(shipped)
+    for overlay in (*overlays, _typed(command_line or {})):
+        merged = merge(merged, overlay)
+    sweeps = merged.get("simulations")
+    for name in shipped["simulations"] if isinstance(sweeps, Mapping) else ():
+        if name not in sweeps:
+            raise ConfigError(
+                f"simulations.{name}: null; allowed: what is shipped stays, since figures and verdicts need it"
+            )
+    try:
+        config = Configuration.model_validate(merged)
+    except ValidationError as error:
+        raise ConfigError(format_problems(refused(error, merged))) from None
+    if every_run and (problems := simulation_problems(config)):
+        raise ConfigError(format_problems(problems))
+    return config
 
 
-def merge(base: Mapping, overlay: Mapping) -> dict:
-    """Mappings merged, all else replaced, as Snakemake merges configurations."""
+def merge(base: Mapping, overlay: Mapping, place: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Mappings merged, all else replaced; null removes a key.
+
+    Raises
+    ------
+    ConfigError
+        Where null is said of a misspelt key.
+    """
     merged = dict(base)
     for key, value in overlay.items():
-        both = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
-        merged[key] = merge(merged[key], value) if both else value
+        if value is None:
+            if key not in merged and (hint := nearest(key, merged)):
+                raise ConfigError(
+                    f"{dotted((*place, key))}: null{hint}; allowed: null for a key that there is"
+                )
+            merged.pop(key, None)
+        elif isinstance(value, Mapping):
+            inside = merged.get(key)
+            merged[key] = merge(inside if isinstance(inside, Mapping) else {}, value, (*place, key))
+        else:
+            merged[key] = value
     return merged
 
 
-def _plain(value):
-    """Dicts with text as keys, and lists."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    return [_plain(entry) for entry in value] if isinstance(value, list | tuple) else value
-
-
-def _typed(values: Mapping) -> dict:
+def _typed(value: Any, place: str = "") -> Any:
     """Values of the command line, with what is text there read as in a file."""
-
-    def typed(value, place):
-        if isinstance(value, Mapping):
-            return {key: typed(entry, f"{place}.{key}") for key, entry in value.items()}
-        if isinstance(value, list):
-            return [typed(entry, place) for entry in value]
-        return read_scalar(value, place) if isinstance(value, str) else value
-
-    switches = {
-        key: SWITCHES.get(str(value).lower(), value) for key, value in values.items() if key == "allow_large"
-    }
-    return {key: typed(value, key) for key, value in values.items() if key not in switches} | switches
-
-
-def _nulls(value: Mapping, place: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
-    for key, entry in value.items():
-        if entry is None:
-            yield (*place, key)
-        elif isinstance(entry, Mapping):
-            yield from _nulls(entry, (*place, key))
-
-
-def _without_nulls(value: Mapping) -> dict:
-    return {
-        key: _without_nulls(entry) if isinstance(entry, Mapping) else entry
-        for key, entry in value.items()
-        if entry is not None
-    }
+    if isinstance(value, Mapping):
+        return {key: _typed(entry, f"{place}.{key}".lstrip(".")) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_typed(entry, place) for entry in value]
+    if place == "allow_large":
+        return SWITCHES.get(str(value).lower(), value)
+    return read_scalar(value, place) if isinstance(value, str) else value

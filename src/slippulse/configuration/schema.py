@@ -1,162 +1,207 @@
-"""Every key of the configuration, once: type, unit, range, default, meaning, origin.
+"""Every key of the configuration, once: type, range, default, meaning with unit and origin.
 
-From these come the refusals (`refusals.schema_problems`), and through `python -m slippulse.configuration.describe` the
-JSON Schema in workflow/schemas and the tables of config/README.md.
+From these come the refusals (`problems`), and through `python -m slippulse.configuration.describe` the JSON Schema in
+workflow/schemas and the tables of config/README.md.
 """
 
-from typing import Annotated
+from __future__ import annotations
 
-from pydantic import Field
+from typing import Annotated, Self
 
-from ..model.scene import RELEASES, SCHEMES
-from .accuracy import LARGEST, SMALLEST
+from pydantic import Field, model_validator
+
+from ..measure.quantities import QUANTITIES
+from ..model.checks import nearest, short_repr
 from .keys import (
-    LENGTH,
-    TIME,
-    Allowed,
     Block,
     Count,
+    Distinct,
+    Fraction,
     Name,
     NonNegative,
-    Number,
-    Order,
     Positive,
-    Positives,
-    Sentence,
-    Share,
+    Release,
+    Scheme,
     Spacing,
-    Switch,
-    choice,
-    different,
-    key,
-    number,
+    allowed,
 )
-from .schema_simulations import NamedScene, Simulation
-from .schema_studies import Studies
+from .simulations import NamedScene, Simulation
 
 
 class Preset(Block):
     """One trade of speed for accuracy."""
 
-    dx: Spacing = key("block spacing where a simulation does not scale it", LENGTH)
-    max_step: Positive = key(
-        "largest time step; strong damping may need less, and releases and sticks lie within a step", "dx"
+    dx: Spacing = Field(description="block spacing where a simulation does not scale it [H]")
+    max_step: Positive = Field(description="largest time step; strong damping may need less [dx]")
+    order: int = Field(ge=3, le=8, description="order of the Taylor step")
+    coarser: Annotated[Distinct[Annotated[float, Field(gt=1.0)]], Field(min_length=2, max_length=2)] = Field(
+        description="factors of the spacing in the grid study behind every uncertainty",
+        json_schema_extra=allowed("two different factors > 1"),
     )
-    order: Order = key("order of the Taylor step")
-    coarser: different(number(above=1.0), "two different factors > 1", 2, 2) = key(
-        "factors of the spacing in the grid study behind every uncertainty"
-    )
-    whole: Switch = key(
-        "whether studies, ledger and report are made by default; the target `everything` always makes them",
-        otherwise="true",
-    )
+    whole: bool = Field(True, description="whether studies, ledger and report are made without `everything`")
 
 
 class Model(Block):
     """What holds for every simulation that does not say otherwise."""
 
-    damping_ratio: NonNegative = key("beta/dx", "", "paper (beta = 1e-3), figure (dx = 0.01)")
-    release: choice(RELEASES) = key(
-        "whether the stress that is compared with the threshold includes the damping force (`total`) or not",
-        "",
-        "figure; the paper prints `elastic`",
+    damping_ratio: NonNegative = Field(description="beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
+    release: Release = Field(
+        description="whether stress at release has the damping force (`total`) or not (figure; `elastic` is printed)"
     )
-    scheme: choice(SCHEMES) = key(
-        "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme; `continuum`: the exact"
-        " solution of the continuum limit, to which `max_step` and `order` mean nothing"
+    scheme: Scheme = Field(
+        description="`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
+        " `continuum`: the exact solution of the continuum limit, to which `max_step` and `order` mean nothing"
     )
-    friction_ratio: NonNegative = key(
-        "mu_k/(mu_s - mu_k); a block would slide backwards at stress -(1 + 2 friction_ratio), and the run says so"
+    friction_ratio: NonNegative = Field(
+        description="mu_k/(mu_s - mu_k): beyond stress -(1 + 2 friction_ratio) blocks slide back: flagged"
     )
-    resolved_blocks: Count = key(
-        "a pulse of fewer blocks (under a stress boundary: a Gaussian of fewer) is flagged as unresolved",
-        "blocks",
+    resolved_blocks: Count = Field(
+        description="a pulse of fewer blocks (under a stress boundary: a Gaussian of fewer) is flagged as unresolved"
     )
 
 
 class Measure(Block):
     """How numbers are read off a run."""
 
-    share: Share = key(
-        "under a stress boundary T_trans is when the left front has covered this share of |x_minus|; the arrest"
-        " itself never comes in the continuum"
+    share: Fraction = Field(
+        description="under a stress boundary T_trans is when the left front has covered this fraction of |x_minus|; the"
+        " arrest itself never comes in the continuum"
     )
-    front_window: number(at_least=0.05, below=1.0) = key(
-        "a front speed is a straight line through this last share of its path"
+    front_window: float = Field(
+        ge=0.05, lt=1.0, description="a front speed is a straight line through this last fraction of its path"
     )
-    steady_tolerance: Share = key(
-        "a largest velocity that changes less than this over the last third is steady"
+    steady_tolerance: Fraction = Field(
+        description="a largest velocity changing less over the last third is steady"
     )
-    trailing_times: Positives = key("when the position of the trailing edge is tabulated", TIME, "figure")
-    still: Share = key("slower than this share of the largest slip velocity counts as at rest")
+    trailing_times: Distinct[Positive] = Field(
+        description="when the trailing edge is tabulated [H/c] (figure)"
+    )
+    still: Fraction = Field(description="slower than this fraction of the largest slip velocity is at rest")
 
 
 class Sketch(Block):
     """The layer of figure 1."""
 
-    thickness: number(at_least=0.01, at_most=100.0) = key("of the layer in the sketch", LENGTH)
-    strip_width: number(at_least=0.01, at_most=2.0) = key("of the integrated strip in the sketch", LENGTH)
+    thickness: float = Field(ge=0.01, le=100.0, description="of the layer in the sketch [H]")
+    strip_width: float = Field(ge=0.01, le=2.0, description="of the integrated strip in the sketch [H]")
 
 
-StiffnessRatio = number(at_least=1e-6, at_most=1e6)
+Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
 class Steps(Block):
     """Numbers in steps of equal ratio."""
 
-    from_: StiffnessRatio = key("the first", alias="from")
-    to: StiffnessRatio = key("the last, above the first")
-    count: number(at_least=2, at_most=10_000, whole=True) = key("how many")
+    from_: Ratio = Field(alias="from", description="the first")
+    to: Ratio = Field(description="the last, above the first")
+    count: int = Field(ge=2, le=10_000, description="how many")
+
+    @model_validator(mode="after")
+    def _upwards(self) -> Self:
+        if self.to <= self.from_:
+            raise ValueError(f"to: {self.to}; allowed: > from = {self.from_}")
+        return self
 
 
 class DamageZone(Block):
     """The curves of figure 7."""
 
-    stiffness_ratios: Steps = key("G/G_r")
-    thickness_ratios: different(number(at_least=1e-6, at_most=1e6)) = key("H_r/H, one curve each")
+    stiffness_ratios: Steps = Field(description="G/G_r")
+    thickness_ratios: Distinct[Ratio] = Field(description="H_r/H, one curve each")
 
 
 class Figures(Block):
     """Settings of figures that draw no simulation."""
 
-    fig01_system_sketch: Sketch = key("the sketch of the system")
-    fig07_damage_zone: DamageZone = key("the damage zone")
+    fig01_system_sketch: Sketch = Field(description="the sketch of the system")
+    fig07_damage_zone: DamageZone = Field(description="the damage zone")
 
 
 class Claim(Block):
     """When a claim counts as reproduced, in place of what stands with it in manuscript/claims.yaml."""
 
-    tolerance: NonNegative = key("what counts as agreement, by kind", otherwise="as with the claim")
-    tolerance_exponent: Positive = key(
-        "of an approximate claim: largest distance of the exponent from 1", otherwise="as with the claim"
+    tolerance: NonNegative | None = Field(None, description="what counts as agreement, by kind")
+    tolerance_exponent: Positive | None = Field(
+        None, description="of an approximate claim: largest distance of the exponent from 1"
     )
 
 
 class Reading(Block):
     """A number read off a published figure."""
 
-    simulation: Annotated[str, Allowed("the name of a simulation")] = key("whose run stands beside it")
-    quantity: Annotated[str, Allowed("a column of the measured table")] = key("which of its measured numbers")
-    statement: Sentence = key("what was read off", origin="figure")
-    value: Number = key("the number", origin="figure")
-    reading_error: Positive = key("of reading by pixel")
+    simulation: str = Field(description="name of the simulation whose run is compared with it")
+    quantity: str = Field(description="which of its measured numbers: a column of the measured table")
+    statement: str = Field(min_length=1, description="what was read off (figure)")
+    value: float = Field(description="the number (figure)")
+    reading_error: Positive = Field(description="of reading by pixel")
 
 
 class Configuration(Block):
     """The whole configuration."""
 
-    preset: Annotated[str, Allowed("the name of a preset")] = key("which of `presets` is used")
-    presets: Annotated[dict[str, Preset], Field(min_length=1)] = key("trades of speed for accuracy, by name")
-    accuracy: number(at_least=SMALLEST, at_most=LARGEST) = key(
-        "largest relative numerical error of measured numbers, instead of a preset's spacing and step",
-        otherwise="none",
+    preset: str = Field(
+        description="which of `presets` is used", json_schema_extra=allowed("the name of a preset")
     )
-    allow_large: Switch = key("whether simulations above the limits of cost run", otherwise="false")
-    model: Model = key("for every simulation that does not say otherwise")
-    simulations: dict[Name, Simulation] = key("sweeps by name, each the product of its lists")
-    scenes: dict[Name, NamedScene] = key("single runs by name", otherwise="none")
-    measure: Measure = key("how numbers are read off a run")
-    figures: Figures = key("of figures that draw no simulation")
-    claims: dict[str, Claim] = key("other tolerances than those of manuscript/claims.yaml, by claim")
-    published: dict[str, Reading] = key("numbers read off a published figure, by name")
-    studies: Studies = key("studies of the solver itself")
+    presets: dict[str, Preset] = Field(min_length=1, description="trades of speed for accuracy, by name")
+    accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = Field(
+        None,
+        description="largest relative numerical error of measured numbers, instead of a preset's spacing and step",
+    )
+    allow_large: bool = Field(False, description="whether simulations above the limits of cost run")
+    model: Model = Field(description="for every simulation that does not say otherwise")
+    simulations: dict[Name, Simulation] = Field(description="sweeps by name, each the product of its lists")
+    scenes: dict[Name, NamedScene] = Field({}, description="single runs by name")
+    measure: Measure = Field(description="how numbers are read off a run")
+    figures: Figures = Field(description="of figures that draw no simulation")
+    claims: dict[str, Claim] = Field(
+        {}, description="other tolerances than those of manuscript/claims.yaml, by claim"
+    )
+    published: dict[str, Reading] = Field(description="numbers read off a published figure, by name")
+    studies: Distinct[Name] | None = Field(
+        None,
+        description="which studies run; by default all modules of src/slippulse/studies",
+        json_schema_extra=allowed("a list of different names, at least one"),
+    )
+
+    @model_validator(mode="after")
+    def _names(self) -> Self:
+        if self.preset not in self.presets:
+            raise ValueError(
+                f"preset: {short_repr(self.preset)}{nearest(self.preset, self.presets)};"
+                f" allowed: {', '.join(self.presets)}"
+            )
+        if self.accuracy is not None and self.model.scheme != "localised":
+            raise ValueError(
+                f"model.scheme: {self.model.scheme!r}; allowed: 'localised' where accuracy is given"
+            )
+        for name in self.scenes:
+            if name in self.simulations:
+                raise ValueError(f"scenes.{name}: also the name of a simulation; allowed: another name")
+            if name == "index" or name.removesuffix("_numbers") in {*self.scenes} - {name}:
+                raise ValueError(
+                    f"scenes.{name}: results/scenes has another file of that name; allowed: neither index nor"
+                    " SCENE_numbers"
+                )
+        for name, reading in self.published.items():
+            self._read_off(f"published.{name}", reading)
+        return self
+
+    def _read_off(self, key: str, reading: Reading) -> None:
+        """Refuse a reading of a simulation that there is not, or of what it does not measure."""
+        name, quantity = reading.simulation, reading.quantity
+        if name not in self.simulations:
+            raise ValueError(
+                f"{key}.simulation: {short_repr(name)}{nearest(name, self.simulations)};"
+                " allowed: a name under simulations"
+            )
+        known = QUANTITIES | {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
+        if quantity not in known:
+            raise ValueError(
+                f"{key}.quantity: {short_repr(quantity)}{nearest(quantity, known)};"
+                " allowed: a column of the measured table"
+            )
+        if known[quantity] not in ("fronts", *self.simulations[name].record):
+            raise ValueError(
+                f"{key}.quantity: {short_repr(quantity)}; allowed: what simulations.{name} records; this takes"
+                f" record: [fronts, {known[quantity]}]"
+            )

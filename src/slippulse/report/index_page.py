@@ -11,10 +11,10 @@ from pathlib import Path
 from PIL import Image
 
 from ..claims.reading import FAILURES_FIRST, Ledger
-from ..configuration.parameters import parameters
 from ..data.prose import fill
 from .claims_page import shown
 from .html import page
+from .parameters import parameters
 from .texts import read_captions, read_text
 
 FILES_OF_RESULTS = {

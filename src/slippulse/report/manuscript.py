@@ -13,12 +13,12 @@ import pandas as pd
 
 from ..claims.entries import coverage, positions
 from ..claims.reading import Ledger
-from ..configuration.parameters import parameters
 from ..data.alterations import changes
 from ..data.numerals import FILTERS, short
 from ..data.prose import fill
 from . import tables
 from .gallery import Gallery
+from .parameters import parameters
 from .texts import read_captions, read_errata, read_text
 
 SOURCE = "replication.md"

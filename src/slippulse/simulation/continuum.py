@@ -3,47 +3,35 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
 
 from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
+from ..solver.run import LatticeRun
 from ..theory.profile import nucleations
 from ..theory.rupture import Limit, Rupture
 
 # Positions at rest that are kept beyond the outermost released one, as on the lattice.
 MARGIN = 16
-# The acceleration at the end is the slope of slip velocity over this share of the duration.
+# The acceleration at the end is the slope of slip velocity over this fraction of the duration.
 SHORTLY = 1e-5
 # Positions, at some 300 bytes each.
 MOST_POSITIONS = 10**6
 
 
-@dataclass
-class ContinuumRun:
-    """What the exact solution has for one scene; positions are multiples of dx, left to right."""
-
-    x: np.ndarray
-    prestress: np.ndarray
-    release_time: np.ndarray
-    stick_time: np.ndarray
-    slip: np.ndarray
-    slip_velocity: np.ndarray
-    slip_acceleration: np.ndarray
-    sample_slip: np.ndarray | None
-    sample_velocity: np.ndarray | None
-    numbers: dict
-
-
-def solve_scene(scene: Scene, samples: Samples | None = None) -> ContinuumRun:
+def solve_scene(
+    scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
+) -> LatticeRun:
     """Solve a scene exactly in the limit dx -> 0 at its damping ratio; dx is where it is sampled.
 
     Parameters
     ----------
     scene : with scheme "continuum"
     samples : where and when slip and slip velocity are wanted on the way
+    progress : called once, before it begins
 
     Where the construction ends before the scene does, what it cannot tell is NaN and the numbers say where and why
     (``limit_position``, ``limit_time``, ``limit_reason``).
@@ -53,6 +41,8 @@ def solve_scene(scene: Scene, samples: Samples | None = None) -> ContinuumRun:
     ValueError
         If `Rupture` refuses the scene, or dx is too small for its fronts.
     """
+    if progress is not None:
+        progress(0.0)
     if not nucleations(scene.prestress):
         return _at_rest(scene, samples)
     gamma = scene.gamma if scene.boundary == "displacement" else 0.0
@@ -63,25 +53,23 @@ def solve_scene(scene: Scene, samples: Samples | None = None) -> ContinuumRun:
     shortly = SHORTLY * scene.duration
     before = rupture.slip_velocity(x, scene.duration - shortly)
     acceleration = np.where(velocity > 0.0, (velocity - before) / shortly, 0.0)
-    sampled = {"slip": None, "slip_velocity": None}
+    sampled: dict[str, np.ndarray] = {}
     if samples is not None:
-        sampled = rupture.map(samples.times, samples.positions, tuple(sampled))
+        sampled = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
     numbers = _numbers(scene, release, stick, velocity, rupture.first_stick, rupture.limit)
-    return ContinuumRun(
-        x, scene.prestress(x), release, stick, slip, velocity, acceleration, sampled["slip"],
-        sampled["slip_velocity"], numbers,
+    return LatticeRun(
+        x, scene.prestress(x), release, stick, slip, velocity, acceleration, sampled.get("slip"),
+        sampled.get("slip_velocity"), numbers,
     )  # fmt: skip
 
 
-def _at_rest(scene: Scene, samples: Samples | None) -> ContinuumRun:
+def _at_rest(scene: Scene, samples: Samples | None) -> LatticeRun:
     """The run of a scene that releases nothing."""
     x = np.arange(-MARGIN, MARGIN + 1) * scene.dx
-    never, none = np.full((2, x.size), np.nan), np.zeros((3, x.size))
-    sampled = (None, None)
-    if samples is not None:
-        sampled = np.zeros((2, samples.times.size, samples.positions.size))
-    numbers = _numbers(scene, *never, none[0], None, None)
-    return ContinuumRun(x, scene.prestress(x), *never, *none, *sampled, numbers)
+    never, none = np.full(x.size, np.nan), np.zeros(x.size)
+    sampled = None if samples is None else np.zeros((samples.times.size, samples.positions.size))
+    numbers = _numbers(scene, never, never, none, None, None)
+    return LatticeRun(x, scene.prestress(x), never, never, none, none, none, sampled, sampled, numbers)
 
 
 def _numbers(

@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from threading import Event
-from warnings import warn
 
 import xarray as xr
 
-from ..configuration.cost import expected_seconds, overrun_watch
-from ..data.points import combine
 from ..model.checks import check_number, short_repr
 from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
-from .simulate import simulate
-
-
-class Stopped(Exception):
-    """Another scene of the sweep failed, or the user stopped it."""
+from .pool import run_all
+from .simulate import run_or_solve
 
 
 def run_sweep(
@@ -28,7 +20,7 @@ def run_sweep(
     threads: int = 1,
     progress: Callable[[float, int], None] | None = None,
 ) -> xr.Dataset:
-    """Run scenes in a pool of threads, the most expensive first.
+    """Run scenes in a pool of threads.
 
     Parameters
     ----------
@@ -37,13 +29,12 @@ def run_sweep(
     record : what is kept per block: "fronts" (release and stick times), "fields" (slip, velocity, acceleration at
         the end); "samples" (the recorded samples)
     threads : how many run at once; the result does not depend on it
-    progress : called with (done, all) after each scene; of a single one, with the share done as it goes
+    progress : called with (done, all) after each scene; of a single one, with the fraction done as it goes
 
     Returns
     -------
     Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous ragged
-    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position). A run that takes ten
-    times its estimate is warned of, and goes on.
+    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
 
     Raises
     ------
@@ -52,35 +43,7 @@ def run_sweep(
     """
     samples = [None] * len(scenes) if samples is None and isinstance(scenes, Sequence) else samples
     _check_arguments(scenes, samples, record, threads, progress)
-    results: list[xr.Dataset | None] = [None] * len(scenes)
-    order = sorted(range(len(scenes)), key=lambda i: -expected_seconds(scenes[i]))
-
-    stopped = Event()
-
-    def run(i: int) -> xr.Dataset:
-        watch = overrun_watch(scenes[i], lambda line: warn(line, stacklevel=2))
-
-        def check(share: float) -> None:
-            if stopped.is_set():
-                raise Stopped
-            if progress is not None and len(scenes) == 1:
-                progress(share, 1)
-            watch(share)
-
-        return simulate(scenes[i], samples[i], check)
-
-    with ThreadPoolExecutor(max_workers=int(threads)) as pool:
-        futures = {pool.submit(run, i): i for i in order}
-        try:
-            for done, future in enumerate(as_completed(futures), start=1):
-                results[futures[future]] = future.result()
-                if progress is not None:
-                    progress(done, len(scenes))
-        except BaseException:
-            stopped.set()
-            pool.shutdown(cancel_futures=True)
-            raise
-    return combine([result for result in results if result is not None], record)
+    return run_all(run_or_solve, scenes, samples, record, int(threads), progress)
 
 
 def _check_arguments(

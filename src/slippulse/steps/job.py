@@ -25,6 +25,8 @@ from threading import Lock, Thread
 from ..data.origin import configured_by
 from ..data.records import Origin, write_record
 
+from .progress import lines
+
 
 class JobFailed(Exception):
     """A job that has said why."""
@@ -95,7 +97,9 @@ def run_job(
     began = time.monotonic()
     with logged(log):
         with configured_by(origin.configuration):
-            import_module(f"slippulse.steps.{origin.step}").run(files, outputs, settings)
+            import_module(f"slippulse.steps.{origin.step}").run(
+                files, outputs, {**settings, "progress": lines(name)}
+            )
         seconds = time.monotonic() - began
         write_record(origin, outputs, used(seconds))
     if not sys.stderr.isatty():

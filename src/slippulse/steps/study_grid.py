@@ -7,7 +7,7 @@ has every number that the whole simulation's may have.
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import pandas as pd
 
@@ -17,26 +17,32 @@ from ..measure.promise import judged, summary
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import grid_tables
 from ..predict.measured import measured_table
-from ..simulation.sweep import run_sweep
+from ..simulation.pool import run_all
+from ..solver.run import run_scene
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     """Files: finest. Outputs: uncertainties, coarser. Settings: simulation, sweeps (by factor), measure, threads."""
+    study(run_scene, files, outputs, settings)
+
+
+def study(solve: Callable, files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+    """The same by a solver of one scene."""
     name, sweeps, measure = settings["simulation"], settings["sweeps"], settings["measure"]
     tables = {}
     for factor in sorted(sweeps):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
         scenes, samples = expand(sweeps[factor])
-        data = run_sweep(scenes, samples, sweeps[factor]["record"], settings["threads"])
+        data = run_all(solve, scenes, samples, sweeps[factor]["record"], settings["threads"])
         tables[factor] = measured_table(data, measure)
     # A column of fractions may happen to have none in a chunk.
     part = any("chunk" in sweep for sweep in sweeps.values())
     measured = load_table(files["finest"], whole=PARAMETERS if part else None)
-    study = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
+    found = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
     promise = promise_of(next(iter(sweeps.values())))
     if promise is not None:
-        study = judged(study, measured, promise, measure["share"])
-        sys.stderr.write(f"  {name}: {summary(study, promise)}\n")
-    save_table(study, outputs["uncertainties"])
+        found = judged(found, measured, promise, measure["share"])
+        sys.stderr.write(f"  {name}: {summary(found, promise)}\n")
+    save_table(found, outputs["uncertainties"])
     coarser = [table.assign(factor=factor) for factor, table in tables.items()]
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
