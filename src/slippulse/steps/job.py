@@ -24,7 +24,6 @@ from threading import Lock, Thread
 
 from ..data.origin import configured_by
 from ..data.records import Origin, write_record
-
 from .progress import lines
 
 
