@@ -247,14 +247,16 @@ class Part:
     def _last_fast(self, a: int, b: int) -> tuple[float, float]:
         """The end of the part of the edge that runs faster than the waves at grid point a, towards b."""
         fast, fast_time, other = self.edge.x[a], self.edge.stick[a], self.edge.x[b]
-        for _ in range(24):
-            middle = np.array([0.5 * (fast + other)])
-            here = self._edge_at(middle, self.scan(middle))
-            (x,), (time,) = here.x, here.stick
-            if np.isfinite(time) and abs(time - fast_time) < abs(x - fast) and not self._slow(here)[0]:
-                fast, fast_time = x, time
-            else:
-                other = x
+        for _ in range(5):
+            x = np.linspace(fast, other, 34)[1:-1]
+            here = self._edge_at(x, self.scan(x))
+            runs = np.abs(here.stick - fast_time) < np.abs(x - fast)
+            # How many from the fast end on.
+            n = int(np.argmin(np.append(runs & ~self._slow(here), False)))
+            if n > 0:
+                fast, fast_time = x[n - 1], here.stick[n - 1]
+            if n < x.size:
+                other = x[n]
         return float(fast), float(fast_time)
 
     def first_stick(self) -> tuple[float, float] | None:
