@@ -37,17 +37,20 @@ STUDIED = {
     if re.search(r"^NEEDS = ", path.read_text(encoding="utf-8"), re.M)
 }
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")}
-# Every rule but those that only name targets.
+# Every rule but those that only name targets; the exact scheme takes other steps of the same rules.
 NO_RULES = {
     "__init__",
     "inputs",
     "job",
     "libraries",
     "origins",
+    "progress",
     "reach",
     "targets",
     "draw_figure",
     "run_study",
+    "simulate_exact",
+    "study_grid_exact",
 }
 RULES = (STEPS - NO_RULES) | DRAWN | set(STUDIED)
 # Pages, by the rule that writes them: the template that each begins with.

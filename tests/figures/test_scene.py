@@ -55,7 +55,12 @@ def drawn(project, tmp_path_factory):
 
     def sweep(scene, coarser):
         model = Model.model_validate(config["model"])
-        block = resolve(scene_simulation(NamedScene.model_validate(scene), model), model, accuracy, coarser)
+        block = resolve(
+            scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model),
+            model,
+            accuracy,
+            coarser,
+        )
         scenes, samples = expand(block)
         return run_sweep(scenes, samples, block["record"])
 

@@ -15,10 +15,10 @@ rule write_report:
                 "statements.yaml",
             )
         ],
+        **inputs_of(declared("steps.write_report", "NEEDS")),
         source="manuscript/replication.md",
         claims="results/claims.json",
         findings="results/findings.json",
-        **inputs_of(declared("steps.write_report", "NEEDS")),
         figures=[f"results/figures/{name}.pdf" for name in NEEDS],
         pictures=[f"results/figures/{name}.png" for name in NEEDS],
         shipped="config/config.yaml",

@@ -49,10 +49,7 @@ def jobs_of(rule):
             found = item(wildcards) if callable(item) else item
             return [str(path).format(**values) for path in ([found] if isinstance(found, str) else found)]
 
-        settings = {
-            key: entry(wildcards) if callable(entry) else entry
-            for key, entry in rule.params.items()
-        }
+        settings = {key: entry(wildcards) if callable(entry) else entry for key, entry in rule.params.items()}
         inputs, outputs = (
             tuple(path for item in items for path in filled(item)) for items in (rule.input, rule.output)
         )

@@ -41,8 +41,8 @@ def read_config(
     for overlay in (*overlays, _typed(command_line or {})):
         merged = merge(merged, overlay)
     sweeps = merged.get("simulations")
-    for name in shipped["simulations"] if isinstance(sweeps, Mapping) else ():
-        if name not in sweeps:
+    for name in shipped["simulations"]:
+        if isinstance(sweeps, Mapping) and name not in sweeps:
             raise ConfigError(
                 f"simulations.{name}: null; allowed: what is shipped stays, since figures and verdicts need it"
             )
