@@ -20,10 +20,15 @@ LONG = (
     "sp.simulate(sp.Scene('displacement', sp.Prestress(0.5, 0.5), 1.0, 0.1, gamma=0.65))\n"
     "sys.stdout.write('started\\n'); sys.stdout.flush()\n"
 )
-RUNS = {"one": "sp.simulate(scene)\n", "sweep": "sp.run_sweep([scene] * 3, threads=2)\n"}
+RUNS = {
+    "one": "sp.simulate(scene)\n",
+    "sweep": "sp.run_sweep([scene] * 3, threads=2)\n",
+    "exact": "profile = sp.Prestress(0.999999, 0.999999, steps=((-23.86, 0.3),))\n"
+    "sp.run_sweep([sp.Scene('stress', profile, 40.0, 0.1, scheme='continuum')] * 3, threads=2)\n",
+}
 
 
-@pytest.mark.parametrize("kind", ["one", pytest.param("sweep", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", ["one", "exact", pytest.param("sweep", marks=pytest.mark.slow)])
 def test_an_interrupt_stops_a_run_within_a_second(kind):
     """Two are allowed here, since the machine may be busy."""
     process = subprocess.Popen(

@@ -1,0 +1,55 @@
+"""What a run takes is bounded before it runs: random scenes over the whole documented range, edges included."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from reference.wide_scenes import wide_scene
+
+import slippulse as sp
+from slippulse.configuration.bound import bound_of
+
+# Undamped blocks that slip again and again cut steps short.
+SMALL_FACTOR = 3.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_bound_is_not_exceeded_by_more_than_a_small_factor(seed):
+    chance, tried = random.Random(seed), 0
+    for scene in (wide_scene(chance) for _ in range(60)):
+        bound = bound_of(scene).block_updates
+        if bound > 2e7:
+            continue
+        try:
+            run = sp.simulate(scene)
+        except sp.UnstableRun:
+            continue
+        tried += 1
+        assert run.attrs["block_updates"] < SMALL_FACTOR * bound, scene
+        assert run.nbytes < bound_of(scene).bytes, scene
+    assert tried > 5
+
+
+def test_slipping_again_and_again_is_bounded():
+    """Undamped, at pre-stress 0, of a nucleation about as wide as a block: 40,000 blocks are released again."""
+    scene = sp.Scene("displacement", sp.Prestress(0.0, 0.0, 0.76), 400.0, 0.76, gamma=8e-8, order=8, max_step=1.0)
+    run = sp.simulate(scene)
+    assert run.attrs["re_releases"] > 10_000
+    assert run.attrs["block_updates"] < SMALL_FACTOR * bound_of(scene).block_updates
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"prestress": sp.Prestress(0.9999, 0.9999), "beta": 0.01, "duration": 200.0},
+        {"prestress": sp.Prestress(0.5, 0.5, 1e9)},
+        {"beta": 100.0, "max_step": 1e-6, "duration": 2e3},
+    ],
+    ids=["level near 1", "wide nucleation", "strong damping"],
+)
+def test_fronts_that_outrun_the_waves_are_refused(change):
+    usual = {"boundary": "stress", "prestress": sp.Prestress(0.5, 0.5), "duration": 20.0, "dx": 0.01}
+    usual |= {"order": 8, "max_step": 0.3}
+    assert not bound_of(sp.Scene(**usual)).exceeded()
+    assert "block updates" in bound_of(sp.Scene(**usual | change)).exceeded()
