@@ -63,7 +63,7 @@ ifndef LOCKED
 $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(CHECK_PLACE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
-	@$(PYTHON) $(LOCK) .setup.lock $(MAKE) --no-print-directory LOCKED=yes $(READY)
+	@$(PYTHON) $(LOCK) .setup.lock $(MAKE) -s --no-print-directory LOCKED=yes $(READY)
 else
 $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@test ! -e "$(VENV)" || $(PYTHON) $(LOCK) .snakemake/run.lock || { echo "A run is at work here: its environment is renewed when it has ended" >&2; exit 1; }
