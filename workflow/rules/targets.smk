@@ -39,7 +39,7 @@ RULES = {name: getattr(rules, name) for name in NAMES if rules.has(name)}
 
 
 def jobs_of(rule):
-    """The jobs that a rule stands for: one for each value of its wildcard."""
+    """The jobs that a rule stands for, one for each value of its wildcard."""
     wildcard = next((name for name in VALUES if f"{{{name}}}" in rule.output[0]), None)
     for value in VALUES[wildcard] if wildcard else [""]:
         values = {wildcard: value} if wildcard else {}
