@@ -33,7 +33,9 @@ def test_the_bound_is_not_exceeded_by_more_than_a_small_factor(seed):
 
 def test_slipping_again_and_again_is_bounded():
     """Undamped, at pre-stress 0, of a nucleation about as wide as a block: 40,000 blocks are released again."""
-    scene = sp.Scene("displacement", sp.Prestress(0.0, 0.0, 0.76), 400.0, 0.76, gamma=8e-8, order=8, max_step=1.0)
+    scene = sp.Scene(
+        "displacement", sp.Prestress(0.0, 0.0, 0.76), 400.0, 0.76, gamma=8e-8, order=8, max_step=1.0
+    )
     run = sp.simulate(scene)
     assert run.attrs["re_releases"] > 10_000
     assert run.attrs["block_updates"] < SMALL_FACTOR * bound_of(scene).block_updates
