@@ -39,7 +39,7 @@ def random_scenes(draw, schemes: tuple[str, ...] = LATTICE_SCHEMES) -> sp.Scene:
         right=draw(st.one_of(st.just(left), LEVELS)),
         width=max(dx, draw(st.floats(0.1, 5.0))),
         peak=draw(st.sampled_from([1.0, 1.5, 1.0, 0.99])),
-        steps=tuple(draw(st.lists(STEP, max_size=2))),
+        steps=tuple(draw(st.lists(STEP, max_size=2, unique_by=lambda step: step[0]))),
         bumps=tuple(draw(st.lists(BUMP, max_size=2))),
     )
     ratio, order = draw(RATIOS), draw(st.sampled_from(ORDERS))

@@ -56,6 +56,17 @@ def plot(run: xr.Dataset) -> Picture:
             roles |= {str(role): rows for role, rows in parts.velocity_map(run).groupby("role")}
             image = parts.draw_map(times, roles)
             figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
+            if run.attrs.get("limit_reason"):
+                unknown = run["sample_velocity"].isnull().T
+                times.contourf(
+                    run["sample_time"],
+                    run["sample_position"],
+                    unknown,
+                    [0.5, 1.5],
+                    colors="none",
+                    hatches=["///"],
+                )
+                figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
         else:
             parts.draw_edges(times, roles, run.attrs["end_time"])
         times.legend(loc="upper left")

@@ -12,6 +12,8 @@ import numpy as np
 
 from .checks import check_number, short_repr
 
+EPSILON = float(np.finfo(float).eps)
+
 
 @dataclass(frozen=True)
 class Prestress:
@@ -63,6 +65,9 @@ class Prestress:
                 raise ValueError(
                     "prestress.steps: position is 0.0; allowed: any other number (use left and right)"
                 )
+        positions = [position for position, _ in self.steps]
+        if twice := next((position for position in positions if positions.count(position) > 1), None):
+            raise ValueError(f"prestress.steps: position {twice} twice; allowed: different positions")
         for *_, width in self.bumps:
             check_number("prestress.bumps width", width, above=0.0)
 
@@ -102,7 +107,8 @@ class Prestress:
         parts = [(abs(c), a, w, a * np.exp(-0.5 * ((x - c) / w) ** 2)) for c, a, w in self.bumps]
         for _, group in groupby(sorted(parts, key=lambda part: part[:3]), key=lambda part: part[:3]):
             tau = tau + sum(values for *_, values in group)
-        return tau
+        # The far tail of a bump leaves the peak within rounding of the threshold, which it is meant to meet.
+        return np.where(np.abs(tau - 1.0) <= 4.0 * EPSILON, 1.0, tau) if self.bumps else tau
 
     def largest(self, dx: float = 0.0) -> float:
         """The largest pre-stress, at the peak and the bumps and around them; with dx, at the blocks there."""

@@ -13,10 +13,14 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.run import LatticeRun
 
-# A velocity this far below zero, as a fraction of the largest, means that a stick was stepped over.
-NEGATIVE_VELOCITY = 1e-9
+# A velocity this far below zero, as a fraction of the largest, means that a stick was stepped over. The textbook scheme
+# steps over each, by what one step decelerates.
+NEGATIVE_VELOCITY = {"localised": 1e-9, "fixed_step": 1e-2}
 # An energy balance that misses this fraction of its largest part means that the step was too long for the damping.
 ENERGY_RESIDUAL = 1e-2
+# A front of the textbook scheme that takes each of these last blocks in equally many steps runs at a fraction of dx/dt;
+# with fewer steps than this that is off by up to 1 per cent.
+LAST_BLOCKS, FEW_STEPS = 30, 50
 FIELDS = ("prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 
 
@@ -53,13 +57,26 @@ def judge(scene: Scene, run: LatticeRun) -> dict:
         flags.append("unresolved_pulse")
     if died_out(run):
         flags.append("died_out")
-    # The textbook scheme overshoots zero once a stick by construction: reported as min_velocity, not flagged.
-    overshoot = -NEGATIVE_VELOCITY * max(1.0, float(np.max(run.slip_velocity)))
-    if scene.scheme == "localised" and run.numbers["min_velocity"] < overshoot:
+    overshoot = -NEGATIVE_VELOCITY[scene.scheme] * max(1.0, float(np.max(run.slip_velocity)))
+    if run.numbers["min_velocity"] < overshoot:
         flags.append("negative_velocity")
-    if scene.scheme == "localised" and run.numbers["energy_residual"] > ENERGY_RESIDUAL:
+    # Not NaN either.
+    if not run.numbers["energy_residual"] <= ENERGY_RESIDUAL:
         flags.append("energy")
+    if scene.scheme == "fixed_step" and locked_front(run):
+        flags.append("locked_front")
     return {"pulse_blocks": pulse_blocks, "run_flags": ",".join(flags)}
+
+
+def locked_front(run: LatticeRun) -> bool:
+    """Whether a front of a fixed step has locked onto a fraction of dx/dt: frequency locking."""
+    step = run.numbers["end_time"] / run.numbers["steps"]
+    for side in (-1.0, 1.0):
+        times = np.sort(run.release_time[(side * run.x >= 0.0) & np.isfinite(run.release_time)])
+        counts = np.rint(np.diff(times[-LAST_BLOCKS:]) / step)
+        if counts.size == LAST_BLOCKS - 1 and counts.min() == counts.max() < FEW_STEPS:
+            return True
+    return False
 
 
 def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:

@@ -82,12 +82,12 @@ def velocity_map(run: xr.Dataset) -> pd.DataFrame:
     columns, rows = inside[thin(inside.size, MAP_SAMPLES)], thin(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
     # Four digits of the largest velocity are more than a colour shows, and keep the table small.
-    kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.max(velocity)))))
+    kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.nanmax(velocity)))))
     # What is left out is 0; the first of each row and column says where it is.
     written = kept != 0.0
     written[0], written[:, 0] = True, True
     grid = {"time": time[written], "position": position[written], "value": kept[written]}
-    largest = pd.DataFrame([{"role": "largest", "value": np.max(velocity)}])
+    largest = pd.DataFrame([{"role": "largest", "value": np.nanmax(velocity)}])
     return pd.concat([pd.DataFrame({"role": "map", **grid}), largest])
 
 
