@@ -199,11 +199,11 @@ CASES = {
     "scene with a path as a name": ("scenes: {../barrier: {}}", ["'../barrier'", "lower-case letters"]),
     "a scene named as the page of all": (
         "scenes: {index: {title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}}",
-        ["scenes.index: results/scenes has another file of that name", "neither index nor SCENE_numbers"],
+        ["scenes.index: another file of that name is there", "neither index nor SCENE_numbers"],
     ),
     "a scene named as the numbers of another": (
         "scenes: {barrier_numbers: {title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}}",
-        ["scenes.barrier_numbers: results/scenes has another file of that name", "neither index nor SCENE_numbers"],
+        ["scenes.barrier_numbers: another file of that name is there", "neither index nor SCENE_numbers"],
     ),
     "blank title": ("scenes: {barrier: {title: ' '}}", ["scenes.barrier.title: ' '", "not blank"]),
     "title that rings": ('scenes: {barrier: {title: "\\a bell"}}', [r"scenes.barrier.title: '\x07 bell'", "printable"]),

@@ -29,6 +29,12 @@ def allowed(words: str) -> dict[str, Any]:
     return {"allowed": words}
 
 
+def require(condition: bool, problem: str) -> None:
+    """Raise with a problem, as "key: value; allowed: ...", unless a condition holds."""
+    if not condition:
+        raise ValueError(problem)
+
+
 def _all_different(values: list[T]) -> list[T]:
     if len({repr(value) for value in values}) < len(values):
         raise PydanticCustomError("different", "an entry twice")

@@ -24,6 +24,7 @@ from .keys import (
     Scheme,
     Spacing,
     allowed,
+    require,
 )
 from .simulations import NamedScene, Simulation
 
@@ -98,8 +99,7 @@ class Steps(Block):
 
     @model_validator(mode="after")
     def _upwards(self) -> Self:
-        if self.to <= self.from_:
-            raise ValueError(f"to: {self.to}; allowed: > from = {self.from_}")
+        require(self.to > self.from_, f"to: {self.to}; allowed: > from = {self.from_}")
         return self
 
 
@@ -165,43 +165,38 @@ class Configuration(Block):
 
     @model_validator(mode="after")
     def _names(self) -> Self:
-        if self.preset not in self.presets:
-            raise ValueError(
-                f"preset: {short_repr(self.preset)}{nearest(self.preset, self.presets)};"
-                f" allowed: {', '.join(self.presets)}"
-            )
-        if self.accuracy is not None and self.model.scheme != "localised":
-            raise ValueError(
-                f"model.scheme: {self.model.scheme!r}; allowed: 'localised' where accuracy is given"
-            )
+        hint = nearest(self.preset, self.presets)
+        text = f"preset: {short_repr(self.preset)}{hint}; allowed: {', '.join(self.presets)}"
+        require(self.preset in self.presets, text)
+        require(
+            self.accuracy is None or self.model.scheme == "localised",
+            f"model.scheme: {self.model.scheme!r}; allowed: 'localised' where accuracy is given",
+        )
         for name in self.scenes:
-            if name in self.simulations:
-                raise ValueError(f"scenes.{name}: also the name of a simulation; allowed: another name")
-            if name == "index" or name.removesuffix("_numbers") in {*self.scenes} - {name}:
-                raise ValueError(
-                    f"scenes.{name}: results/scenes has another file of that name; allowed: neither index nor"
-                    " SCENE_numbers"
-                )
-        for name, reading in self.published.items():
-            self._read_off(f"published.{name}", reading)
-        return self
-
-    def _read_off(self, key: str, reading: Reading) -> None:
-        """Refuse a reading of a simulation that there is not, or of what it does not measure."""
-        name, quantity = reading.simulation, reading.quantity
-        if name not in self.simulations:
-            raise ValueError(
-                f"{key}.simulation: {short_repr(name)}{nearest(name, self.simulations)};"
-                " allowed: a name under simulations"
+            taken = name == "index" or name.removesuffix("_numbers") in {*self.scenes} - {name}
+            require(
+                name not in self.simulations,
+                f"scenes.{name}: also the name of a simulation; allowed: another name",
+            )
+            require(
+                not taken,
+                f"scenes.{name}: another file of that name is there; allowed: neither index nor SCENE_numbers",
             )
         known = QUANTITIES | {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
-        if quantity not in known:
-            raise ValueError(
-                f"{key}.quantity: {short_repr(quantity)}{nearest(quantity, known)};"
-                " allowed: a column of the measured table"
+        for key, reading in self.published.items():
+            name, quantity = reading.simulation, reading.quantity
+            require(
+                name in self.simulations,
+                f"published.{key}.simulation: {short_repr(name)}{nearest(name, self.simulations)};"
+                " allowed: a name under simulations",
             )
-        if known[quantity] not in ("fronts", *self.simulations[name].record):
-            raise ValueError(
-                f"{key}.quantity: {short_repr(quantity)}; allowed: what simulations.{name} records; this takes"
-                f" record: [fronts, {known[quantity]}]"
+            text = f"published.{key}.quantity: {short_repr(quantity)}"
+            require(
+                quantity in known,
+                f"{text}{nearest(quantity, known)}; allowed: a column of the measured table",
             )
+            require(
+                known[quantity] in ("fronts", *self.simulations[name].record),
+                f"{text}; allowed: what simulations.{name} records; this takes record: [fronts, {known[quantity]}]",
+            )
+        return self

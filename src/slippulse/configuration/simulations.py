@@ -21,6 +21,7 @@ from .keys import (
     Step,
     Title,
     allowed,
+    require,
 )
 
 ROWS_OF_STEPS, ROWS_OF_BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width]"
@@ -60,20 +61,14 @@ class Duration(Block):
     """How long a run is, in one of three units."""
 
     time: Positive | None = Field(None, description="the duration itself [H/c]")
-    half_periods: Positive | None = Field(
-        None, description="in pi/sqrt(gamma), the paper's T_trans; under `displacement`"
-    )
-    balance_distances: Positive | None = Field(
-        None, description="in |x_minus|; right level 0, left level negative"
-    )
+    half_periods: Positive | None = Field(None, description="in pi/sqrt(gamma); under `displacement`")
+    balance_distances: Positive | None = Field(None, description="in |x_minus|; left level < 0, right 0")
 
 
 class SpacingRule(Block):
     """A rule for the block spacing: the preset's dx times scale W^width_power gamma^gamma_power, or a fixed one."""
 
-    fixed: Spacing | None = Field(
-        None, description="the spacing itself, on the grid study's lattices too; alone [H]"
-    )
+    fixed: Spacing | None = Field(None, description="the spacing, in the grid study too; alone [H]")
     scale: Positive = Field(1.0, description="factor of the preset's dx")
     width_power: float = Field(0.0, description="power of W")
     gamma_power: float = Field(0.0, description="power of gamma; under `displacement`")
@@ -83,42 +78,35 @@ class Recording(Block):
     """Where and when slip and slip velocity are sampled."""
 
     times: int = Field(ge=2, le=100_000, description="how many, evenly over the duration")
-    positions: int = Field(
-        ge=1, le=100_000, description="how many, evenly from -extent to extent; 1: at x = 0"
-    )
+    positions: int = Field(ge=1, le=100_000, description="how many, from -extent to extent; 1: at x = 0")
     extent: NonNegative = Field(description="how far to each side [H]")
 
 
 class Physics(Block):
     """What a simulation and a scene share."""
 
-    boundary: Boundary = Field(
-        description="at the top of the layer: displacement (Gamma = 1) or stress (Gamma = 0) held"
-    )
+    boundary: Boundary = Field(description="held on top: displacement (Gamma = 1) or stress (Gamma = 0)")
     scheme: Scheme | None = Field(None, description="by default the model's")
     resolved_blocks: Count | None = Field(None, description="by default the model's")
-    max_step: Positive | None = Field(
-        None, description="largest step; by default the preset's, cut to the bound [dx]"
-    )
+    max_step: Positive | None = Field(None, description="by default the preset's, cut to the bound [dx]")
 
     def alone(self, key: str, *others: str) -> None:
         """Refuse a key that is given with another."""
-        given = [other for other in others if other in self.model_fields_set]
-        if key in self.model_fields_set and given:
-            raise ValueError(
-                f"{key}: given with {', '.join(given)}; allowed: one or the other (null removes a key)"
-            )
+        given = [other for other in (key, *others) if other in self.model_fields_set]
+        text = f"{key}: given with {', '.join(given[1:])}; allowed: one or the other (null removes a key)"
+        require(key not in given or len(given) == 1, text)
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
-        gamma = getattr(self, "gamma", None)
-        if self.boundary == "displacement" and gamma is None:
-            raise ValueError("gamma: missing; allowed: numbers > 0 under boundary 'displacement'")
-        if self.boundary == "stress" and gamma is not None:
-            raise ValueError(
-                f"gamma: {gamma!r}; allowed: left out under boundary 'stress', which has no leaf springs"
-                " (gamma: null removes it)"
-            )
+        gamma, springs = getattr(self, "gamma", None), self.boundary == "displacement"
+        require(
+            not springs or gamma is not None, "gamma: missing; allowed: > 0 under boundary 'displacement'"
+        )
+        require(
+            springs or gamma is None,
+            f"gamma: {gamma!r}; allowed: left out under boundary 'stress', which has no leaf springs"
+            " (gamma: null removes it)",
+        )
         self.alone("beta", "damping_ratio")
         return self
 
@@ -126,12 +114,8 @@ class Physics(Block):
 class Simulation(Physics):
     """A sweep: the product of its lists."""
 
-    left: Distinct[float] | None = Field(
-        None, description="levels of the pre-stress on the left, below 1 [S]"
-    )
-    right: Literal["same"] | Distinct[float] | None = Field(
-        None, description="on the right; `same` mirrors the left [S]"
-    )
+    left: Distinct[float] | None = Field(None, description="pre-stress levels on the left, below 1 [S]")
+    right: Literal["same"] | Distinct[float] | None = Field(None, description="on the right [S]")
     width: Distinct[Positive] = Field([1.0], description="widths W of the Gaussian at nucleation, >= dx [H]")
     profiles: Distinct[Profile] | None = Field(
         None,
@@ -162,42 +146,30 @@ class Simulation(Physics):
         json_schema_extra=allowed(RECORDED),
     )
     samples: Recording | None = Field(None, description="what `record: [fronts, samples]` samples, below")
-    chunks: int = Field(
-        1, ge=1, le=1000, description="how many jobs share the sweep, below; at most a run each"
-    )
+    chunks: int = Field(1, ge=1, le=1000, description="how many jobs share the sweep, at most a run each")
 
     @model_validator(mode="after")
     def _together(self) -> Self:
         self.alone("profiles", "left", "right", "width", "beyond")
         self.alone("dx", "spacing")
         rule, units = self.spacing.model_fields_set, sorted(self.duration.model_fields_set)
-        for wrong, problem in (
-            (
-                self.profiles is None and (self.left is None or self.right is None),
-                "left, right: missing; allowed: lists of levels (right may be 'same'), or profiles",
-            ),
-            ("fixed" in rule and len(rule) > 1, "spacing.fixed: given with others; allowed: alone"),
-            (len(units) != 1, f"duration: {units}; allowed: {UNITS} (null removes a key)"),
-            (
-                "half_periods" in units and self.boundary == "stress",
-                "duration.half_periods: given; allowed: only under boundary 'displacement'",
-            ),
-            (
-                "gamma_power" in rule and self.boundary == "stress",
-                "spacing.gamma_power: given; allowed: only under boundary 'displacement'",
-            ),
-            ("fronts" not in self.record, f"record: {self.record}; allowed: {RECORDED}"),
-            (
-                "samples" in self.record and self.samples is None,
-                "samples: missing; allowed: times, positions and extent when record has 'samples'",
-            ),
-            (
-                "samples" not in self.record and self.samples is not None,
-                "samples: given, but not recorded; allowed: with samples in record (samples: null removes it)",
-            ),
-        ):
-            if wrong:
-                raise ValueError(problem)
+        springs, recorded = self.boundary == "displacement", "samples" in self.record
+        levels = self.left is not None and self.right is not None
+        require(levels or self.profiles is not None, "left, right: missing; allowed: lists, or profiles")
+        require(rule == {"fixed"} or "fixed" not in rule, "spacing.fixed: given with others; allowed: alone")
+        require(len(units) == 1, f"duration: {units}; allowed: {UNITS} (null removes a key)")
+        only = "given; allowed: only under boundary 'displacement'"
+        require(springs or "half_periods" not in units, f"duration.half_periods: {only}")
+        require(springs or "gamma_power" not in rule, f"spacing.gamma_power: {only}")
+        require("fronts" in self.record, f"record: {self.record}; allowed: {RECORDED}")
+        require(
+            self.samples is not None or not recorded,
+            "samples: missing; allowed: times, positions and extent when record has 'samples'",
+        )
+        require(
+            self.samples is None or recorded,
+            "samples: given, but not recorded; allowed: with samples in record (samples: null removes it)",
+        )
         return self
 
 
