@@ -70,7 +70,7 @@ STUDY_NEEDS = {
 }
 if unknown := {*(CONFIG.studies or ())} - {*STUDY_NEEDS}:
     refuse(f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(sorted(STUDY_NEEDS))}")
-ALL_STUDIES = sorted(CONFIG.studies or STUDY_NEEDS)
+ALL_STUDIES = sorted(STUDY_NEEDS)
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 EXPLORER_SIMULATIONS = declared("steps.write_explorer", "SIMULATIONS")
 

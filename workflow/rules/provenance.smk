@@ -10,7 +10,7 @@ RESULTS = [
     *(f"results/data/{name}.nc" for name in sorted({*DRAWN, *STUDIED})),
     *tables("measurements", sorted({*DRAWN, *STUDIED})),
     *tables("uncertainties", STUDIED),
-    *(f"results/studies/{name}.csv" for name in ALL_STUDIES),
+    *(f"results/studies/{name}.csv" for name in CONFIG.studies or ALL_STUDIES),
     *scene_files(SCENES),
     *OWN_SWEEPS,
     "results/claims.json",

@@ -159,7 +159,7 @@ class Configuration(Block):
     published: dict[str, Reading] = Field(description="numbers read off a published figure, by name")
     studies: Distinct[Name] | None = Field(
         None,
-        description="which studies run; by default all modules of src/slippulse/studies",
+        description="studies run for their tables, by name; by default all",
         json_schema_extra=allowed("a list of different names, at least one"),
     )
 
