@@ -35,6 +35,7 @@ endef
 CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$\`]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
 CHECK_COUNT = case "$$$(1)" in ""|*[!0-9]*|0*) echo "$(1): $$$(1); allowed: a whole number from 1 on, such as $(1)=2" >&2; exit 1;; esac
 CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
+    case "$$PRESET" in *[!A-Za-z0-9_-]*) echo "PRESET: $$PRESET; allowed: the name of a preset, such as draft" >&2; exit 1;; esac; \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
 .PHONY: help setup slurm lock describe reference replicate rulegraph verify test test-pages test-slow test-all faults slurm-test benchmark check clean distclean

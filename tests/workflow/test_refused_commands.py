@@ -122,6 +122,7 @@ def test_an_overlay_that_is_a_pipe_is_not_waited_for(make, tmp_path):
     [
         *(("faults", "KILLS", value, "a whole number") for value in ("", "0", "-1", "1.5", "1; touch written")),
         *(("replicate", "CORES", value, "a whole number") for value in ("0", "-1", "08", "all")),
+        *(("replicate", "PRESET", value, "the name of a preset") for value in ("draft'", "`touch written`", "a b")),
         *(("replicate", "ALLOW_LARGE", value, "true or false") for value in ("NO", "maybe")),
     ],
 )  # fmt: skip
