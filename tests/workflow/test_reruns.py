@@ -111,7 +111,7 @@ def test_an_edited_figure_redraws_that_figure_alone():
 
 # The whole configuration stands in the report and in the provenance, what differs from the shipped one on the pages.
 ALWAYS = {"write_claims": 1, "write_report": 1, "write_provenance": 1, "write_index": 1}
-CHAIN = {"simulate": 1, "measure": 1, "study_grid": 1}
+CHAIN = {"simulate": 1, "measure": 1, "predict": 1, "study_grid": 1}
 JOINED = {"join": 4}
 CONFIGURATIONS = {
     "another level": (

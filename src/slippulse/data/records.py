@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -163,7 +164,9 @@ class Tree:
 
     def remove_faulty(self, names: Iterable[str]) -> dict[str, str]:
         """Remove, of some results and what they are made from, the faulty ones; returns them with the reasons."""
-        there = [name for name in self.behind(names) if (self.results / name).is_file()]
+        # A link to nowhere, or to something else than a file, is in the way too.
+        paths = {name: self.results / name for name in self.behind(names)}
+        there = [name for name, path in paths.items() if os.path.lexists(path) and not path.is_dir()]
         found = self.faults(there)
         for name in found:
             (self.results / name).unlink()
