@@ -104,7 +104,7 @@ FILES = {
     "kernels.txt": "old", "data/barrier.nc": "edited", "data/mine/1-of-2.nc": "removed", "data/mine.nc": "emptied",
     "measurements/arrest.csv": "in the future", "measurements/mine/2-of-2.csv": "old",
     "uncertainties/one.csv": "removed", "uncertainties/coarser/one.csv": "edited", "studies/extremes.csv": "grown",
-    f"{FIGURE}.png": "edited", f"{FIGURE}.csv": "removed", "figures/study_stability.pdf": "a dead link",
+    f"{FIGURE}.png": "edited", f"{FIGURE}.csv": "removed", "figures/fig02_phase_diagram.pdf": "a dead link",
     "figures/sweep_mine.csv": "old", "scenes/one.html": "in the future", "scenes/barrier.pdf": "a link",
     "claims.json": "edited", "findings.json": "removed", "claims.html": "old", "explorer.html": "removed",
     "manuscript/replication.html": "edited", "manuscript/replication.pdf": "removed",
