@@ -1,5 +1,14 @@
 # Studies: one table each, of runs of their own, or of exact theory beside simulations.
 
+from slippulse.steps.reach import sources
+
+
+def kernels_for(study):
+    """Only a study that reaches the solver waits for the kernels."""
+    reached = any("/solver/" in path for path in sources(f"studies.{study}"))
+    return {"kernels": "results/kernels.txt"} if reached else {}
+
+
 for study in ALL_STUDIES:
 
     rule:
@@ -7,7 +16,7 @@ for study in ALL_STUDIES:
             f"study_of_{study}"
         input:
             **inputs_of(STUDY_NEEDS[study]),
-            kernels="results/kernels.txt",
+            **kernels_for(study),
         output:
             table=f"results/studies/{study}.csv",
         log:
