@@ -1,0 +1,148 @@
+"""Roots of polynomials, releases and sticks within a step, and the list of segments, at their edges."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import tolerances as tol
+from numpy.polynomial.polynomial import polyfromroots
+from reference.from_python import from_python
+
+from slippulse.solver import arrays, foresight, polynomials, segments, stencils
+
+
+@pytest.mark.parametrize("lower", [0.0, 0.01])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("seed", range(5))
+def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
+    """A polynomial with one real root in the interval, and others outside it and in the complex plane."""
+    random = np.random.default_rng(seed)
+    h = float(random.uniform(0.01, 2.0))
+    inside = float(random.uniform(0.02, 0.98)) * h
+    pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
+    roots = [inside, -random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0), pair, pair.conjugate()]
+    coefficients = sign * np.real(polyfromroots(roots))
+    found = from_python(polynomials.crossing)(coefficients, 5, lower * h, h)
+    assert found == pytest.approx(inside, abs=tol.ROOT)
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "root", "accuracy"),
+    [([-0.125, 0.75, -1.5, 1.0], 0.5, tol.ROOT ** (1.0 / 3.0)), ([-1.0, 1.0], 1.0, tol.ROOT)],
+    ids=["zero slope", "at the end"],
+)
+def test_crossing_finds_a_root_that_is_hard_to_find(coefficients, root, accuracy):
+    found = from_python(polynomials.crossing)(np.array(coefficients), len(coefficients) - 1, 0.0, 1.0)
+    assert found == pytest.approx(root, abs=accuracy)
+
+
+def found_sticks(w: np.ndarray, last: int, suspects: int, h: float, now: float = 0.0):
+    """Blocks 1..last-1 whose velocity passes 0 between ``now`` and h, and when; None if one is not finite."""
+    motion, forecast = arrays.make_motion(*w.shape), arrays.make_forecast(w.shape[1], w.shape[0] - 2)
+    motion.w[:] = w
+    from_python(stencils.velocity_after)(motion.velocity, motion.w, 1, last, h, w.shape[0] - 2)
+    finite = from_python(foresight.find_sticks)(motion, forecast, 1, last, suspects, now, h, w.shape[0] - 1)
+    n = forecast.sticks.n
+    return (forecast.stick_block[:n].tolist(), forecast.stick_time[:n]) if finite else None
+
+
+def stop(coefficients, h: float, now: float = 0.0):
+    """When a block with this polynomial for its velocity sticks, () if it does not; None if it is not finite."""
+    w = np.zeros((len(coefficients) + 1, 3))
+    w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
+    found = found_sticks(w, 2, 1, h, now)
+    return found and tuple(found[1])
+
+
+# Real parts of a product with a positive polynomial; a dip is below 0 for a hundredth of the time only.
+DIP, NO_DIP = (polyfromroots([a, b, 1j, -1j]).real for a, b in ((0.3, 0.31), (0.3 + 0.01j, 0.3 - 0.01j)))
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "h", "stops"),
+    [
+        ([0.5, -1.0, 0.0, 0.0, 0.0], 0.8, (0.5,)),
+        (DIP, 0.9, (0.3,)),
+        (NO_DIP, 0.9, ()),
+        # Released at the end of the step before: its acceleration is the rounding of its stress.
+        ([0.0, -1e-16, 0.0, 3e-14, 0.0], 1.0, ()),
+        ([0.0, -1e-16, 0.0, 3e-13, 0.0], 1.0, ()),
+    ],
+    ids=["plain", "dip", "none", "just released", "just released, faster"],
+)
+def test_a_block_sticks_where_its_velocity_passes_zero(coefficients, h, stops):
+    assert stop(coefficients, h) == pytest.approx(stops, abs=1e3 * tol.ROOT)
+    assert stop([np.nan, *coefficients[1:]], h) is None
+
+
+@pytest.mark.parametrize("released", [0.0, 0.1, 0.17])
+@pytest.mark.parametrize("rounding", [-1e-15, 0.0, 1e-15])
+def test_the_zero_at_the_start_of_a_block_just_released_is_no_stick(released, rounding):
+    """Velocity (t - t_r) - 2 (t - t_r)^2 is 0 half a unit after the release, and, but for rounding, at the release."""
+    coefficients = [-released - 2.0 * released**2 + rounding, 1.0 + 4.0 * released, -2.0, 0.0, 0.0]
+    assert stop(coefficients, 0.8, released) == pytest.approx((released + 0.5,), abs=tol.ROOT)
+
+
+def test_a_stick_at_the_end_of_the_step_is_found_there():
+    """The two evaluations of the velocity, nested differently, need not agree on the sign of a rounding error."""
+    random = np.random.default_rng(0)
+    for _ in range(2000):
+        coefficients = np.array([random.uniform(0.1, 1), random.uniform(-3, -1), *random.uniform(-1, 1, 3)])
+        if from_python(polynomials.polynomial)(coefficients, 4, 1.0) < 0.0:
+            root = from_python(polynomials.crossing)(coefficients, 4, 0.0, 1.0)
+            for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
+                assert stop(coefficients, h) in ((), (pytest.approx(root, abs=1e3 * tol.ROOT),))
+
+
+def test_the_search_stops_at_the_last_block_that_may_stick():
+    w = np.zeros((6, 6))
+    w[1], w[2] = 1.0, -2.0
+    blocks, times = found_sticks(w, 5, 4, 1.0)
+    assert blocks == [1, 2, 3, 4] and times == pytest.approx(0.5, abs=tol.ROOT)
+    assert found_sticks(w, 5, 2, 1.0)[0] == [1, 2]
+
+
+@pytest.mark.parametrize(
+    ("height", "speed", "slowing", "h", "now", "release"),
+    [
+        # Stress 0.9 + 3.2 t - 6.4 t^2 passes 1, and comes back below it at 0.4665.
+        (0.9, 3.2, 12.8, 0.5, 0.0, min(np.roots([-6.4, 3.2, -0.1]))),
+        (0.9, 3.2, 12.8, 0.6, 0.47, math.inf),
+        # At most 1.00125, between two of the instants at which it is looked at; and 0.99925.
+        (0.9, 0.9, 4.0, 1.0, 0.0, min(np.roots([-2.0, 0.9, -0.1]))),
+        (0.898, 0.9, 4.0, 1.0, 0.0, math.inf),
+        # Above from the start.
+        (1.0, 0.0, 0.0, 0.5, 0.0, 0.0),
+        (0.9, 1.0, 0.0, 0.5, 0.2, 0.2),
+    ],
+)
+def test_a_stuck_block_is_released_when_its_stress_passes_the_threshold(
+    height, speed, slowing, h, now, release
+):
+    """A neighbour moves with ``speed`` and ``slowing``."""
+    motion, forecast = arrays.make_motion(6, 5), arrays.make_forecast(5, 4)
+    motion.w[1, 1], motion.w[2, 1], motion.tau[2] = speed, -slowing, height
+    medium = arrays.make_medium(1.0, 0.0, 0.0, False, True)
+    when, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
+    assert when == pytest.approx(release, abs=tol.ROOT)
+    assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_segments_after_random_events_agree_with_a_mask(seed):
+    random = np.random.default_rng(seed)
+    mask, kept = np.zeros(24, dtype=bool), arrays.make_segments(24)
+    for _ in range(300):
+        block, inside = int(random.integers(24)), int(random.integers(1, 23))
+        from_python(segments.stick_block if mask[block] else segments.release_block)(kept, block)
+        mask[block] = not mask[block]
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], mask.astype(int), [0]])))
+        n = kept.count.n
+        assert np.array_equal(np.column_stack([kept.starts[:n], kept.ends[:n]]).ravel(), edges)
+        assert from_python(segments.holds)(kept, inside) == mask[inside]
+        left, right = from_python(segments.sliding_beside)(kept, inside)
+        assert mask[inside - left : inside].all() and (left == inside or not mask[inside - left - 1])
+        after = mask[inside + 1 :]
+        assert after[:right].all() and not after[right : right + 1].any()
