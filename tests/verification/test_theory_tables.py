@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -12,7 +10,6 @@ from scipy.optimize import brentq
 from scipy.special import j0
 
 import slippulse as sp
-from slippulse.measure.fronts import arrival, position_at
 from slippulse.theory.transition import prestress_balance_position
 
 GAMMA = 2.0 / 3.0
@@ -54,24 +51,6 @@ def test_transition_under_displacement_by_another_quadrature():
     assert exact.time == pytest.approx(transition_by_quadrature(0.5), rel=tol.TRANSITION_QUADRATURE)
 
 
-def test_simulated_transitions_under_displacement_are_those_known_and_converge_at_first_order(paper_accuracy):
-    exact = sp.theory.exact_transition_displacement(sp.Prestress(0.5, 0.5), GAMMA)
-    errors = []
-    for dx, known in ((0.05, 3.7945), (0.02, 3.7863), (0.01, 3.7835)):
-        scene = sp.Scene(
-            "displacement", sp.Prestress(0.5, 0.5), 4.5, dx, gamma=GAMMA, **paper_accuracy, resolved_blocks=1
-        )
-        run = sp.simulate(scene)
-        time = run.attrs["first_stick_time"]
-        assert time == pytest.approx(known, rel=tol.TRANSITION_TABLE)
-        errors.append((time - exact.time, 2.0 * float(position_at(run, time)) - exact.length))
-    low, high = tol.TRANSITION_HALVING
-    for middle, fine in zip(errors[1], errors[2], strict=True):
-        assert low < middle / fine < high
-    for middle, fine, value in zip(errors[1], errors[2], (exact.time, exact.length), strict=True):
-        assert abs(2.0 * fine - middle) < tol.TRANSITION_EXTRAPOLATED * value
-
-
 @pytest.mark.parametrize(
     ("left", "width", "table"),
     [(-1.0, 4.0, (1.3031, 1.5543, 1.9779)), (-0.5, 1.0, (1.1745, 1.3415, 1.6052))],
@@ -81,22 +60,6 @@ def test_share_times_under_stress(left, width, table):
     distance = abs(crack.balance_position)
     for share, known in zip((0.90, 0.95, 0.99), table, strict=True):
         assert crack.share_time(share) / distance == pytest.approx(known, rel=tol.SHARE_TABLE)
-
-
-@pytest.mark.parametrize(("left", "width", "ratio"), [(-1.0, 4.0, 0.0), (-1.0, 4.0, 0.1), (-0.5, 1.0, 0.1)])
-def test_simulated_share_times_under_stress_converge_at_first_order(left, width, ratio):
-    profile = sp.Prestress(left, 0.0, width)
-    crack = sp.theory.ArrestingCrack(profile, ratio)
-    distance = abs(crack.balance_position)
-    exact = crack.share_time(0.9)
-    errors = []
-    for dx in (0.02 * width, 0.01 * width, 0.005 * width):
-        scene = sp.Scene("stress", profile, 1.6 * distance, dx, beta=ratio * dx, max_step=0.1, order=6)
-        errors.append((arrival(sp.simulate(scene), 0.9 * distance, "left") - exact) / exact)
-    low, high = tol.TRANSITION_HALVING
-    for coarse, fine in pairwise(errors):
-        assert low < coarse / fine < high, errors
-    assert abs(2.0 * errors[2] - errors[1]) < tol.SHARE_EXTRAPOLATED
 
 
 @pytest.mark.parametrize("profile", [sp.Prestress(-0.75, 0.0, 5.0), sp.Prestress(-2.0, 0.0, 0.5)])
