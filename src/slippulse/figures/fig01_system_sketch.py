@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .shared.sketch import arrow, double_arrow, label
-from .style import BLACK, BLUE, COLUMN, ORANGE, new_figure, panel_letter
+from .style import BLACK, BLUE, COLUMN, ORANGE, Look, new_figure, panel_letter
 
 NEEDS = {"data": ()}
 
@@ -23,7 +22,7 @@ LENGTHS = ["y", "displacement", "strip_width"]
 # Where the strip is, and where the displacement is counted from.
 STRIP_AT, REST = 1.68, 2.38
 RED, MUTED = "#c00000", "0.25"
-HATCHED: dict[str, Any] = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
+HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -74,7 +73,7 @@ def draw_layer(axes: Axes, strip: float) -> None:
     """What both conditions have: layer, substrate, strip, friction, thickness and axes."""
     axes.add_patch(Rectangle((0.0, -RIGID), LENGTH, RIGID, **HATCHED))
     axes.add_patch(Rectangle((0.0, 0.0), LENGTH, 1.0, facecolor="#e6edf4", edgecolor=BLACK, linewidth=0.8))
-    look: dict[str, Any] = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
+    look: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
     axes.add_patch(Rectangle((STRIP_AT - 0.5 * strip, 0.0), strip, 1.0, gid="strip", **look))
     label(axes, STRIP_AT, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
     label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,7 @@ from ..data.numerals import setting
 from ..measure.regime import REGIMES
 from ..model.prestress import Prestress
 from . import style
-from .style import BLACK, GREY, entry, legend_below, new_figure, panel_letter
+from .style import BLACK, GREY, Look, entry, legend_below, new_figure, panel_letter
 
 NEEDS = {
     "measured": [
@@ -81,7 +81,7 @@ LOOKS = {
     "pulse, one-way, decaying": (style.GREEN, "v"),
 }
 SIZES = {"*": 5.0, "s": 3.4, "D": 3.0}
-RING: dict[str, Any] = {
+RING: Look = {
     "marker": "o", "markersize": 6.0, "markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 0.5,
 }  # fmt: skip
 HATCH = "//////"
@@ -154,7 +154,7 @@ def draw_diagram(axes: Axes, runs: pd.DataFrame, letter: str) -> None:
     runs["flagged"], runs["unsaid"] = runs["run_flags"].notna(), runs["exact"].isna()
     runs["early"] = runs["run"] != runs["regime"]
     for (regime, unsaid), some in runs[~runs["flagged"]].groupby(["regime", "unsaid"]):
-        edge: dict[str, Any] = {"edgecolor": GREY, "hatch": HATCH} if unsaid else {"edgecolor": "white"}
+        edge: Look = {"edgecolor": GREY, "hatch": HATCH} if unsaid else {"edgecolor": "white"}
         corners = np.array([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
         places = some[["i", "j"]].to_numpy()[:, None, :] + corners
         cells = PolyCollection(places, facecolor=tint(LOOKS[regime][0]), linewidth=0.4, **edge)
@@ -181,7 +181,7 @@ def draw_diagram(axes: Axes, runs: pd.DataFrame, letter: str) -> None:
 
 def group_lines(axes: Axes, runs: pd.DataFrame) -> None:
     """The level on the left of each group of lines."""
-    text: dict[str, Any] = {"rotation": 90, "va": "center", "transform": axes.get_yaxis_transform()}
+    text: Look = {"rotation": 90, "va": "center", "transform": axes.get_yaxis_transform()}
     for level, lines in runs.groupby("left")["j"]:
         axes.axhline(lines.max() + 0.5, color=BLACK, linewidth=0.8)
         axes.text(1.02, lines.mean(), setting(level), fontsize=7.0, **text)
@@ -193,7 +193,7 @@ def tint(colour: str) -> tuple[float, ...]:
     return tuple(1.0 - 0.22 * (1.0 - part) for part in to_rgb(colour))
 
 
-def marker(regime: str) -> dict[str, Any]:
+def marker(regime: str) -> Look:
     """Marker of a regime."""
     colour, symbol = LOOKS[regime]
     return {"marker": symbol, "color": colour, "markersize": SIZES.get(symbol, 3.8), "markeredgewidth": 0.6}

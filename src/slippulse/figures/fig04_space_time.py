@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import matplotlib.patheffects as effects
 import numpy as np
@@ -16,7 +15,7 @@ from matplotlib.patches import Patch
 from ..data.points import point
 from ..measure.fronts import position_at
 from .shared.space_time import STUCK, description, draw_map, draw_profile, run_rows
-from .style import BLACK, COLUMN, ORANGE, PURPLE, legend_below, new_figure, panel_letter, stacked
+from .style import BLACK, COLUMN, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter, stacked
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
@@ -75,7 +74,7 @@ def plot(table: pd.DataFrame) -> Figure:
     """Draw the figure from its table."""
     figure = new_figure(COLUMN, 5.6)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
-    handles: dict[str, Any] = {}
+    handles: Look = {}
     for side, (panel, letter) in zip(stacked(figure, (1.0, 1.0)), PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.27, 1.0))
         roles = {str(role): rows for role, rows in table[table["panel"] == panel].groupby("role")}
@@ -100,7 +99,7 @@ def draw_transition(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> None:
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             rows = roles[role].sort_values("position")
-            look: dict[str, Any] = {"color": PURPLE, "linestyle": (0, (1, 1)), "zorder": 2.5}
+            look: Look = {"color": PURPLE, "linestyle": (0, (1, 1)), "zorder": 2.5}
             axes.plot(rows["time"], rows["position"], label=label, gid=role, **look)
     # A run that is too short for its transition has none to draw.
     if np.isfinite(roles["measured"]["time"]).all():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,7 +16,7 @@ from matplotlib.ticker import MultipleLocator
 
 from ..data.points import point
 from ..model.scene import prestress_from
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, entry, legend_below, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, entry, legend_below, new_figure, panel_letter
 
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
 
@@ -119,7 +118,7 @@ def plot(table: pd.DataFrame) -> Figure:
         draw_prestress(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
-    square: dict[str, Any] = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
+    square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
     handles = [entry(name, markerfacecolor=colour, **square) for name, colour in COLOURS.items()]
     square |= {"markeredgecolor": BLACK, "markeredgewidth": 1.8}
     framed = entry("never released: stops the left front", markerfacecolor="none", **square)

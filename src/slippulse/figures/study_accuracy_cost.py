@@ -10,15 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .style import BLACK, BLUE, GREY, ORDER_COLOURS, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORDER_COLOURS, PAGE, Look, entry, new_panels
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
-PANELS = {
-    "front_speed": "front speed",
-    "peak_velocity": "peak slip velocity",
-    "transition_time": r"$T_\mathrm{trans}$",
-}
+PANELS = {"front_speed": "front speed", "peak_velocity": "peak slip velocity"}
+PANELS["transition_time"] = r"$T_\mathrm{trans}$"
 # Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
 SIZES = {1.0: 5.0, 0.5: 3.6, 0.25: 2.2}
 
@@ -31,41 +28,31 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Three errors against the work, and the speed of the front against the step."""
-    figure = new_figure(PAGE, 5.0)
-    axes = figure.subplots(2, 2).flat
+    figure, axes = new_panels(PAGE, 5.0, 2, 2)
     trade = table[table["part"] == "trade"]
     for panel, (name, title) in zip(axes, PANELS.items(), strict=False):
         _draw_trade(panel, trade, name)
         panel.set(title=title, ylabel="relative error", xlabel="stencil passes over a block")
     _draw_locking(axes[3], table[table["part"] == "locking"])
-    for panel, letter in zip(axes, "abcd", strict=True):
-        panel_letter(panel, letter)
-    figure.legend(
-        handles=_handles(trade), loc="outside upper center", ncols=5, columnspacing=1.0, handletextpad=0.3
-    )
+    look: Look = {"ncols": 5, "columnspacing": 1.0, "handletextpad": 0.3}
+    figure.legend(handles=_handles(trade), loc="outside upper center", **look)
     return figure
 
 
 def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     """One mark a setting; the textbook scheme joined over its steps, presets ringed."""
     textbook = rows[rows["scheme"] == "fixed_step"]
-    axes.plot(
-        textbook["work"], textbook[name], "x-", color=BLACK, markersize=3.5, linewidth=0.6, gid="textbook"
-    )
+    axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6, gid="textbook")
     for (order, step), marks in rows[rows["scheme"] == "localised"].groupby(["order", "step"]):
-        axes.plot(
-            marks["work"], marks[name], "o", color=ORDER_COLOURS[order], markersize=SIZES.get(step, 3.0), alpha=0.8,
-            markeredgewidth=0.0, gid="localised",
-        )  # fmt: skip
+        look: Look = {"color": ORDER_COLOURS[order], "markersize": SIZES.get(step, 3.0)}
+        axes.plot(marks["work"], marks[name], "o", alpha=0.8, markeredgewidth=0.0, gid="localised", **look)
     presets = rows[rows["preset"].notna()]
-    axes.plot(
-        presets["work"], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none", gid="preset"
-    )
-    for preset in presets.itertuples():
-        # On the side that is empty.
-        axes.annotate(
-            preset.preset, (preset.work, getattr(preset, name)), xytext=(4, 6), textcoords="offset points", fontsize=7.0
-        )  # fmt: skip
+    look = {"color": BLACK, "markersize": 8.0, "fillstyle": "none"}
+    axes.plot(presets["work"], presets[name], "o", gid="preset", **look)
+    # On the side that is empty.
+    look = {"xytext": (4, 6), "textcoords": "offset points", "fontsize": 7.0}
+    for _, preset in presets.iterrows():
+        axes.annotate(preset["preset"], (preset["work"], preset[name]), **look)
     axes.set(xscale="log", yscale="log")
 
 
@@ -75,12 +62,10 @@ def _handles(rows: pd.DataFrame) -> list[Line2D]:
     orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
     dots = [(ORDER_COLOURS[order], 3.6, f"order {order:g}") for order in orders]
     dots += [(GREY, size, f"step {step:g} dx") for step, size in SIZES.items()]
+    textbook = entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", linewidth=0.6, linestyle="-")
     return [
-        Line2D([], [], color=BLACK, marker="x", linewidth=0.6, label=f"textbook, dx = {spacings}"),
-        *(
-            Line2D([], [], color=colour, marker="o", linestyle="none", markersize=size, label=label)
-            for colour, size, label in dots
-        ),
+        textbook,
+        *(entry(label, color=colour, marker="o", markersize=size) for colour, size, label in dots),
     ]
 
 
@@ -95,13 +80,9 @@ def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
         label = r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$" if n == 1 else None
         axes.plot(steps, shown, color="0.75", linewidth=0.8, gid="locked", label=label)
     axes.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
-    axes.plot(
-        fixed["step"], fixed["front_speed"], "x", color=BLACK, markersize=3.5, gid="fixed_step",
-        label="textbook scheme",
-    )  # fmt: skip
-    axes.plot(
-        local["step"], local["front_speed"], "o", color=BLUE, fillstyle="none", markersize=4.0, gid="localised",
-        label="localised scheme",
-    )  # fmt: skip
+    look: Look = {"gid": "fixed_step", "label": "textbook scheme"}
+    axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, **look)
+    look = {"gid": "localised", "label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
+    axes.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
     axes.set(ylim=(low, high), xlabel=r"time step $\Delta t\,/\,\Delta x$", ylabel="front speed")
     axes.legend(loc="upper left", frameon=True, framealpha=1.0, edgecolor="none")

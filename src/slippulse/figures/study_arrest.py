@@ -6,15 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from ..data.points import point
 from ..measure.fronts import path
-from .style import GREY, PAGE, colour_scale, new_figure, panel_letter
+from .style import GREY, PAGE, Look, colour_scale, few_ticks, new_panels
 
-# What is drawn: data, measured numbers, predictions and studies by name, and keys of the configuration.
 NEEDS = {
     "data": ["arrest"],
     "measured": ["arrest"],
@@ -25,18 +22,12 @@ NEEDS = {
 
 PATH_POINTS = 150
 MARKERS = ("o", "s", "^", "D", "v")
+PALE: Look = {"linewidth": 3.0, "alpha": 0.35}
+OPEN: Look = {"markerfacecolor": "white"}
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The left front's path, its last release, and when it has covered the fraction of the way that counts as arrest.
-
-    Parameters
-    ----------
-    data : arrest
-    tables : arrest, and the study arrest_path
-    settings : measure (share)
 
     Returns
     -------
@@ -64,52 +55,32 @@ def table(
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a) what is left of the way, at the finest spacing; (b) times of the fraction and of the last release."""
-    figure = new_figure(PAGE, 2.9)
-    path_axes, spacing_axes = figure.subplots(1, 2)
+    figure, (path_axes, spacing_axes) = new_panels(PAGE, 2.9, 1, 2)
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
-        look = {"color": colour_scale("damping_ratio").to_rgba(ratio)}
+        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio)}
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
-        path_axes.plot(
-            simulated["time"],
-            simulated["to_go"],
-            linewidth=3.0,
-            alpha=0.35,
-            gid=f"simulation {ratio:g}",
-            **look,
-        )
+        path_axes.plot(simulated["time"], simulated["to_go"], gid=f"simulation {ratio:g}", **PALE, **look)
         path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, gid=f"theory {ratio:g}", **look)
         path_axes.plot(simulated["time"].iloc[-1:], simulated["to_go"].iloc[-1:], marker, **look)
         runs = rows[rows["role"] == "run"].sort_values("dx")
         spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, gid=f"last {ratio:g}", **look)
-        spacing_axes.plot(
-            runs["dx"],
-            runs["fraction_time"],
-            marker + "--",
-            markerfacecolor="white",
-            gid=f"fraction {ratio:g}",
-            **look,
-        )
+        fraction = OPEN | look | {"gid": f"fraction {ratio:g}"}
+        spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **fraction)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
         spacing_axes.plot([], [], marker=marker, label=f"$b$ = {ratio:g}", **look)
-    path_axes.plot([], [], color=GREY, linewidth=3.0, alpha=0.35, label="simulation")
+    path_axes.plot([], [], color=GREY, label="simulation", **PALE)
     path_axes.plot([], [], color=GREY, linewidth=0.9, label="exact")
     path_axes.plot([], [], "o", color=GREY, label="last release")
-    path_axes.set(
-        yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylabel=r"still to go, $1-|x|/|x_{-}|$", ylim=(5e-4, 1.1)
-    )
+    path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
+    path_axes.set_ylabel(r"still to go, $1-|x|/|x_{-}|$")
     path_axes.legend(loc="lower left")
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
-    name = f"{table['fraction'].max():.0%} of the way"
     spacing_axes.plot([], [], "o-", color=GREY, label="last release")
-    spacing_axes.plot([], [], "o--", color=GREY, markerfacecolor="white", label=name)
+    spacing_axes.plot([], [], "o--", color=GREY, label=f"{table['fraction'].max():.0%} of the way", **OPEN)
     spacing_axes.plot([], [], "<", color=GREY, label="the same, exact")
     handles, labels = spacing_axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside right center")
-    spacing_axes.xaxis.set_minor_formatter(NullFormatter())
-    spacings = np.unique(table["dx"].dropna())
-    spacing_axes.set_xticks(spacings, [f"{dx:g}" for dx in spacings])
-    for axes, letter in zip((path_axes, spacing_axes), "ab", strict=True):
-        panel_letter(axes, letter)
+    few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, ORANGE, PAGE, colour_scale, new_figure, panel_letter
+from .style import BLACK, BLUE, ORANGE, PAGE, Look, colour_scale, few_ticks, new_panels
 
 NEEDS = {"studies": ["barriers"]}
 
@@ -19,6 +18,7 @@ MAP = "cividis"
 # Points of the interpolated map along each axis, and contour lines on it.
 FINE, CONTOURS = 41, (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
 MARKERS, COLOURS = ("o", "s", "^"), (BLUE, ORANGE)
+OPEN: Look = {"markersize": 3.8, "markerfacecolor": "white"}
 # gamma of the curves, for which the later estimate is drawn; exact depths scale to it.
 GAMMA = 0.65
 LEVELS = (0.2, 0.5, 0.8)
@@ -57,32 +57,24 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Above: maps without and with damping. Below: curves with the estimate, and convergence."""
-    figure = new_figure(PAGE, 5.4)
-    axes = figure.subplot_mosaic("ab;cd")
+    figure, (*maps, curve_axes, convergence_axes) = new_panels(PAGE, 5.4, 2, 2)
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     scale = LogNorm(float(fine["exact"].min()), float(fine["exact"].max()))
     ratios = np.sort(runs["damping_ratio"].unique())
-    for name, ratio in zip("ab", ratios, strict=True):
+    for axes, ratio in zip(maps, ratios, strict=True):
         at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
-        image = _draw_map(axes[name], at, marked, scale)
-        axes[name].set_title(rf"$b = {ratio:g}$", loc="right")
-    bar = figure.colorbar(image, ax=[axes["a"], axes["b"]], aspect=25, pad=0.02)
+        image = _draw_map(axes, at, marked, scale)
+        axes.set_title(rf"$b = {ratio:g}$", loc="right")
+    bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
-    _few_ticks(bar.ax.yaxis, CONTOURS)
+    few_ticks(bar.ax.yaxis, CONTOURS)
     # At the larger damping ratio, which is the last above.
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
-    _draw_curves(axes["c"], curves, marked)
-    axes["c"].set_title(rf"$b = {ratio:g}$", loc="right")
-    _draw_convergence(axes["d"], runs)
-    for name in "abcd":
-        panel_letter(axes[name], name)
+    _draw_curves(curve_axes, curves, marked)
+    curve_axes.set_title(rf"$b = {ratio:g}$", loc="right")
+    _draw_convergence(convergence_axes, runs)
     return figure
-
-
-def _few_ticks(axis: matplotlib.axis.Axis, ticks: tuple[float, ...]) -> None:
-    axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
-    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm):
@@ -91,13 +83,12 @@ def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNo
     image = axes.pcolormesh(x, y, grid.to_numpy(), norm=scale, cmap=MAP, shading="gouraud", rasterized=True)
     lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors="white", linewidths=0.5)
     axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
+    look: Look = {"s": 26.0, "edgecolors": "white", "linewidths": 0.9, "gid": "lattice", "zorder": 3.0}
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
-        axes.scatter(
-            group["tau0"], -group["barrier"], c=group["measured"] * np.sqrt(gamma), norm=scale, cmap=MAP, marker=marker,
-            s=26.0, edgecolors="white", linewidths=0.9, gid="lattice", zorder=3.0,
-        )  # fmt: skip
+        look |= {"c": group["measured"] * np.sqrt(gamma), "norm": scale, "cmap": MAP, "marker": marker}
+        axes.scatter(group["tau0"], -group["barrier"], **look)
     axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\mathrm{b}$")
-    _few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
+    few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
     return image
 
 
@@ -106,40 +97,29 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):
         colour = colour_scale("tau_0").to_rgba(tau0)
-        axes.plot(
-            -rows["barrier"],
-            rows["exact"],
-            color=colour,
-            gid=f"exact {tau0:g}",
-            label=rf"$\tau_0 = {tau0:g}$",
-        )
-        axes.plot(
-            -rows["barrier"], rows["paper"], color=colour, linestyle="--", linewidth=0.8, gid=f"estimate {tau0:g}"
-        )  # fmt: skip
+        label, depth = rf"$\tau_0 = {tau0:g}$", -rows["barrier"]
+        axes.plot(depth, rows["exact"], color=colour, gid=f"exact {tau0:g}", label=label)
+        axes.plot(depth, rows["paper"], "--", color=colour, linewidth=0.8, gid=f"estimate {tau0:g}")
         for gamma, found in finest[finest["tau0"] == tau0].groupby("gamma"):
-            axes.plot(
-                -found["barrier"], found["measured"] * np.sqrt(gamma / GAMMA), markers[gamma], color=colour,
-                markersize=3.8, markerfacecolor="white", gid=f"lattice {tau0:g}",
-            )  # fmt: skip
+            look: Look = {"color": colour, "gid": f"lattice {tau0:g}"} | OPEN
+            axes.plot(-found["barrier"], found["measured"] * np.sqrt(gamma / GAMMA), markers[gamma], **look)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="later estimate")
     for gamma, marker in markers.items():
-        label = rf"lattice, $\gamma = {gamma:g}$"
-        axes.plot([], [], marker, color="0.3", markersize=3.8, markerfacecolor="white", label=label)
+        axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
     axes.set(xscale="log", yscale="log", ylim=(0.4, 45.0), xlabel=r"barrier $-\tau_\mathrm{b}$")
     axes.set_ylabel(rf"depth at $\gamma = {GAMMA:g}$")
-    _few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
-    _few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
+    few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
+    few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
     axes.legend(loc="upper right", labelspacing=0.2, ncols=2, columnspacing=0.8, handletextpad=0.4)
 
 
 def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
     for colour, (ratio, chosen) in zip(COLOURS, runs.groupby("damping_ratio"), strict=True):
+        look: Look = {"color": colour, "linewidth": 0.7, "markersize": 1.8, "alpha": 0.8}
         for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
-            line = line.sort_values("dx")
-            axes.plot(
-                line["dx"], line["measured"] / line["exact"], color=colour, linewidth=0.7, marker="o", markersize=1.8,
-                alpha=0.8, gid=f"lattice {ratio:g}", label=None if number else rf"$b = {ratio:g}$",
-            )  # fmt: skip
+            line, label = line.sort_values("dx"), None if number else rf"$b = {ratio:g}$"
+            over = line["measured"] / line["exact"]
+            axes.plot(line["dx"], over, "o-", gid=f"lattice {ratio:g}", label=label, **look)
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
     low, high = axes.get_ylim()

@@ -4,41 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import matplotlib
 import numpy as np
 import pandas as pd
-import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from ..data.numerals import setting
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, VELOCITY_MAP, new_figure, panel_letter
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, entry, few_ticks, new_panels
 
-# What is drawn: data, measured numbers, predictions and studies by name, and keys of the configuration.
 NEEDS = {"studies": ["exact_rupture"]}
 
 SCENES = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress": GREEN}
-QUANTITIES = {
-    "release": ("release", "o"),
-    "stick": ("stick", "s"),
-    "slip": ("slip", "^"),
-    "velocity": ("slip velocity", "D"),
-}
+# Their names and markers.
+QUANTITIES = {"release": ("release", "o"), "stick": ("stick", "s"), "slip": ("slip", "^")}
+QUANTITIES["velocity"] = ("slip velocity", "D")
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The study exact_rupture as it is."""
     return tables["exact_rupture"]
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
-    figure = new_figure(PAGE, 5.4)
-    map_axes, edge_axes, slip_axes, difference_axes = figure.subplots(2, 2).ravel()
-    first = next(iter(SCENES))
-    _draw_map(figure, map_axes, table[table["scene"] == first])
+    figure, (map_axes, edge_axes, slip_axes, difference_axes) = new_panels(PAGE, 5.4, 2, 2)
+    _draw_map(figure, map_axes, table[table["scene"] == next(iter(SCENES))])
     names = {row["scene"]: _name(row) for _, row in table[table["role"] == "scene"].iterrows()}
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
@@ -47,21 +37,14 @@ def plot(table: pd.DataFrame) -> Figure:
                 _draw_edge(axes, rows, quantity, colour)
         _draw_differences(difference_axes, rows[rows["role"] == "difference"], colour)
     dx = table.loc[table["role"] == "scene", "dx"].iloc[0]
-    for look, label in (
-        ("-", "front, exact"),
-        ("--", "trailing edge, exact"),
-        ("o", rf"lattice, $\Delta x = {dx:g}$"),
-    ):
+    looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"lattice, $\Delta x = {dx:g}$"}
+    for look, label in looks.items():
         edge_axes.plot([], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label)
     edge_axes.set(xlabel=r"position $x$", ylabel=r"time $t$", ylim=(0.0, 1.3 * edge_axes.get_ylim()[1]))
     edge_axes.legend(loc="upper center", ncols=2)
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
     _finish_differences(difference_axes, table[table["role"] == "difference"])
-    for axes, letter in zip((map_axes, edge_axes, slip_axes, difference_axes), "abcd", strict=True):
-        panel_letter(axes, letter)
-    lines = [
-        matplotlib.lines.Line2D([], [], color=colour, label=names[scene]) for scene, colour in SCENES.items()
-    ]
+    lines = [entry(names[scene], color=colour) for scene, colour in SCENES.items()]
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     return figure
 
@@ -72,26 +55,17 @@ def _name(row: pd.Series) -> str:
     return rf"{springs}, $\tau_0$ = {', '.join(levels)}"
 
 
-def _draw_map(figure: Figure, axes, rows: pd.DataFrame) -> None:
+def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     samples = rows[rows["role"].isin(["map_exact", "map_lattice"])]
+    look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": samples["slip_velocity"].max()}
     for _, half in samples.groupby("role"):
         # What does not slide stays white.
         grid = half.pivot(index="time", columns="position", values="slip_velocity")
-        image = axes.pcolormesh(
-            grid.columns,
-            grid.index,
-            grid.to_numpy(),
-            shading="nearest",
-            cmap=matplotlib.colormaps[VELOCITY_MAP],
-            vmin=0.0,
-            vmax=float(samples["slip_velocity"].max()),
-            rasterized=True,
-        )
+        image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
     exact = rows[rows["role"] == "exact"]
     for quantity, style in (("release", "-"), ("stick", "--")):
-        axes.plot(
-            exact["position"], exact[quantity], style, color=BLACK, linewidth=0.9, gid=f"exact {quantity}"
-        )
+        look = {"color": BLACK, "linewidth": 0.9, "gid": f"exact {quantity}"}
+        axes.plot(exact["position"], exact[quantity], style, **look)
     axes.axvline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     axes.text(0.04, 0.04, "exact", transform=axes.transAxes)
     axes.text(0.96, 0.04, "lattice", transform=axes.transAxes, ha="right")
@@ -99,43 +73,29 @@ def _draw_map(figure: Figure, axes, rows: pd.DataFrame) -> None:
     axes.set(xlabel=r"position $x$", ylabel=r"time $t$", ylim=(0.0, None))
 
 
-def _draw_edge(axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
+def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
     """The exact line and the lattice's marks."""
-    style, marker = ("--", "s") if quantity == "stick" else ("-", "o")
-    for role, look in (("exact", {"linestyle": style}), ("lattice", {"linestyle": "none", "marker": marker})):
-        line = rows[rows["role"] == role]
-        axes.plot(
-            line["position"],
-            line[quantity],
-            color=colour,
-            linewidth=0.9,
-            markersize=2.2,
-            markerfacecolor="white",
-            markeredgewidth=0.6,
-            gid=f"{role} {quantity} {rows['scene'].iloc[0]}",
-            **look,
-        )
+    look: Look = {"linewidth": 0.9, "markersize": 2.2, "markerfacecolor": "white", "markeredgewidth": 0.6}
+    styles = ("--", "s") if quantity == "stick" else ("-", "o")
+    for role, style in zip(("exact", "lattice"), styles, strict=True):
+        line, gid = rows[rows["role"] == role], f"{role} {quantity} {rows['scene'].iloc[0]}"
+        axes.plot(line["position"], line[quantity], style, color=colour, gid=gid, **look)
 
 
-def _draw_differences(axes, rows: pd.DataFrame, colour: str) -> None:
+def _draw_differences(axes: Axes, rows: pd.DataFrame, colour: str) -> None:
     for quantity, line in rows.groupby("quantity"):
         line = line.sort_values("dx")
-        marker = QUANTITIES[str(quantity)][1]
-        axes.plot(
-            line["dx"], line["difference"], marker=marker, color=colour, linewidth=0.7, gid=str(quantity)
-        )
+        look: Look = {"marker": QUANTITIES[str(quantity)][1], "color": colour, "linewidth": 0.7}
+        axes.plot(line["dx"], line["difference"], gid=str(quantity), **look)
 
 
-def _finish_differences(axes, rows: pd.DataFrame) -> None:
+def _finish_differences(axes: Axes, rows: pd.DataFrame) -> None:
     for label, marker in QUANTITIES.values():
         axes.plot([], [], marker, color=GREY, label=label)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
     axes.plot(ends, 1.5 * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
-    axes.set(
-        xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="mean |lattice $-$ exact| / mean"
-    )
-    spacings = np.unique(rows["dx"])
-    axes.set_xticks(spacings, [f"{dx:g}" for dx in spacings])
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
+    axes.set_ylabel("mean |lattice $-$ exact| / mean")
+    few_ticks(axes.xaxis, np.unique(rows["dx"]))
     axes.set_ylim(None, 4.0 * axes.get_ylim()[1])
     axes.legend(loc="upper left", ncols=2)

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
-from .style import BLACK, GREY, PAGE, colour_scale, new_figure, panel_letter
+from .style import BLACK, GREY, PAGE, Look, colour_scale, few_ticks, legend_above, new_panels
 
-# What is drawn: data, measured numbers, predictions and studies by name, and keys of the configuration.
 NEEDS = {
     "measured": [
         "front_speed",
@@ -40,15 +38,8 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx", "springs", "held", "fixed"]
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Simulated speeds with theory joined to each, and lines of theory.
-
-    Parameters
-    ----------
-    data, settings : not used
-    tables : the simulations and the study in NEEDS
 
     Returns
     -------
@@ -59,27 +50,20 @@ def table(
     uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
     springs = tables["front_speed_springs"]
     springs = springs[springs["release"] == lines.loc[lines["panel"] == "springs", "release"].iloc[0]]
-    ratio = tables["continuum_fixed_ratio"]
+    ratio = tables["continuum_fixed_ratio"].assign(held="b", fixed=lambda runs: runs["damping_ratio"])
     betas = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
-    refined = pd.concat(
-        [ratio.assign(held="b", fixed=ratio["damping_ratio"]), betas.assign(held="beta", fixed=betas["beta"])]
-    )
+    refined = pd.concat([ratio, betas.assign(held="beta", fixed=betas["beta"])])
     drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
-    runs = pd.concat(
-        [
-            uniform.assign(panel="prestress"),
-            springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2),
-            refined.merge(drawn.drop_duplicates()).assign(panel="refined"),
-        ]
-    )
+    springs = springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2)
+    refined = refined.merge(drawn.drop_duplicates()).assign(panel="refined")
+    runs = pd.concat([uniform.assign(panel="prestress"), springs, refined])
     wide = (runs["pulse_state"] == "steady") & (runs["pulse_width"] >= FEWEST_BLOCKS * runs["dx"])
+    theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     runs = runs[COLUMNS].assign(
         role="simulation",
         speed=runs["front_speed_right"],
         # Refined lattices have theirs in the lines.
-        theory=runs["lattice_front_speed_right"]
-        .fillna(runs["exact_front_speed_right"])
-        .where(runs["panel"] != "refined"),
+        theory=theory.where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
         sound=runs["run_flags"].isna() & (wide | (runs["panel"] == "prestress")),
     )
@@ -88,26 +72,19 @@ def table(
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a, b) both rules against tau_0, over the undamped speed; (c) leaf springs; (d) refined lattices."""
-    figure = new_figure(PAGE, 5.2)
-    grid = figure.subplots(2, 2).ravel()
+    figure, grid = new_panels(PAGE, 5.2, 2, 2)
     for axes, rule in zip(grid, RULES, strict=False):
         _draw_prestress(axes, _part(table, "prestress", rule))
         axes.set_title(f"release by {rule} stress", loc="right")
     grid[0].set(yscale="log", ylim=(0.93, 30.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
-    grid[0].set_yticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
+    few_ticks(grid[0].yaxis, (1, 2, 5, 10, 20))
     grid[1].set(ylim=(0.98, 1.45), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
-    left = np.linspace(0.0, 1.0, 101)
-    (limit,) = grid[1].plot(
-        left, np.sqrt(1.0 + left), ":", color=BLACK, label=r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
-    )
-    grid[1].legend(handles=[limit], loc="upper left")
+    left, label = np.linspace(0.0, 1.0, 101), r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
+    limit = grid[1].plot(left, np.sqrt(1.0 + left), ":", color=BLACK, label=label)
+    grid[1].legend(handles=limit, loc="upper left")
     _draw_springs(grid[2], _part(table, "springs"))
     _draw_refined(grid[3], table[table["panel"].isin(["refined", "limit"])])
-    for axes, letter in zip(grid, "abcd", strict=True):
-        axes.yaxis.set_minor_formatter(NullFormatter())
-        panel_letter(axes, letter)
-    handles, labels = grid[0].get_legend_handles_labels()
-    figure.legend(handles, labels, title="damping ratio $b$", loc="outside upper center", ncols=len(labels))
+    legend_above(figure, grid[0], title="damping ratio $b$")
     return figure
 
 
@@ -119,7 +96,7 @@ def _colour(ratio: float):
     return colour_scale("damping_ratio").to_rgba(np.asarray(ratio))
 
 
-def _draw_prestress(axes, rows: pd.DataFrame) -> None:
+def _draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
     rows = rows.assign(over=rows["speed"] * np.sqrt(1.0 - rows["left"] ** 2))
     for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
         line = group[group["role"] == "theory"]
@@ -128,14 +105,13 @@ def _draw_prestress(axes, rows: pd.DataFrame) -> None:
     axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0))
 
 
-def _draw_springs(axes, rows: pd.DataFrame) -> None:
+def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     looks = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
     for (left, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
         style, marker = looks[left]
-        axes.plot(
-            line["springs"], line["speed"], style, color=_colour(ratio), gid=f"springs {left:g} {ratio:g}"
-        )
+        gid = f"springs {left:g} {ratio:g}"
+        axes.plot(line["springs"], line["speed"], style, color=_colour(ratio), gid=gid)
         known = line.dropna(subset="speed")
         if len(known) < len(line):
             axes.plot(known["springs"].iloc[-1:], known["speed"].iloc[-1:], "x", color=_colour(ratio))
@@ -143,23 +119,20 @@ def _draw_springs(axes, rows: pd.DataFrame) -> None:
     for left, (style, marker) in looks.items():
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
     axes.plot([], [], "x", color=GREY, label="no front beyond")
-    axes.set(
-        xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$", ylabel="front speed $v$"
-    )
+    axes.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
+    axes.set_ylabel("front speed $v$")
     axes.set_title("release by total stress", loc="right")
-    axes.set_yticks([1, 1.5, 2, 3, 4, 5], ["1", "1.5", "2", "3", "4", "5"])
+    few_ticks(axes.yaxis, (1, 1.5, 2, 3, 4, 5))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.62))
 
 
-def _draw_refined(axes, rows: pd.DataFrame) -> None:
+def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     names = {"b": "b", "beta": r"\beta"}
     lines = rows[rows["panel"] == "refined"].groupby(["held", "fixed", "release"])
     for ((held, fixed, rule), group), marker in zip(lines, MARKERS, strict=False):
         line = group[group["role"] == "theory"].sort_values("dx")
-        name = rf"fixed ${names[held]} = {fixed:g}$, {rule}"
-        axes.plot(
-            line["dx"], line["speed"], color=GREY, linewidth=0.8, gid=f"refined {held} {fixed:g} {rule}"
-        )
+        gid, name = f"refined {held} {fixed:g} {rule}", rf"fixed ${names[held]} = {fixed:g}$, {rule}"
+        axes.plot(line["dx"], line["speed"], color=GREY, linewidth=0.8, gid=gid)
         _points(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker, color=GREY, label=name)
     limit = rows.loc[rows["panel"] == "limit", "speed"].max()
@@ -167,16 +140,16 @@ def _draw_refined(axes, rows: pd.DataFrame) -> None:
     undamped = rows["undamped"].max()
     axes.axhline(undamped, color=GREY, linewidth=0.8, linestyle="--", label=r"$1/\sqrt{1-\tau_0^2}$")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
-    axes.set_yticks([1.2, 1.5, 2, 2.5, 3], ["1.2", "1.5", "2", "2.5", "3"])
+    few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
     axes.set_title(rf"refining, $\tau_0 = {rows['left'].iloc[0]:g}$", loc="right")
     axes.legend(loc="upper right")
 
 
-def _points(axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None) -> None:
+def _points(axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None) -> None:
     """Simulated speeds in the colour of their damping ratio; open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
         colour = _colour(ratio)
-        look = {"color": colour, "markerfacecolor": colour if sound else "white", "markersize": 3.5}
+        look: Look = {"color": colour, "markerfacecolor": colour if sound else "white", "markersize": 3.5}
         label = label if sound else None
         axes.plot(group[x], group[y], marker, linestyle="none", gid="simulation", label=label, **look)

@@ -8,10 +8,9 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 
 from ..claims.inference import curve, likely
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_figure, panel_letter
 
 NEEDS = {
     "studies": ["published_figure"],
@@ -47,9 +46,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         line = curve(profile)
         best, readings = line.loc[line["chi2"].idxmin()], profile["reading"].drop_duplicates()
         rows = pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)})
-        parts.append(
-            line[::KEPT][[*names, "tau0_error", "gamma_error"]].assign(part="curve", release=release)
-        )
+        kept = line[::KEPT][[*names, "tau0_error", "gamma_error"]]
+        parts.append(kept.assign(part="curve", release=release))
         parts.append(rows.assign(part="best", release=release, **best[names]))
     scene = settings["simulations"]["space_time_displacement"]
     ours = {"tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
@@ -76,8 +74,7 @@ def _curves(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
 
 def _ratio_axis(axes: Axes) -> None:
     axes.set(xscale="log", xlabel=r"damping ratio $b$")
-    axes.set_xticks([0.05, 0.1, 0.2, 0.3], ["0.05", "0.1", "0.2", "0.3"])
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    few_ticks(axes.xaxis, (0.05, 0.1, 0.2, 0.3))
 
 
 def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
@@ -92,21 +89,16 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
         inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
         axes.fill_between(inside["damping_ratio"], inside["chi2"], color=colour, alpha=0.18, linewidth=0.0)
         found = best[best["release"] == release].iloc[0]
-        axes.plot(
-            found["damping_ratio"], found["chi2"], marker, color=colour, linestyle="none",
-            label=rf"{label}: $\chi^2 = {found['chi2']:.1f}$",
-        )  # fmt: skip
+        label = rf"{label}: $\chi^2 = {found['chi2']:.1f}$"
+        axes.plot(found["damping_ratio"], found["chi2"], marker, color=colour, label=label)
     top = 1.75 * accepted
     notebook = table[table["part"] == "notebook"]
-    axes.axvline(
-        notebook["damping_ratio"].iloc[0], ymax=accepted / top, color=GREY, linewidth=0.8, linestyle="--",
-        label=rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$",
-    )  # fmt: skip
+    label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
+    look: Look = {"color": GREY, "linewidth": 0.8, "linestyle": "--", "label": label}
+    axes.axvline(notebook["damping_ratio"].iloc[0], ymax=accepted / top, **look)
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
-    axes.text(
-        0.98, accepted, f"5 % at {dof} degrees of freedom", transform=axes.get_yaxis_transform(), fontsize=7.0,
-        ha="right", va="bottom",
-    )  # fmt: skip
+    look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
+    axes.text(0.98, accepted, f"5 % at {dof} degrees of freedom", **look)
     _ratio_axis(axes)
     axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
     axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
@@ -120,14 +112,13 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
             inside = line[room >= 0.0]
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
+            ends, gid = (inside[name] - half, inside[name] + half), f"{release} {level:g}"
             axes.fill_between(
-                inside["damping_ratio"], inside[name] - half, inside[name] + half, color=colour, alpha=alpha,
-                linewidth=0.0, gid=f"{release} {level:g}",
-            )  # fmt: skip
+                inside["damping_ratio"], *ends, color=colour, alpha=alpha, linewidth=0.0, gid=gid
+            )
         best = table[(table["part"] == "best") & (table["release"] == release)].iloc[0]
-        axes.plot(
-            best["damping_ratio"], best[name], marker, color=colour, markeredgecolor="white", markersize=4.5
-        )
+        look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
+        axes.plot(best["damping_ratio"], best[name], marker, **look)
     ours = table[table["part"] == "ours"].iloc[0]
     axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     if name == "tau0":

@@ -3,35 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import matplotlib
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from ..data.points import point
 from ..model.scene import scene_of
-from .style import GREY, PAGE, colour_scale, new_figure, panel_letter
+from .style import GREY, PAGE, Look, colour_scale, new_panels
 
-# What is drawn: data, measured numbers, predictions and studies by name, and keys of the configuration.
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
 # Points of a lattice, how many there are to a mark, and what rounding leaves of the exact distance.
 POINTS, MARKED, ROUNDING = 100, 5, 2e-9
 
 
-def table(
-    data: Mapping[str, xr.Dataset], tables: Mapping[str, pd.DataFrame], settings: Mapping
-) -> pd.DataFrame:
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Slip left behind over the distance from the step (Gamma = 1), largest velocity over time (Gamma = 0).
-
-    Parameters
-    ----------
-    data : pulses_across_a_step, regimes_beyond
-    tables : the study pulse_memory
-    settings : not used
 
     Returns
     -------
@@ -66,18 +59,15 @@ def _runs(sweep: xr.Dataset) -> list[xr.Dataset]:
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a) slip across the step, (b) how far from the new steady pulse, (c) largest velocity under imposed stress."""
-    figure = new_figure(PAGE, 3.1)
-    slip_axes, rest_axes, velocity_axes = figure.subplots(1, 3)
+    figure, (slip_axes, rest_axes, velocity_axes) = new_panels(PAGE, 3.1, 1, 3)
     slip = table[table["role"].isin(["exact", "lattice"])]
     for level, rows in slip.groupby("level"):
-        _draw_level(
-            slip_axes, rest_axes, rows.sort_values("x"), colour_scale("tau_0").to_rgba(level), f"{level:g}"
-        )
+        colour = colour_scale("tau_0").to_rgba(level)
+        _draw_level(slip_axes, rest_axes, rows.sort_values("x"), colour, f"{level:g}")
     slip_axes.axvline(0.0, 0.0, 0.65, color=GREY, linewidth=0.6, linestyle=":")
     slip_axes.plot([], [], "|", color=GREY, markersize=7.0, label="finite memory")
-    slip_axes.plot(
-        [], [], "o", color=GREY, markersize=2.0, label=rf"lattice, $\Delta x = {slip['dx'].max():g}$"
-    )
+    label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
+    slip_axes.plot([], [], "o", color=GREY, markersize=2.0, label=label)
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
     slip_axes.set_ylim(None, 1.5 * slip["slip"].max())
@@ -90,37 +80,42 @@ def plot(table: pd.DataFrame) -> Figure:
     rest_axes.set_title(r"$\Gamma = 1$", loc="right")
     rest_axes.legend(loc="lower left")
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
-    for axes, letter in zip((slip_axes, rest_axes, velocity_axes), "abc", strict=True):
-        panel_letter(axes, letter)
     return figure
 
 
-def _draw_level(slip_axes, rest_axes, rows: pd.DataFrame, colour, level: str) -> None:
+def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str) -> None:
     exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
     slip_axes.plot(exact["x"], exact["slip"], color=colour, label=level, gid=f"exact {level}")
     marks = lattice.iloc[::MARKED]
-    look = {"markersize": 1.8, "markerfacecolor": "white", "markeredgewidth": 0.5, "gid": f"slip {level}"}
+    look: Look = {
+        "markersize": 1.8,
+        "markerfacecolor": "white",
+        "markeredgewidth": 0.5,
+        "gid": f"slip {level}",
+    }
     slip_axes.plot(marks["x"], marks["slip"], "o", color=colour, **look)
-    slip_axes.plot(
-        memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2, gid=f"memory {level}"
-    )
+    look = {"markersize": 9.0, "markeredgewidth": 1.2, "gid": f"memory {level}"}
+    slip_axes.plot(memory, steady, "|", color=colour, **look)
     for part, style, name in ((exact, "-", "rest"), (lattice, ":", "lattice rest")):
         beyond = part[part["x"] > 0.0]
         rest = np.maximum(np.abs(beyond["slip"] / steady - 1.0), ROUNDING)
         rest_axes.plot(beyond["x"] / memory, rest, style, color=colour, linewidth=1.0, gid=f"{name} {level}")
 
 
-def _draw_velocity(axes, rows: pd.DataFrame) -> None:
+def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     rows = rows[rows["largest_velocity"] > 0.0]
     levels = np.unique(rows["level"])
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.92, levels.size))
     for colour, level in zip(colours, levels, strict=True):
         line = rows[rows["level"] == level]
-        axes.plot(
-            line["time"], line["largest_velocity"], "o-", color=colour, markersize=2.0, linewidth=0.6,
-            label=setting(level), gid=f"velocity {level:g}",
-        )  # fmt: skip
+        look: Look = {
+            "markersize": 2.0,
+            "linewidth": 0.6,
+            "label": setting(level),
+            "gid": f"velocity {level:g}",
+        }
+        axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, **look)
     axes.axvline(rows["step"].iloc[0], 0.0, 0.75, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")

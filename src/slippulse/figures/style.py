@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import matplotlib
 import matplotlib.rcsetup
@@ -12,15 +12,19 @@ import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
 
 from ..data.files import write_whole
 from ..data.origin import configuration
 from ..model.prestress import Prestress
 
+# How a thing is drawn: keywords of Matplotlib.
+Look: TypeAlias = dict[str, Any]
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
 PAGE = 7.05
@@ -77,6 +81,23 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
+def new_panels(
+    width: float, height: float, rows: int, columns: int, **options: Any
+) -> tuple[Figure, list[Axes]]:
+    """An empty figure with lettered panels in the order of reading."""
+    figure = new_figure(width, height)
+    panels = list(figure.subplots(rows, columns, **options).flat)
+    for axes, letter in zip(panels, "abcdef", strict=False):
+        panel_letter(axes, letter)
+    return figure, panels
+
+
+def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
+    """These ticks alone with numbers, on a logarithmic axis too."""
+    axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
+    axis.set_minor_formatter(NullFormatter())
+
+
 def stacked(figure: Figure, heights: Sequence[float]) -> list[SubFigure]:
     """Parts of a figure one above the other, with the ratios of their heights."""
     grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
@@ -101,9 +122,15 @@ def entry(label: str, **look: Any) -> Line2D:
     return Line2D([], [], label=label, **({"linestyle": "none"} if "marker" in look else {}) | look)
 
 
+def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
+    """One legend for all panels, above them, of what is labelled in one."""
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels), **look)
+
+
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
     """One legend for all panels, below them."""
-    look = {"columnspacing": 1.0, "handlelength": 1.6, "handletextpad": 0.6}
+    look: dict[str, Any] = {"columnspacing": 1.0, "handlelength": 1.6, "handletextpad": 0.6}
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
 
 

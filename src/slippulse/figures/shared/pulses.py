@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
-from ..style import BLACK, CYCLE, colour_scale, entry, prestress_inset
+from ..style import BLACK, CYCLE, Look, colour_scale, entry, prestress_inset
 
 FIELDS = {
     "slip": r"slip $u$",
@@ -23,7 +23,7 @@ FIELDS = {
 STYLES = ("-", "--", ":", "-.")
 # Points of a simulated curve, digits that can be seen, and what is drawn ahead of a pulse and behind it, in widths.
 POINTS, DIGITS, AHEAD, BEHIND = 400, 5, 0.08, 0.25
-PALE: dict[str, Any] = {"linewidth": 2.4, "alpha": 0.35}
+PALE: Look = {"linewidth": 2.4, "alpha": 0.35}
 # The paper's scales of FIELDS, as its predictions name them.
 SCALES = ("slip", "peak_velocity", "acceleration")
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]

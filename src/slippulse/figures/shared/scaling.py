@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..style import BLACK, GREY, colour_scale, entry, legend_below, panel_letter
+from ..style import BLACK, GREY, Look, colour_scale, entry, legend_below, panel_letter
 
 SYMBOLS = {"length": r"L_\mathrm{trans}", "time": r"T_\mathrm{trans}"}
 # The paper's definitions read literally, which are measured beside those used here.
@@ -94,7 +94,7 @@ def _scatter(
     """Runs with their colours, flagged ones open and grey."""
     flagged = runs["run_flags"].notna()
     sound = runs[~flagged]
-    own: dict[str, Any] = {"s": 9.0, "linewidths": 0.0, "marker": marker} | look
+    own: Look = {"s": 9.0, "linewidths": 0.0, "marker": marker} | look
     if flagged.any():
         grey = own | {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
         axes.scatter(x[flagged], y[flagged], gid="flagged", **grey)

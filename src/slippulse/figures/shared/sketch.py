@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch
 from matplotlib.text import Text
 
-from ..style import BLACK
+from ..style import BLACK, Look
 
 Point = tuple[float, float]
 
@@ -17,7 +17,7 @@ def arrow(
     axes: Axes, start: Point, end: Point, colour: str, style: str = "-|>", gid: str | None = None
 ) -> None:
     """An arrow from one point to another, which it touches."""
-    look: dict[str, Any] = {"mutation_scale": 7.0, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
+    look: Look = {"mutation_scale": 7.0, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
     axes.add_patch(FancyArrowPatch(start, end, arrowstyle=style, color=colour, gid=gid, **look))
 
 
