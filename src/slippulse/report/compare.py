@@ -9,8 +9,8 @@ import json
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -29,7 +29,8 @@ DIGITS, ROUNDING = 1e-8, 1e-6
 SHOWN = 10
 
 
-class Comparison(NamedTuple):
+@dataclass
+class Comparison:
     """Numbers of two trees of results.
 
     Attributes
@@ -40,11 +41,11 @@ class Comparison(NamedTuple):
     other : what is not comparable: other configurations, other runs, tables in one tree only; and other verdicts
     """
 
-    compared: int
-    agree: int
-    unknown: int
-    apart: list[str]
-    other: list[str]
+    compared: int = 0
+    agree: int = 0
+    unknown: int = 0
+    apart: list[str] = field(default_factory=list)
+    other: list[str] = field(default_factory=list)
 
 
 def compare(here: Path, there: Path) -> Comparison:
@@ -55,32 +56,27 @@ def compare(here: Path, there: Path) -> Comparison:
     ValueError
         If one has no measured tables, or a file that cannot be read.
     """
-    trees = (here, there)
+    found, trees = Comparison(), (here, there)
     names = [{path.name for path in (tree / "measurements").glob("*.csv")} for tree in trees]
-    for tree, found in zip(trees, names, strict=True):
-        if not found:
+    for tree, tables in zip(trees, names, strict=True):
+        if not tables:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
-    parts = [_compare_tables(trees, name) for name in sorted(names[0] & names[1])]
-    other = [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    other += _configurations(trees) + [line for part in parts for line in part.other] + _verdicts(trees)
-    apart = [line for part in parts for line in part.apart]
-    return Comparison(
-        sum(part.compared for part in parts),
-        sum(part.agree for part in parts),
-        sum(part.unknown for part in parts),
-        apart,
-        other,
-    )
+    found.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
+    _compare_contents(found, trees)
+    for name in sorted(names[0] & names[1]):
+        _compare_tables(found, trees, name)
+    return found
 
 
-def _compare_tables(trees: tuple[Path, Path], name: str) -> Comparison:
+def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> None:
     """One table of measured numbers, with the grid studies of both."""
     one, two = (_table(tree / "measurements" / name, SAME) for tree in trees)
     if not one[SAME].equals(two[SAME]):
-        return Comparison(0, 0, 0, [], [f"{name}: other runs"])
-    other = [f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})]
+        found.other.append(f"{name}: other runs")
+        return
+    found.other += [f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})]
     if len({(tree / "uncertainties" / name).exists() for tree in trees}) > 1:
-        other.append(f"{name}: uncertainties in one tree only")
+        found.other.append(f"{name}: uncertainties in one tree only")
     both = [column for column in one if column in two and column not in SAME]
     lattice = [column for column in both if column in LATTICE]
     alike = (one[lattice] == two[lattice]).all(axis=1).to_numpy()[:, None]
@@ -97,24 +93,24 @@ def _compare_tables(trees: tuple[Path, Path], name: str) -> Comparison:
     within = (value - value_there).abs() <= allowed
     counted = (value.notna() & value_there.notna()) | ((value.notna() | value_there.notna()) & alike)
     unknown = counted & ~within & ~known & ~alike
-    apart = [
+    found.compared += int(counted.to_numpy().sum())
+    found.agree += int((counted & within).to_numpy().sum())
+    found.unknown += int(unknown.to_numpy().sum())
+    found.apart += [
         f"{name}: point {point}, {quantity}: {value[quantity][point]:.6g} against"
         f" {value_there[quantity][point]:.6g}; allowed: a difference of {allowed[quantity][point]:.2g}"
         for point, quantity in _where(counted & ~within & ~unknown)
     ]
     ours, theirs = (table[texts].astype(object).fillna("") for table in (one, two))
-    apart += [
+    found.apart += [
         f"{name}: point {point}, {column}: {ours[column][point]!r} against {theirs[column][point]!r}"
         for point, column in _where((ours != theirs) & alike)
     ]
-    total, agree, unsure = (int(cells.to_numpy().sum()) for cells in (counted, counted & within, unknown))
-    return Comparison(total, agree, unsure, apart, other)
 
 
-def _where(cells: pd.DataFrame) -> Iterator[tuple[int, str]]:
+def _where(cells: pd.DataFrame) -> list[tuple[int, str]]:
     """Row and column of every cell that is true."""
-    for row, column in np.argwhere(cells.to_numpy()):
-        yield int(row), str(cells.columns[column])
+    return [(int(row), str(cells.columns[column])) for row, column in np.argwhere(cells.to_numpy())]
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
@@ -158,38 +154,25 @@ def _readable(path: Path) -> Iterator[None]:
         raise UnreadableFile(path, reason) from None
 
 
-def _read(trees: Iterable[Path], name: str, part) -> list[Any]:
-    """Part of a JSON file of each tree; nothing where one is missing."""
-    found = []
-    for path in (tree / name for tree in trees):
-        if path.exists():
-            with _readable(path):
-                found.append(part(json.loads(path.read_text(encoding="utf-8"))))
-    return found if len(found) == 2 else []
-
-
-def _configurations(trees: tuple[Path, Path]) -> list[str]:
-    """Keys at which the configurations differ, but for the preset, whose lattices the uncertainties cover."""
-    found = _read(trees, "provenance.json", lambda content: dict(content["config"]))
-    if not found:
-        return ["provenance.json: missing in one tree; configurations not compared"]
-    return [
-        f"configuration: {change['key']}: {change['here']!r} against {change['shipped']!r}"
-        for change in changes(found[1], found[0])
-        if change["key"] != "preset"
-    ]
-
-
-def _verdicts(trees: tuple[Path, Path]) -> list[str]:
-    found = _read(
-        trees, "claims.json", lambda claims: {str(claim["id"]): claim["verdict"] for claim in claims}
-    )
-    if not found:
-        return ["claims.json: missing in one tree; verdicts not compared"]
-    one, two = (pd.Series(verdicts, dtype=object) for verdicts in found)
-    both = pd.DataFrame({"one": one, "two": two}).fillna("no such claim")
-    different = both[both["one"] != both["two"]]
-    return [f"{name}: verdict {row.one!r} against {row.two!r}" for name, row in different.iterrows()]
+def _compare_contents(found: Comparison, trees: tuple[Path, Path]) -> None:
+    """Configurations, but for the preset, whose lattices the uncertainties cover; and verdicts."""
+    for name, what, line in (
+        ("provenance.json", "configurations", "configuration: {key}: {here!r} against {shipped!r}"),
+        ("claims.json", "verdicts", "{key}: verdict {here!r} against {shipped!r}"),
+    ):
+        contents = []
+        for path in (tree / name for tree in trees):
+            if path.exists():
+                with _readable(path):
+                    content = json.loads(path.read_text(encoding="utf-8"))
+                    if what == "configurations":
+                        contents.append(dict(content["config"]) | {"preset": None})
+                    else:
+                        contents.append({str(claim["id"]): claim["verdict"] for claim in content})
+        if len(contents) < 2:
+            found.other.append(f"{name}: missing in one tree; {what} not compared")
+        else:
+            found.other += [line.format(**change) for change in changes(contents[1], contents[0])]
 
 
 def main(arguments: Sequence[str]) -> int:

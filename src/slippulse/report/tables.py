@@ -1,4 +1,7 @@
-"""Tables of the report, as Markdown: ledger, sentences of the paper, errata, and how exact the numbers are."""
+"""Tables of the report, as Markdown: ledger, sentences of the paper, errata, and how exact the numbers are.
+
+The cells of the report import them.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from ..claims.entries import claims_of
+from ..claims.entries import claims_of, coverage, positions
 from ..claims.reading import (
     FAILURES_FIRST,
     Ledger,
@@ -16,7 +19,7 @@ from ..claims.reading import (
     measured_text,
     predicted_text,
 )
-from ..data.numerals import number, percent, setting, with_uncertainty
+from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM
 
 # Wide enough that pandoc takes the dashes as relative widths.
@@ -45,16 +48,19 @@ REASONS = {
 }
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int], align: str) -> str:
-    """A pipe table.
+def _between(typst: str) -> str:
+    return f'`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{typst}[\n`````'
 
-    Parameters
-    ----------
-    head : titles of the columns
-    rows : cells, Markdown without line breaks or bare bars
-    widths : relative widths of the columns
-    align : one letter a column: l or r
-    """
+
+# A long table stands between WIDE or SMALL and CLOSE: on pages on their side, or in small type over several pages.
+# All figures so far stand before FLUSH.
+WIDE, SMALL = _between("sideways"), _between("small")
+CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
+FLUSH = "`````{=typst}\n#place.flush()\n`````"
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int], align: str) -> str:
+    """A pipe table of Markdown cells without bare bars; one relative width and one letter, l or r, a column."""
     marks = []
     for width, side in zip(widths, align, strict=True):
         dashes = "-" * max(3, round(FULL * width / sum(widths)))
@@ -122,8 +128,9 @@ def tolerances(ledger: Ledger) -> str:
     return table(["kind", "tolerance", "reason", "claims"], rows, [11, 11, 42, 36], "lrll")
 
 
-def algebra_checked(algebra: Mapping[str, Mapping], where: Mapping[str, str]) -> str:
+def algebra_checked(algebra: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
     """Every piece of the paper's algebra that a test checks, with its position in the paper."""
+    where = positions(algebra, sentences)
     rows = [[entry["statement"], where[id], f"`{id}`"] for id, entry in algebra.items()]
     return table(["what the paper derives", "section", "id"], rows, [60, 20, 20], "lll")
 
@@ -147,8 +154,9 @@ def found_list(ledger: Ledger) -> str:
     return "\n".join(f"- {' '.join(finding['text'].split())}" for finding in ledger.findings.values())
 
 
-def sentence_counts(numbers: Mapping[str, int]) -> str:
-    """How many sentences are tested, and how many are not for each reason (`slippulse.claims.entries.coverage`)."""
+def sentence_counts(sentences: Sequence[Mapping]) -> str:
+    """How many sentences are tested, and how many are not for each reason."""
+    numbers = coverage(sentences)
     rows = [[words, str(numbers[key])] for key, words in REASONS.items()]
     return table(["sentences", "how many"], [*rows, ["all", str(numbers["all"])]], [60, 15], "lr")
 
@@ -175,12 +183,7 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Observed order and relative numerical uncertainty of the main quantities.
-
-    Parameters
-    ----------
-    tables : with uncertainties/NAME, the grid study of a simulation
-    """
+    """Observed order and relative uncertainty of the main quantities, by the grid studies uncertainties/NAME."""
     rows = []
     for simulation, quantity, name in QUANTITIES:
         found = tables[f"uncertainties/{simulation}"]
@@ -188,28 +191,24 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
         relative = (found["uncertainty"] / found["value"].abs()).dropna()
         orders = found["observed_order"].dropna()
         runs = len(relative) or len(found)
-        order = number(float(orders.median()), 2) if len(orders) and len(relative) else DASH
-        off = (
-            [percent(float(relative.median())), percent(float(relative.max()))]
-            if len(relative)
-            else [DASH] * 2
-        )
+        order = number(orders.median(), 2) if len(orders) and len(relative) else DASH
+        off = [percent(size) if len(relative) else DASH for size in (relative.median(), relative.max())]
         rows.append([name, str(runs), order, *off])
     head = ["quantity", "runs", "order", "median uncertainty", "largest"]
     return table(head, rows, [40, 10, 12, 20, 18], "lrrrr")
 
 
-def presets(settings: Mapping[str, Mapping], chosen: str) -> str:
+def presets(config: Mapping) -> str:
     """The presets of the configuration; the one of this run is in bold."""
     rows = [
         [
-            f"**{name}**" if name == chosen else name,
+            f"**{name}**" if name == config["preset"] else name,
             setting(preset["dx"]),
             setting(preset["max_step"]),
             str(preset["order"]),
             " and ".join(setting(factor) for factor in preset["coarser"]),
         ]
-        for name, preset in settings.items()
+        for name, preset in config["presets"].items()
     ]
     step = r"largest step over $\Delta x$"
     head = ["preset", r"spacing $\Delta x$", step, "order", "grid study, times coarser"]
@@ -217,13 +216,7 @@ def presets(settings: Mapping[str, Mapping], chosen: str) -> str:
 
 
 def speeds(runs: pd.DataFrame, study: pd.DataFrame) -> str:
-    """Front speed and peak slip velocity of steady pulses: simulated, exact, and by the paper's formulas.
-
-    Parameters
-    ----------
-    runs : measured and predicted numbers of one simulation, one row a run
-    study : its grid study, for their uncertainties
-    """
+    """Front speed and peak slip velocity of the runs of a simulation: simulated with uncertainty, exact, the paper's."""
     errors = study.set_index(["point", "quantity"])["uncertainty"]
 
     def measured(row, quantity: str) -> str:
@@ -248,23 +241,13 @@ def speeds(runs: pd.DataFrame, study: pd.DataFrame) -> str:
 
 
 def sticking(examples: pd.DataFrame) -> str:
-    """When positions of an exact rupture are released and stick, and how far they slip; empty without a rupture.
-
-    Parameters
-    ----------
-    examples : with quantity (release_time, stick_time, final_slip), x, value
-    """
-    found = examples[examples["quantity"].isin(["release_time", "stick_time", "final_slip"])]
+    """When positions x of an exact rupture are released and stick, and their slip; empty without a rupture."""
+    columns = ["release_time", "stick_time", "final_slip"]
+    found = examples[examples["quantity"].isin(columns)]
     if found["value"].isna().all():
         return ""
-    columns = found.pivot(index="x", columns="quantity", values="value")
-    rows = [
-        [
-            setting(row.Index),
-            *(number(value, 5) for value in (row.release_time, row.stick_time, row.final_slip)),
-        ]
-        for row in columns.itertuples()
-    ]
+    numbers = found.pivot(index="x", columns="quantity", values="value")[columns]
+    rows = [[setting(x), *(number(value, 5) for value in row)] for x, *row in numbers.itertuples()]
     head = ["$x$", r"release $T$", r"stick $t_\mathrm{s}$", r"slip $u(x,t_\mathrm{s})$"]
     return table(head, rows, [10, 15, 15, 15], "rrrr")
 
@@ -281,3 +264,37 @@ def edges(study: pd.DataFrame) -> str:
         rows.append([row["family"], plain(row["value"]), plain(row["quantity"]), *numbers, outcome])
     head = ["edge", "value", "compared", "error", "tolerance", "outcome"]
     return table(head, rows, [16, 28, 18, 12, 12, 24], "lllrrl")
+
+
+def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
+    """What differs from the shipped run, as a quotation; empty if nothing does.
+
+    Parameters
+    ----------
+    altered : what differs from the shipped configuration (`slippulse.data.alterations.changes`)
+    ledger : of this run
+    verdicts : shipped verdict of each claim
+    """
+
+    def code(value: object) -> str:
+        return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
+
+    keys = "; ".join(
+        f"`{change['key']}`: {code(change['here'])} (shipped: {code(change['shipped'])})"
+        for change in altered
+    )
+    judged = "; ".join(
+        f"`{claim.id}`: {claim.verdict} (shipped: {verdicts.get(claim.id, 'absent')})"
+        for claim in ledger
+        if claim.verdict != verdicts.get(claim.id)
+    )
+    lines = []
+    if keys:
+        lines.append(
+            f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."
+        )
+    if judged:
+        lines.append(f"> **Verdicts that differ from the shipped report:** {judged}.")
+    elif keys:
+        lines.append("> No verdict differs from the shipped report.")
+    return "\n>\n".join(lines)
