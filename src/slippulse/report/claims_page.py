@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from types import SimpleNamespace
 
-from ..claims.reading import (
-    FAILURES_FIRST,
-    Ledger,
-    compared_text,
-    evidence_text,
-    measured_text,
-    predicted_text,
-)
+from ..claims import reading
+from ..claims.reading import FAILURES_FIRST, Ledger
 from ..claims.rules import VERDICTS
 from ..data.numerals import rounded
 from .html import markup_of, page
@@ -24,7 +19,7 @@ LONGEST = 2.0
 
 
 def claims_page(
-    claims: Iterable[Mapping], altered: Sequence[Mapping] = (), findings: Iterable[Mapping] = ()
+    claims: Iterable[Mapping], altered: Sequence[Mapping] = (), findings: Sequence[Mapping] = ()
 ) -> str:
     """The ledger as a page of its own.
 
@@ -34,40 +29,27 @@ def claims_page(
     altered : what differs from the shipped configuration (`slippulse.data.alterations.changes`)
     findings : as in findings.json
     """
-    ledger = Ledger(claims, findings)
     return page(
         "claims.html",
-        findings=ledger.findings.values(),
+        findings=findings,
         altered=altered,
         rules_altered=any(change["key"].startswith("claims.") for change in altered),
-        **shown(ledger, [finding["text"] for finding in ledger.findings.values()]),
+        **shown(Ledger(claims), [finding["text"] for finding in findings]),
     )
 
 
 def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
-    """What templates that show claims ask for.
-
-    Parameters
-    ----------
-    ledger : the claims
-    texts : what else they show; `html` has the HTML of each text
-    """
-    texts = [
-        *texts,
-        *(text for claim in ledger for text in (claim.statement, claim.why, evidence_text(claim))),
-    ]
+    """What templates that show claims ask for; `html` has the HTML of each of their texts, and of others."""
+    asked = [(claim.statement, claim.why, reading.evidence_text(claim)) for claim in ledger]
     by_verdict = {name: [claim for claim in ledger if claim.verdict == name] for name in FAILURES_FIRST}
     return {
-        "html": markup_of(texts),
+        "html": markup_of([*texts, *chain.from_iterable(asked)]),
         "summary": ledger.summary(),
         "kinds": ledger.by_kind(),
         "groups": {verdict: claims for verdict, claims in by_verdict.items() if claims},
         "verdicts": FAILURES_FIRST,
         "signs": SIGNS,
-        "predicted": predicted_text,
-        "measured": measured_text,
-        "compared": compared_text,
-        "evidence": evidence_text,
+        "reading": reading,
         "bar": bar,
         "figure_title": figure_title,
     }

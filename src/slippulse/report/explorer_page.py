@@ -52,18 +52,16 @@ def front_law(law: pd.DataFrame) -> dict:
     """Logit of the pre-stress by release rule, damping ratio (rows) and logarithm of v - 1 (columns), with the grid."""
     ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     first, last = float(excesses[0]), float(excesses[-1])
-    found: dict = {
-        "ratio": {
-            "scale": round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6),
-            "step": float(ratios[-1]) / (len(ratios) - 1),
-        },
-        "excess": {"first": first, "step": (last - first) / (len(excesses) - 1)},
+    scale = round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6)
+    tables = {
+        release: rows.pivot(index="damping_ratio", columns="excess_log", values="logit").values.tolist()
+        for release, rows in law.groupby("release", sort=False)
     }
-    for release, rows in law.groupby("release", sort=False):
-        found[release] = rows.pivot(
-            index="damping_ratio", columns="excess_log", values="logit"
-        ).values.tolist()
-    return found
+    return {
+        "ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)},
+        "excess": {"first": first, "step": (last - first) / (len(excesses) - 1)},
+        **tables,
+    }
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
@@ -77,9 +75,6 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan
         settings = [run[name] for name in ("left", "gamma", "width", "beta", "damping_ratio", "release")]
-        kept.append(settings + [_short(run.get(name, math.nan)) for name in MEASURED])
+        numbers = [run.get(name, math.nan) for name in MEASURED]
+        kept.append(settings + [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in numbers])
     return kept
-
-
-def _short(value: float) -> float | None:
-    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None

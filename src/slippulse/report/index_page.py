@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -53,73 +52,42 @@ def index_page(
         for name in ("claims", "findings", "provenance")
     )
     ledger = Ledger(claims, findings)
-    names = {"claim": ledger, "found": ledger.found, "config": facts["config"], "facts": facts}
-    names["runs"] = partial(parameters, facts["config"])
+    config = facts["config"]
+    names = {"claim": ledger, "found": ledger.found, "config": config, "facts": facts}
+    names["runs"] = partial(parameters, config)
     captions = read_captions(texts["captions"], lambda text: fill(text, names))
     summary = read_text(texts["summary"])
     accuracy = fill(summary["accuracy"], names)
-    lines = [
-        {
-            "topic": line["topic"],
-            "text": fill(line["text"], names),
-            # Its sign is the worst of its claims.
-            "claim": min(map(ledger, line["claims"]), key=lambda claim: FAILURES_FIRST.index(claim.verdict)),
-        }
-        for line in summary["verdict"]
-    ]
+    for line in summary["verdict"]:
+        line["text"] = fill(line["text"], names)
+        # Its sign is the worst of its claims.
+        line["claim"] = min(
+            map(ledger, line["claims"]), key=lambda claim: FAILURES_FIRST.index(claim.verdict)
+        )
     figures = {
         # A user-defined sweep has no caption but its name.
-        name: captions.get(name) or replace(captions["own_sweep"], title=name.removeprefix("sweep_"))
+        name: captions.get(name) or captions["own_sweep"]._replace(title=name.removeprefix("sweep_"))
         for listed in galleries.values()
         for name in listed
     }
     written = [text for caption in figures.values() for text in (caption.finding, caption.caption)]
     return page(
         "index.html",
-        paper=facts["paper"],
         altered=facts["overlay"],
-        lines=lines,
+        lines=summary["verdict"],
         accuracy=accuracy,
         figures=figures,
-        sizes={name: picture_size(results / f"figures/{name}.png") for name in figures},
+        sizes={name: _size(results / f"figures/{name}.png") for name in figures},
         picture=summary["picture"],
         files={path: title for path, title in FILES_OF_RESULTS.items() if (results / path).exists()},
         galleries=galleries,
         scenes={name: (title, (results / f"scenes/{name}.html").exists()) for name, title in scenes.items()},
-        facts=_facts(facts),
-        **shown(ledger, [*written, *(line["text"] for line in lines), accuracy]),
+        facts=facts,
+        **shown(ledger, [*written, *(line["text"] for line in summary["verdict"]), accuracy]),
     )
 
 
-def picture_size(path: Path) -> tuple[int, int] | None:
-    """Width and height of a picture, so that the page does not jump while it loads; None without the file."""
-    if not path.exists():
-        return None
+def _size(path: Path) -> tuple[int, int]:
+    """Width and height of a picture, so that the page does not jump while it loads."""
     with Image.open(path) as picture:
         return picture.size
-
-
-def _facts(facts: Mapping) -> dict[str, str]:
-    """What the results were made from, in words."""
-    git, machine = facts["git"], facts["machine"]
-    state = "not a git repository"
-    if git:
-        count = len(git["changed_files"])
-        state = f"commit {git['commit']}" + (f", {count} files changed" if count else "")
-    memory = machine["memory_GiB"]
-    parts = [
-        f"{machine['system']} {machine['architecture']}",
-        machine["processor"],
-        f"{machine['cores']} cores",
-        memory and f"{memory} GiB of memory",
-    ]
-    return {
-        "preset": str(facts["config"]["preset"]),
-        "sources": state,
-        "digest of the sources": facts["source_digest"],
-        "digest of the lock": facts["lock_digest"],
-        "versions": ", ".join(f"{name} {version}" for name, version in facts["versions"].items()),
-        "machine": ", ".join(part for part in parts if part),
-        "computing time": f"{sum(facts['times']['seconds_of_jobs'].values()):.0f} s of jobs",
-        "written": facts["times"]["written"],
-    }

@@ -39,40 +39,23 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
         pulse_state=attributes.get("pulse_state", "none"),
         promised="promised" in numbers,
         numbers=[_number(row) for row in numbers.itertuples()],
-        parameters={key.replace("_", " "): _value(attributes[key]) for key in SHOWN if key in attributes},
+        parameters={key.replace("_", " "): attributes[key] for key in SHOWN if key in attributes},
     )
 
 
 def scenes_page(scenes: Mapping[str, str]) -> str:
-    """The list of scenes, in the folder of their pages.
-
-    Parameters
-    ----------
-    scenes : titles by name
-    """
+    """The list of scenes, titles by name, in the folder of their pages."""
     return page("scenes.html", scenes=scenes)
 
 
 def _number(row) -> dict[str, str]:
-    has_theory = math.isfinite(row.theory)
-    difference = row.value / row.theory - 1.0 if has_theory and row.theory != 0.0 else math.nan
-    return {
-        "label": row.label,
-        "measured": with_uncertainty(row.value, row.uncertainty, "(?)"),
-        "theory": number(row.theory, 5) if has_theory else NONE,
-        "difference": f"{'+' * (difference > 0.0)}{rounded(100.0 * difference, 2)} %"
-        if math.isfinite(difference)
-        else NONE,
-        "promise": _promise(row),
-    }
-
-
-def _promise(row) -> str:
-    """Relative, with what the grid study says of it."""
-    if not math.isfinite(getattr(row, "promised", math.nan)):
-        return "not covered"
-    return f"{row.promised:g}, {'kept' if str(row.kept).lower() == 'true' else 'missed'}"
-
-
-def _value(value: object) -> str:
-    return rounded(value, 5) if isinstance(value, float) else str(value) or "none"
+    found = {"label": row.label, "measured": with_uncertainty(row.value, row.uncertainty, "(?)")}
+    found |= {"theory": NONE, "difference": NONE, "promise": "not covered"}
+    if math.isfinite(row.theory):
+        found["theory"] = number(row.theory, 5)
+        difference = row.value / row.theory - 1.0 if row.theory != 0.0 else math.nan
+        if math.isfinite(difference):
+            found["difference"] = f"{'+' * (difference > 0.0)}{rounded(100.0 * difference, 2)} %"
+    if math.isfinite(getattr(row, "promised", math.nan)):
+        found["promise"] = f"{row.promised:g}, {'kept' if str(row.kept).lower() == 'true' else 'missed'}"
+    return found

@@ -216,7 +216,7 @@ def presets(config: Mapping) -> str:
 
 
 def speeds(runs: pd.DataFrame, study: pd.DataFrame) -> str:
-    """Front speed and peak slip velocity of the runs of a simulation: simulated with uncertainty, exact, the paper's."""
+    """Front speed and peak slip velocity of a sweep: simulated, with uncertainty, exact, and by the paper."""
     errors = study.set_index(["point", "quantity"])["uncertainty"]
 
     def measured(row, quantity: str) -> str:

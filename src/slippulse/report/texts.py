@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import yaml
 
 ERRATUM = ("where", "printed", "right", "shown")
 
 
-@dataclass(frozen=True)
-class Caption:
+class Caption(NamedTuple):
     """The texts of one figure.
 
     Attributes
@@ -29,7 +28,7 @@ class Caption:
     caption: str
 
 
-PARTS = tuple(Caption.__annotations__)
+PARTS = Caption._fields
 
 
 def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[str, Caption]:
