@@ -19,39 +19,29 @@ SPACINGS = (0.005, 0.01, 0.03, 0.1, 0.3, 1.0)
 
 def wide_scene(chance: random.Random) -> sp.Scene:
     """A valid scene; what it costs may be anything."""
+    pick, uniform = chance.choice, chance.uniform
     while True:
-        dx, ratio = chance.choice(SPACINGS), chance.choice([0.0, 0.1, 0.1, *RATIOS])
-        boundary = chance.choice(["displacement", "stress"])
-        gamma = chance.choice([0.3, 0.65, *GAMMAS]) if boundary == "displacement" else 0.0
-        left = chance.choice([*LEVELS, chance.uniform(-1.0, 1.0)])
-        right = left if chance.random() < 0.6 else chance.choice([0.0, *LEVELS, chance.uniform(-1.0, 1.0)])
-        steps, bumps = (), ()
-        if chance.random() < 0.25:
-            steps = (
-                (chance.choice([-1, 1]) * chance.uniform(1.0, 40.0), chance.choice([-0.5, 0.0, 0.3, 0.8])),
-            )
-        if chance.random() < 0.25:
-            bumps = (
-                (
-                    chance.uniform(-20.0, 20.0),
-                    chance.choice([-1.0, -0.5, 0.3, 0.5]),
-                    chance.uniform(0.3, 3.0),
-                ),
-            )
-        scheme = chance.choice([*LATTICE_SCHEMES, "localised", "localised", "localised"])
-        order = chance.choice(ORDERS)
-        step = min(1.0, MARGIN * largest_step(scheme, order, ratio, gamma * dx**2))
+        dx, ratio = pick(SPACINGS), pick([0.0, 0.1, 0.1, *RATIOS])
+        boundary = pick(["displacement", "stress"])
+        gamma = pick([0.3, 0.65, *GAMMAS]) if boundary == "displacement" else 0.0
+        left = pick([*LEVELS, uniform(-1.0, 1.0)])
+        right = left if chance.random() < 0.6 else pick([0.0, *LEVELS, uniform(-1.0, 1.0)])
+        step = (pick([-1, 1]) * uniform(1.0, 40.0), pick([-0.5, 0.0, 0.3, 0.8]))
+        bump = (uniform(-20.0, 20.0), pick([-1.0, -0.5, 0.3, 0.5]), uniform(0.3, 3.0))
+        steps, bumps = ((part,) if chance.random() < 0.25 else () for part in (step, bump))
+        scheme, order = pick([*LATTICE_SCHEMES, "localised", "localised", "localised"]), pick(ORDERS)
+        longest = min(1.0, MARGIN * largest_step(scheme, order, ratio, gamma * dx**2))
         try:
             return sp.Scene(
                 boundary=boundary,
-                prestress=sp.Prestress(left, right, chance.choice([1.0, 1.0, *WIDTHS]), 1.0, steps, bumps),
-                duration=chance.choice(DURATIONS) * math.exp(chance.uniform(-0.5, 0.5)),
+                prestress=sp.Prestress(left, right, pick([1.0, 1.0, *WIDTHS]), 1.0, steps, bumps),
+                duration=pick(DURATIONS) * math.exp(uniform(-0.5, 0.5)),
                 dx=dx,
                 gamma=gamma,
                 beta=ratio * dx,
-                release=chance.choice(RELEASES),
+                release=pick(RELEASES),
                 scheme=scheme,
-                max_step=step * chance.choice([0.3, 1.0, 1.0]),
+                max_step=longest * pick([0.3, 1.0, 1.0]),
                 order=order,
             )
         except ValueError:
