@@ -18,13 +18,7 @@ TO_GO = np.geomspace(1.0, 1e-4, 200)[1:]
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """When which fraction of the way is still to go, for each damping ratio of the sweep; time in units of |x_minus|.
-
-    Parameters
-    ----------
-    data, tables : not used
-    settings : sweeps
-    """
+    """When which fraction of the way is still to go, for each damping ratio; time in units of |x_minus|."""
     parts = {}
     for scene in expand(settings["sweeps"]["arrest"])[0]:
         if scene.damping_ratio not in parts:

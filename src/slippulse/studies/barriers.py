@@ -62,16 +62,9 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
                 rows.append({"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate})
             for length in LENGTHS:
                 steps = ((0.0, barrier), (length * exact, tau0))
-                passed = entered(tau0, gamma, ratio, PASSING_SPACING, exact, steps) > (length + 0.5) * exact
-                passing.append(
-                    {
-                        "part": "passing",
-                        **pair,
-                        "dx": PASSING_SPACING,
-                        "length": length,
-                        "measured": float(passed),
-                    }
-                )
+                depth = entered(tau0, gamma, ratio, PASSING_SPACING, exact, steps)
+                numbers = {"length": length, "measured": float(depth > (length + 0.5) * exact)}
+                passing.append({"part": "passing", **pair, "dx": PASSING_SPACING, **numbers})
     return pd.DataFrame(rows + passing)
 
 

@@ -22,11 +22,6 @@ POINTS = 61
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Peak velocity, width and slip.
 
-    Parameters
-    ----------
-    data, tables : not used
-    settings : sweeps
-
     Returns
     -------
     DataFrame of left (the level), damping_ratio and value: role curve (in units of the paper's formulas) and limit
@@ -39,13 +34,11 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         paper = paper_pulse(left, scene.gamma)
         for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
             pulse = steady_pulse(left, scene.gamma, ratio * scene.dx, speed)
-            row = {"role": "curve", "left": left, "damping_ratio": ratio}
-            rows += [
-                row | {"quantity": q, "value": getattr(pulse, q) / getattr(paper, q)} for q in QUANTITIES
-            ]
+            for name in QUANTITIES:
+                rows.append(("curve", left, ratio, name, getattr(pulse, name) / getattr(paper, name)))
     scene = refined[0]
-    speed = float(front_speed(scene.prestress.left, scene.damping_ratio, scene.release))
-    pulse = steady_pulse(scene.prestress.left, scene.gamma, 0.0, speed)
-    row = {"role": "limit", "left": scene.prestress.left, "damping_ratio": scene.damping_ratio}
-    rows += [row | {"quantity": q, "value": getattr(pulse, q)} for q in QUANTITIES]
-    return pd.DataFrame([*rows, row | {"quantity": "front_speed", "value": speed}])
+    left, ratio = scene.prestress.left, scene.damping_ratio
+    pulse = steady_pulse(left, scene.gamma, 0.0, float(front_speed(left, ratio, scene.release)))
+    limits = {name: getattr(pulse, name) for name in QUANTITIES} | {"front_speed": pulse.speed}
+    rows += [("limit", left, ratio, name, value) for name, value in limits.items()]
+    return pd.DataFrame(rows, columns=["role", "left", "damping_ratio", "quantity", "value"])

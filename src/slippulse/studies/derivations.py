@@ -10,12 +10,13 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
-from ..model.scene import RELEASES
+from ..model.scene import RELEASES, Scene
+from ..predict.exact_rupture import exact_rupture
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.exact_transition import exact_transition_displacement, uniform_transition_time
 from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import SteadyPulse, steady_pulse
 from ..theory.rupture import Rupture
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
@@ -43,24 +44,42 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     published = scenes["space_time_displacement"][0]
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
     step = scenes["pulses_across_a_step"][0]
-    level, gamma, ratio = step.prestress.left, step.gamma, published.damping_ratio
-    found = {
-        "front_speed_elastic": or_nan(lambda: front_speed(published.prestress.left, ratio, "elastic")),
-        **memory(level, gamma, ratio, published.release),
-        "barrier_depth": or_nan(lambda: barrier_depth(level, -level, gamma, ratio, published.release)),
-        "barrier_depth_undamped": or_nan(lambda: barrier_depth(level, -level, gamma)),
-        "barrier_depth_estimate": or_nan(lambda: barrier_depth_estimate(level, -level, gamma)),
-        **one_way_pulse(level, gamma, ratio, published.release),
-        "transition_point_lowest": without_peak(levels[0]),
-        "transition_point_highest": without_peak(levels[-1]),
-        "transition_point_level": without_peak(level),
-        "transition_peak_lowest": with_peak(levels[0], 1.0),
-        "transition_peak_highest": with_peak(levels[-1], 1.0),
-        "transition_peak_level": with_peak(level, 1.0),
-        "transition_peak_level_soft": with_peak(level, SOFT),
-        **block_by_block(),
+    level, gamma = step.prestress.left, step.gamma
+    ratio, release = published.damping_ratio, published.release
+    one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
+    stop = one_way.front_ends[0][0]
+    fronts = [front for rule in RELEASES for front in admissibility_table(SPEEDS, RATIOS, SPRINGS, rule)]
+
+    def pulse() -> SteadyPulse:
+        """An undamped one at the speed with damping."""
+        return steady_pulse(level, gamma, 0.0, float(front_speed(level, ratio, release)))
+
+    numbers: dict[str, Callable[[], float]] = {
+        "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
+        "pulse_width": lambda: pulse().width,
+        # Over which it forgets what was before.
+        "memory_distance": lambda: pulse().width / (pulse().speed - 1.0),
+        "barrier_depth": lambda: barrier_depth(level, -level, gamma, ratio, release),
+        "barrier_depth_undamped": lambda: barrier_depth(level, -level, gamma),
+        "barrier_depth_estimate": lambda: barrier_depth_estimate(level, -level, gamma),
+        # Where the left front stops between a negative level and a positive one, and the transition there.
+        "one_way_stop_position": lambda: stop.x,
+        "one_way_stop_time": lambda: stop.time,
+        "one_way_first_stick_position": lambda: one_way.first_stick[1] if one_way.first_stick else math.nan,
+        "one_way_transition_time": lambda: one_way.transition_time,
+        "one_way_transition_length": lambda: one_way.transition_length,
+        "transition_point_lowest": lambda: without_peak(levels[0]),
+        "transition_point_highest": lambda: without_peak(levels[-1]),
+        "transition_point_level": lambda: without_peak(level),
+        "transition_peak_lowest": lambda: with_peak(levels[0], 1.0),
+        "transition_peak_highest": lambda: with_peak(levels[-1], 1.0),
+        "transition_peak_level": lambda: with_peak(level, 1.0),
+        "transition_peak_level_soft": lambda: with_peak(level, SOFT),
+        # Steady fronts found block by block, and those of them that are admissible.
+        "fronts_block_by_block": lambda: len(fronts),
+        "fronts_admissible": lambda: sum(front["admissible"] for front in fronts),
     }
-    rows = [{"quantity": name, "x": math.nan, "value": value} for name, value in found.items()]
+    rows = [{"quantity": name, "x": math.nan, "value": or_nan(find)} for name, find in numbers.items()]
     return pd.DataFrame(rows + sticking(published))
 
 
@@ -72,59 +91,24 @@ def or_nan(number: Callable[[], float]) -> float:
         return math.nan
 
 
-def memory(level: float, gamma: float, ratio: float, release: str) -> dict[str, float]:
-    """Width of an undamped pulse at the speed with damping, and the distance over which it forgets what was before."""
-    speed = or_nan(lambda: front_speed(level, ratio, release))
-    width = or_nan(lambda: steady_pulse(level, gamma, 0.0, speed).width)
-    return {"pulse_width": width, "memory_distance": width / (speed - 1.0)}
-
-
-def one_way_pulse(level: float, gamma: float, ratio: float, release: str) -> dict[str, float]:
-    """Where the left front stops between a negative level and a positive one, and the transition there."""
-    rupture = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
-    stop = rupture.front_ends[0][0]
-    return {
-        "one_way_stop_position": stop.x,
-        "one_way_stop_time": stop.time,
-        "one_way_first_stick_position": rupture.first_stick[1] if rupture.first_stick else math.nan,
-        "one_way_transition_time": rupture.transition_time,
-        "one_way_transition_length": rupture.transition_length,
-    }
-
-
 def without_peak(level: float) -> float:
     """Time of the transition in uniform pre-stress nucleated at a point, in units of pi/sqrt(gamma)."""
-    return or_nan(lambda: uniform_transition_time(level, 1.0)) / math.pi
+    return uniform_transition_time(level, 1.0) / math.pi
 
 
 def with_peak(level: float, gamma: float) -> float:
     """The same with the Gaussian at nucleation."""
-    time = or_nan(lambda: exact_transition_displacement(Prestress(level, level), gamma).time)
+    time = exact_transition_displacement(Prestress(level, level), gamma).time
     return time * math.sqrt(gamma) / math.pi
 
 
-def block_by_block() -> dict[str, float]:
-    """How many steady fronts were found block by block, and how many are admissible."""
-    fronts = [
-        front for release in RELEASES for front in admissibility_table(SPEEDS, RATIOS, SPRINGS, release)
-    ]
-    return {
-        "fronts_block_by_block": len(fronts),
-        "fronts_admissible": sum(front["admissible"] for front in fronts),
-    }
-
-
-def sticking(scene) -> list[dict]:
+def sticking(scene: Scene) -> list[dict]:
     """Release, sticking and slip at some positions of a scene's exact rupture."""
-    x = np.array(POSITIONS, dtype=float)
-    names = ("release_time", "stick_time", "final_slip")
+    x, names = np.array(POSITIONS, dtype=float), ("release_time", "stick_time", "final_slip")
     try:
-        rupture = Rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
+        rupture = exact_rupture(scene.attributes())
         columns = [np.round(getattr(rupture, name)(x), DECIMALS) for name in names]
     except (ValueError, ArithmeticError):
         columns = [np.full_like(x, math.nan)] * len(names)
-    return [
-        {"quantity": name, "x": position, "value": value}
-        for name, column in zip(names, columns, strict=True)
-        for position, value in zip(x.tolist(), column.tolist(), strict=True)
-    ]
+    found = pd.DataFrame(dict(zip(names, columns, strict=True))).assign(x=x)
+    return found.melt("x", var_name="quantity")[["quantity", "x", "value"]].to_dict("records")

@@ -22,11 +22,6 @@ SHOWN = 0.04
 def table(data: Mapping[str, xr.Dataset], tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Exact curves, marks of a lattice, two halves of a map, and the differences.
 
-    Parameters
-    ----------
-    data : the simulations in NEEDS
-    tables, settings : not used
-
     Returns
     -------
     DataFrame of scene and role: scene (boundary, left, right, gamma, damping_ratio), exact and lattice (position,

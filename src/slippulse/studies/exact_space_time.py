@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..theory.rupture import Rupture
+from ..predict.exact_rupture import exact_rupture
 
 NEEDS = {"sweeps": ["space_time_displacement", "space_time_stress"]}
 
@@ -27,9 +27,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """
     parts = []
     for name, sweep in settings["sweeps"].items():
-        scenes, _ = expand(sweep)
-        scene = scenes[0]
-        rupture = Rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
+        rupture = exact_rupture(expand(sweep)[0][0].attributes())
         ends = rupture.front_ends
         x = np.concatenate([ends[0][0].x * FRACTIONS[:0:-1], ends[-1][1].x * FRACTIONS])
         edges = {"release_time": rupture.release_time(x), "stick_time": rupture.stick_time(x)}

@@ -10,7 +10,6 @@ import pandas as pd
 from ..model.scene import RELEASES
 from ..theory.front_law import prestress_for_speed
 
-# From nothing but itself.
 NEEDS = {"sweeps": ()}
 
 # Even steps of ln(v - 1), and of asinh(b/SCALE), which is b where it is small and logarithmic beyond.
@@ -29,18 +28,11 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     positions = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
     position, excess = (grid.ravel() for grid in np.meshgrid(positions, EXCESS, indexing="ij"))
     ratio = SCALE * np.sinh(position)
-    rows = []
+    grid = pd.DataFrame({"damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess})
+    parts = []
     for release in RELEASES:
         tau = prestress_for_speed(1.0 + np.exp(excess), ratio, release)
-        rows.append(
-            pd.DataFrame(
-                {
-                    "release": release,
-                    "damping_ratio": ratio,
-                    "ratio_arsinh": position,
-                    "excess_log": excess,
-                    "logit": np.round(np.log(tau) - np.log1p(-tau), 6),
-                }
-            )
-        )
-    return pd.concat(rows, ignore_index=True)
+        part = grid.assign(logit=np.round(np.log(tau) - np.log1p(-tau), 6))
+        part.insert(0, "release", release)
+        parts.append(part)
+    return pd.concat(parts, ignore_index=True)

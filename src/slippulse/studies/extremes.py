@@ -180,14 +180,12 @@ def scene(
     dx: float, duration: float, level: float = LEVEL, ratio: float = RATIO, gamma: float = GAMMA, **more: Any
 ) -> Scene:
     """A scene under the displacement boundary, or under the stress boundary when gamma is 0."""
-    shape: dict[str, Any] = {
-        name: more.pop(name) for name in ("right", "width", "peak", "bumps") if name in more
-    }
+    shape: dict[str, Any] = {"right": level}
+    shape |= {name: more.pop(name) for name in ("width", "right", "peak", "bumps") if name in more}
+    profile = Prestress(level, **shape)
     step = min(0.5, MARGIN * largest_step("localised", 4, ratio, gamma * dx**2))
-    return Scene(
-        "displacement" if gamma > 0.0 else "stress", Prestress(level, **{"right": level} | shape), duration, dx,
-        gamma=gamma, beta=ratio * dx, **{"max_step": step} | more,
-    )  # fmt: skip
+    boundary = "displacement" if gamma > 0.0 else "stress"
+    return Scene(boundary, profile, duration, dx, gamma, ratio * dx, **{"max_step": step} | more)
 
 
 def row(edge: Edge, window: float) -> dict[str, Any]:
@@ -208,10 +206,11 @@ def row(edge: Edge, window: float) -> dict[str, Any]:
     elif not verdict:
         # Comparisons with NaN are False: a number where theory has none is wrong unless it was flagged.
         verdict = "right" if off <= tolerance else "WRONG WITHOUT A FLAG"
+    family, at, quantity, should, expected, _ = edge
     return {
-        "family": edge.family, "value": edge.value, "quantity": edge.quantity, "should": edge.should,
-        "tolerance": tolerance, "expected": edge.expected, "measured": value, "error": off, "verdict": verdict,
-        "message": message, "block_updates": updates,
+        "family": family, "value": at, "quantity": quantity, "should": should, "tolerance": tolerance,
+        "expected": expected, "measured": value, "error": off, "verdict": verdict, "message": message,
+        "block_updates": updates,
     }  # fmt: skip
 
 

@@ -13,13 +13,9 @@ from ..theory.front_law import continuum_front_speed, lattice_front_speed, prest
 # Simulations whose parameters the curves have.
 NEEDS = {
     "sweeps": [
-        "front_speed",
-        "front_speed_springs",
-        "continuum_fixed_ratio",
-        "continuum_fixed_beta",
-        "front_speed_fixed_beta",
+        "front_speed", "front_speed_springs", "continuum_fixed_ratio", "continuum_fixed_beta", "front_speed_fixed_beta"
     ]
-}
+}  # fmt: skip
 
 # The inverse is the cheaper one: lines over the pre-stress are found over the speed.
 SPEEDS = 1.0 + np.geomspace(1e-3, 299.0, 60)
@@ -35,11 +31,6 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Speeds of theory alone.
 
-    Parameters
-    ----------
-    data, tables : not used
-    settings : sweeps
-
     Returns
     -------
     DataFrame of panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over
@@ -50,18 +41,14 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         name: pd.DataFrame([scene.attributes() for scene in expand(sweep)[0]])
         for name, sweep in settings["sweeps"].items()
     }
-    parts = [
-        pd.DataFrame({"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS}).assign(
-            panel="prestress", release=release, damping_ratio=ratio
-        )
-        for release, ratio in runs["front_speed"][["release", "damping_ratio"]].drop_duplicates().values
-    ]
-    rows = []
+    parts, rows = [], []
+    for release, ratio in runs["front_speed"][["release", "damping_ratio"]].drop_duplicates().values:
+        line = {"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS, "panel": "prestress"}
+        parts.append(pd.DataFrame(line | {"release": release, "damping_ratio": ratio}))
     for left, ratio in runs["front_speed_springs"][["left", "damping_ratio"]].drop_duplicates().values:
         line = {"panel": "springs", "release": SPRINGS_RELEASE, "left": left, "damping_ratio": ratio}
-        rows += [
-            line | {"springs": g, "speed": _speed(left, g, 1.0, ratio, SPRINGS_RELEASE)} for g in SPRINGS
-        ]
+        speeds = [_speed(left, springs, 1.0, ratio, SPRINGS_RELEASE) for springs in SPRINGS]
+        parts.append(pd.DataFrame(line | {"springs": SPRINGS, "speed": speeds}))
     for values, dx in _refined(runs).groupby(LINE)["dx"]:
         line = dict(zip(LINE, values, strict=True))
         if line["held"] == "beta" and line["release"] == "elastic":

@@ -10,7 +10,6 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..theory.exact_transition import exact_transition_displacement, uniform_transition_time
 
-# Nothing but the scenes below.
 NEEDS = {"sweeps": ()}
 
 LEVELS = np.concatenate([np.linspace(0.1, 0.25, 7), np.linspace(0.3, 0.9, 13)]).round(12)

@@ -58,10 +58,12 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     for release in RELEASES:
         trials: list[tuple[float, np.ndarray]] = []
         for ratio in DAMPING_RATIOS[release]:
-            if len(trials) < 2:
-                guess, steps = trials[-1][1] if trials else NEAR, FIRST
-            else:
-                guess, steps = _ahead(trials, ratio), 1
+            guess, steps = trials[-1][1] if trials else NEAR, FIRST
+            if len(trials) >= 2:
+                # On the straight line through the last two trials, over the logarithm of the damping ratio.
+                (one, first), (other, second) = trials[-2:]
+                guess = second + (second - first) * np.log(ratio / other) / np.log(other / one)
+                steps = 1
             trial, rows = panel.fitted(ratio, release, BETA / ratio, guess, steps)
             trials.append((ratio, trial))
             parts.append(rows.assign(part="profile"))
@@ -69,12 +71,6 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     right = readings_of(settings["published"], "space_time_stress")
     parts += [rows.assign(part="notebook"), _right_panel(right[right["quantity"] == "largest_velocity"])]
     return pd.concat(parts, ignore_index=True)
-
-
-def _ahead(trials: list[tuple[float, np.ndarray]], ratio: float) -> np.ndarray:
-    """On the straight line through the last two trials, over the logarithm of the damping ratio."""
-    (one, first), (other, second) = trials[-2:]
-    return second + (second - first) * np.log(ratio / other) / np.log(other / one)
 
 
 class LeftPanel:
@@ -91,41 +87,29 @@ class LeftPanel:
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
         tau0, gamma = map(float, trial)
-        scene = Scene(
-            "displacement",
-            Prestress(tau0, tau0),
-            END,
-            dx,
-            gamma,
-            ratio * dx,
-            release,
-            max_step=STEP,
-            order=ORDER,
-        )
-        return _readings(scene, 0.0, self.quantities)
+        of = ("displacement", Prestress(tau0, tau0), END, dx, gamma, ratio * dx, release)
+        return _readings(Scene(*of, max_step=STEP, order=ORDER), 0.0, self.quantities)
 
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
     ) -> tuple[np.ndarray, pd.DataFrame]:
         """tau_0 and gamma that fit best, by some steps of Gauss and Newton, and their rows."""
         trial = guess
-        exact = self.exact(trial, ratio, release)
-        correction = self.lattice(trial, ratio, release, dx) - exact
-        for _ in range(steps):
-            changes = [
-                (self.exact(trial + change, ratio, release) - exact) / change.sum()
-                for change in np.diag(DIFFERENCE * trial)
-            ]
-            slopes = np.column_stack(changes) / self.error[:, None]
-            misfit = (exact + correction - self.drawn) / self.error
-            trial = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
+        for step in range(steps + 1):
             exact = self.exact(trial, ratio, release)
             correction = self.lattice(trial, ratio, release, dx) - exact
+            misfit = (exact + correction - self.drawn) / self.error
+            if step < steps:
+                changes = [
+                    (self.exact(trial + change, ratio, release) - exact) / change.sum()
+                    for change in np.diag(DIFFERENCE * trial)
+                ]
+                slopes = np.column_stack(changes) / self.error[:, None]
+                trial = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
         tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
         rows = self.readings.assign(
             release=release, damping_ratio=ratio, dx=dx, tau0=trial[0], gamma=trial[1], tau0_error=tau0_error,
-            gamma_error=gamma_error, exact=exact, correction=correction,
-            pull=(exact + correction - self.drawn) / self.error,
+            gamma_error=gamma_error, exact=exact, correction=correction, pull=misfit,
         )  # fmt: skip
         return trial, rows
 
@@ -142,9 +126,8 @@ def _right_panel(readings: pd.DataFrame) -> pd.DataFrame:
     parts = []
     for release, ratio in product(RELEASES, RIGHT_RATIOS):
         crack, dx = ArrestingCrack(RIGHT_PANEL, ratio, release), BETA / ratio
-        scene = Scene(
-            "stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release, max_step=STEP, order=ORDER
-        )
+        of = ("stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release)
+        scene = Scene(*of, max_step=STEP, order=ORDER)
         (found,) = _readings(scene, crack.balance_position, ["largest_velocity"])
         rows = readings.assign(
             part="stress", release=release, damping_ratio=ratio, dx=dx, left=RIGHT_PANEL.left, width=RIGHT_PANEL.width,

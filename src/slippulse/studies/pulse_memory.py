@@ -8,26 +8,20 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..model.scene import Scene
+from ..predict.exact_rupture import exact_rupture
 from ..theory.front_law import front_speed
-from ..theory.pulse import SteadyPulse, steady_pulse
-from ..theory.rupture import Rupture
+from ..theory.pulse import steady_pulse
 
 # The simulation whose parameters the curves have.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
-# How far behind the step the slip is wanted, and beyond it in units of the finite memory.
-BEHIND, BEYOND = 10.0, 1.4
-BEFORE_STEP, WITHIN_MEMORY, AFTER = 21, 120, 20
+# Distances at which the slip is wanted: behind the step, and beyond it in units of the finite memory.
+BEHIND = np.linspace(-10.0, 0.0, 21)[:-1]
+BEYOND = np.concatenate([np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace(1.0, 1.4, 21)])
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Final slip around the step of each scene.
-
-    Parameters
-    ----------
-    data, tables : not used
-    settings : sweeps
 
     Returns
     -------
@@ -38,23 +32,15 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     parts = []
     for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:
         position, level = scene.prestress.steps[-1]
-        old, new = (_steady(scene, each) for each in (scene.prestress.right, level))
-        memory = new.width / (new.speed - 1.0)
-        x = np.concatenate(
-            [
-                np.linspace(-BEHIND, 0.0, BEFORE_STEP)[:-1],
-                np.linspace(0.0, memory, WITHIN_MEMORY, endpoint=False),
-                np.linspace(memory, BEYOND * memory, AFTER + 1),
-            ]
+        # In the limit dx -> 0 damping acts through the speed alone.
+        speeds = front_speed(np.array([scene.prestress.right, level]), scene.damping_ratio, scene.release)
+        old, new = (
+            steady_pulse(each, scene.gamma, 0.0, float(speed))
+            for each, speed in zip((scene.prestress.right, level), speeds, strict=True)
         )
-        exact = Rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
+        memory = new.width / (new.speed - 1.0)
+        x, exact = np.concatenate([BEHIND, memory * BEYOND]), exact_rupture(scene.attributes())
         rows = pd.DataFrame({"level": level, "x": x, "slip": exact.final_slip(position + x)})
         steady = {"steady": new.slip, "steady_before": old.slip, "memory": memory}
         parts.append(rows.assign(before=scene.prestress.right, **steady))
     return pd.concat(parts, ignore_index=True)
-
-
-def _steady(scene: Scene, level: float) -> SteadyPulse:
-    """In the limit dx -> 0 damping acts through the speed alone."""
-    speed = float(front_speed(level, scene.damping_ratio, scene.release))
-    return steady_pulse(level, scene.gamma, 0.0, speed)

@@ -70,9 +70,7 @@ def sound(profile: Prestress, bound: float, scheme: str, order: int, ratio: floa
     step = fraction * bound
     # No longer than a wave takes to cross, after which a chain between walls turns back.
     duration = min(STEPS * step, 0.8 * BLOCKS)
-    scene = Scene(
-        "stress", profile, duration, 1.0, beta=ratio, scheme=scheme, order=max(order, 3), max_step=1e-4
-    )
+    scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, max(order, 3))
     # A Scene refuses a step beyond the bound.
     object.__setattr__(scene, "max_step", step)
     lattice = Lattice(scene, None, scene.beta)
