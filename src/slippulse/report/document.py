@@ -8,6 +8,7 @@ import tempfile
 from base64 import b64encode
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from io import BytesIO
 from itertools import count
 from pathlib import Path
@@ -24,20 +25,13 @@ from .html import TEMPLATES, page, pandoc
 FONTS = Path(matplotlib.get_data_path()) / "fonts/ttf"
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0
-FIGURE = re.compile(r'(<figure id="(\w+)">\s*)<img\s+src="([^"]+)"')
+FIGURE = re.compile(r'(<figure id="(\w+)">\s*)<img\s+src="([^"]+)"([^>]*>)')
 # Names and alternative texts of the figures of a text, which pandoc does not pass on to Typst.
 ALTERNATIVE = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
 
 
 def write_html(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report as one HTML file that loads nothing.
-
-    Parameters
-    ----------
-    text : Markdown
-    manuscript : folder with metadata.yaml and references.bib
-    output : HTML file
-    """
+    """Write the report, Markdown, as one HTML file that loads nothing; ``manuscript`` is the folder of its texts."""
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
@@ -47,32 +41,24 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
 
 
 def as_page(html: str) -> str:
-    """The document with its headings below the title, and each figure and table where everybody can use it.
-
-    Parameters
-    ----------
-    html : the report as pandoc writes it, its text inside ``main``, its figures files
-    """
+    """The report of pandoc, its headings below the title, each figure and table where everybody can use it."""
     head, opening, text = html.partition('<main id="content">')
     text = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", text)
     # Where a phone has them scroll, the keyboard must reach them.
     text = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', text)
     numbers = count(1)
-    text = re.sub(
-        "<table",
-        lambda tag: (
-            f'<div class="scroll" tabindex="0" role="region" aria-label="Table {next(numbers)}">{tag[0]}'
-        ),
-        text,
-    ).replace("</table>", "</table></div>")
+    region = '<div class="scroll" tabindex="0" role="region" aria-label="Table {}"><table'
+    text = re.sub("<table", lambda _: region.format(next(numbers)), text).replace(
+        "</table>", "</table></div>"
+    )
     with ThreadPoolExecutor() as pool:
         pictures = pool.map(_as_webp, [figure[2] for figure in FIGURE.findall(text)])
         # A click on a figure opens its picture, at its own size.
         text = FIGURE.sub(
-            lambda figure: f'{figure[1]}<a href="../figures/{figure[2]}.png"><img src="{next(pictures)}"',
+            lambda it: f'{it[1]}<a href="../figures/{it[2]}.png"><img src="{next(pictures)}"{it[4]}</a>',
             text,
         )
-    return head + opening + re.sub(r'(<img src="data:[^>]*>)', r"\1</a>", text)
+    return head + opening + text
 
 
 def _as_webp(path: str) -> str:
@@ -85,13 +71,7 @@ def _as_webp(path: str) -> str:
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report as PDF, its figures as vectors.
-
-    Parameters
-    ----------
-    text : Markdown, its figures by their absolute paths
-    manuscript : folder with metadata.yaml and references.bib
-    output : PDF file
+    """Write the report as PDF, its figures as vectors, by their absolute paths.
 
     Raises
     ------
@@ -107,20 +87,11 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
         return f"{image[0]}, alt: {json.dumps(shows[Path(image[1]).stem], ensure_ascii=False)}"
 
     source = re.sub(r'image\("([^"]+)"', with_alternative, source)
-    with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
-        document = Path(folder) / "report.typ"
-        document.write_text(source, encoding="utf-8")
-        try:
-            pdf = typst.compile(
-                document,
-                root=Path("/"),
-                format="pdf",
-                ignore_system_fonts=True,
-                font_paths=[FONTS],
-                timestamp=TIMESTAMP,
-            )
-        except typst.TypstError as error:
-            raise ValueError(f"Typst: {error}") from None
+    compiled = partial(typst.compile, ignore_system_fonts=True, font_paths=[FONTS], timestamp=TIMESTAMP)
+    try:
+        pdf = compiled(source.encode(), root=Path("/"), format="pdf")
+    except typst.TypstError as error:
+        raise ValueError(f"Typst: {error}") from None
     write_whole(output, lambda part: part.write_bytes(pdf))
 
 

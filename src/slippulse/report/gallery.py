@@ -19,16 +19,10 @@ PAGE = 7.0
 
 
 class Gallery:
-    """The figures that one report includes.
+    """The figures that one report includes: those whose NAME.pdf and NAME.png are in a folder.
 
-    Parameters
-    ----------
-    included : names of the figures whose files there are
-    text : of the report, in whose order they are numbered
-    captions : per name, its texts
-    folder : where NAME.pdf and NAME.png are
-
-    A figure that the text does not name comes after those that it does; one without a caption has its name.
+    They are numbered by the order in which the text names them; one that it does not name comes last, and one without a
+    caption has its name.
     """
 
     def __init__(
@@ -50,18 +44,16 @@ class Gallery:
         head = f"Figure {self.order.index(name) + 1}" + (f" (paper, figure {int(paper[1])})" if paper else "")
         text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
+        with Image.open(self.folder / f"{name}.png") as picture:
+            inches = picture.width / picture.info["dpi"][0]
+        # A column of the journal stays one.
+        width = min(100.0, 100.0 * inches / PAGE)
         # No extension: the vector file for print, the picture for the browser.
-        return f"![{text}]({self.folder / name}){{#{name} width={self._width(name):.0f}% alt='{alt}'}}"
+        return f"![{text}]({self.folder / name}){{#{name} width={width:.0f}% alt='{alt}'}}"
 
     def further(self) -> str:
         """The figures that the text does not name."""
         return "\n\n".join(self.figure(name) for name in self.unnamed)
-
-    def _width(self, name: str) -> float:
-        """Width of a figure in per cent of the page: a column of the journal stays one."""
-        with Image.open(self.folder / f"{name}.png") as picture:
-            inches = picture.width / picture.info["dpi"][0]
-        return min(100.0, 100.0 * inches / PAGE)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
         """A link to a figure between two texts, with the word before its number; nothing if it is not included."""

@@ -27,13 +27,7 @@ PAGES.filters |= FILTERS
 
 
 def page(template: str, **data: object) -> str:
-    """A whole page.
-
-    Parameters
-    ----------
-    template : file in `TEMPLATES`
-    data : what it shows
-    """
+    """A whole page: a file in `TEMPLATES`, filled with what it shows."""
     return PAGES.get_template(template).render(data, configuration=configuration()) + "\n"
 
 
@@ -55,21 +49,19 @@ def pandoc(text: str, options: Sequence[str]) -> str:
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
     """Each text, one paragraph of Markdown with formulas, as HTML with MathML; raw HTML in it is shown, not obeyed.
 
-    All are converted by one call of pandoc.
-
     Raises
     ------
     ValueError
         If a text is more than one paragraph.
     """
     texts = sorted({text for text in texts if text.strip()})
-    found = {"": Markup()}
     if not texts:
-        return found
+        return {"": Markup()}
+    # All by one call of pandoc.
     whole = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
     options = ["--from=markdown-raw_html-smart-fancy_lists", "--to=html5", "--mathml", "--wrap=none"]
     parts = [part.strip() for part in pandoc(whole, options).split("<hr />")]
-    whole_parts = [part for part in parts if part.startswith("<p>") and part.endswith("</p>")]
-    if not len(texts) == len(parts) == len(whole_parts):
+    paragraphs = [part[3:-4] for part in parts if part.startswith("<p>") and part.endswith("</p>")]
+    if not len(texts) == len(parts) == len(paragraphs):
         raise ValueError("a text for a page is not one paragraph of Markdown")
-    return found | {text: Markup(part[3:-4]) for text, part in zip(texts, parts, strict=True)}
+    return {"": Markup(), **dict(zip(texts, map(Markup, paragraphs), strict=True))}

@@ -52,13 +52,7 @@ class Inputs:
 
 
 def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
-    """The names that cells and prose use; the errata see what the cells add later.
-
-    Parameters
-    ----------
-    inputs : what the report is written from
-    show : puts Markdown into the report
-    """
+    """The names that cells and prose use, with ``show``, which puts Markdown into the report."""
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
@@ -80,6 +74,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
     }
 
     def filled(text: str) -> str:
+        # The errata see what the cells add later.
         return fill(text, names)
 
     gallery = Gallery(
@@ -101,16 +96,12 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
 
 
 def execute(source: str | Path, inputs: Inputs) -> str:
-    """Execute the report.
+    """Its prose with every expression replaced, and the Markdown that its code shows, in order.
 
     Parameters
     ----------
     source : file in any format of jupytext; cells tagged `BY_HAND` are left out
     inputs : what it is written from
-
-    Returns
-    -------
-    its prose with every expression replaced, and the Markdown that its code showed, in order
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from ..data.numerals import setting
 
@@ -11,12 +11,7 @@ FEW = 3
 
 
 def parameters(config: Mapping, name: str) -> str:
-    """Boundary, elasticity ratio, pre-stress and damping of all runs of a simulation, as Markdown.
-
-    Parameters
-    ----------
-    config : the configuration, builtins
-    name : of one of its simulations
+    """Boundary, elasticity ratio, pre-stress and damping of all runs of one of its simulations, as Markdown.
 
     Raises
     ------
@@ -27,8 +22,7 @@ def parameters(config: Mapping, name: str) -> str:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
     profiles = simulation.get("profiles") or [simulation]
-    columns = {key: [profile.get(key) for profile in profiles] for key in ("left", "right", "width")}
-    left, right, width = (_flat(columns[key]) for key in columns)
+    left, right, width = (_flat(each.get(key) for each in profiles) for key in ("left", "right", "width"))
     springs = simulation["boundary"] == "displacement"
     parts = [r"$\Gamma=1$" if springs else r"$\Gamma=0$"]
     if springs:
@@ -47,12 +41,10 @@ def parameters(config: Mapping, name: str) -> str:
     return ", ".join([*parts, f"$b$ = {_listed(ratios)}"])
 
 
-def _flat(values: Sequence) -> list:
+def _flat(values: Iterable) -> list:
     """All values, each once, of entries that are lists, single values or missing."""
-    found = []
-    for entry in values:
-        found += entry if isinstance(entry, list) else [entry]
-    return list(dict.fromkeys(value for value in found if value is not None))
+    lists = (entry if isinstance(entry, list) else [entry] for entry in values)
+    return [*dict.fromkeys(value for entry in lists for value in entry if value is not None)]
 
 
 def _listed(values: Sequence[float]) -> str:

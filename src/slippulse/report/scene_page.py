@@ -25,10 +25,8 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
 
     Parameters
     ----------
-    name, title : of the scene
-    png : its figure
-    numbers : measured, with uncertainty and theory, as `slippulse.figures.shared.numbers.scene_numbers`; a promised
-        accuracy, where there is one, is stated with whether it is kept
+    name, title, png : of the scene, and its figure
+    numbers : as `slippulse.figures.shared.numbers.scene_numbers`
     attributes : of the run's data, with the state of its leading pulse
     """
     return page(

@@ -111,20 +111,13 @@ def whole_ledger(ledger: Ledger) -> str:
 
 def tolerances(ledger: Ledger) -> str:
     """Why each tolerance is what it is: the claims that have kind, tolerance and reason in common together."""
-    groups: dict[tuple, list[str]] = {}
+    groups: dict[tuple[str, ...], list[str]] = {}
     for claim in ledger:
         exponent = getattr(claim, "tolerance_exponent", None)
-        key = (claim.kind, float(claim.tolerance), exponent, claim.reason)
+        tolerance = setting(claim.tolerance) + (f"; exponent {setting(exponent)}" if exponent else "")
+        key = (claim.kind, tolerance, plain(claim.reason))
         groups.setdefault(key, []).append(f"`{claim.id}`")
-    rows = [
-        [
-            kind,
-            setting(tolerance) + (f"; exponent {setting(exponent)}" if exponent else ""),
-            plain(reason),
-            ", ".join(ids),
-        ]
-        for (kind, tolerance, exponent, reason), ids in groups.items()
-    ]
+    rows = [[*key, ", ".join(ids)] for key, ids in groups.items()]
     return table(["kind", "tolerance", "reason", "claims"], rows, [11, 11, 42, 36], "lrll")
 
 
@@ -140,11 +133,11 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
     ours = ledger("published_space_time_figure").further
     rows = [
         [
-            reading["statement"],
-            with_uncertainty(reading["value"], reading["reading_error"]),
-            with_uncertainty(ours.get(reading["statement"]), None),
+            each["statement"],
+            with_uncertainty(each["value"], each["reading_error"]),
+            number(ours.get(each["statement"]), 5),
         ]
-        for reading in readings.values()
+        for each in readings.values()
     ]
     return table(["quantity", "published", "this run"], rows, [50, 20, 20], "lrr")
 
@@ -163,16 +156,12 @@ def sentence_counts(sentences: Sequence[Mapping]) -> str:
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
     """Every sentence that is tested, with its position in the paper and its claims, among them the algebra."""
-    rows = [
-        [
+    rows = []
+    for sentence in sentences:
+        if claims := claims_of(entries, sentence):
             # For a narrow column: paragraph and sentence as numbers.
-            re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", entry["place"]),
-            entry["paraphrase"],
-            ", ".join(f"`{claim}`" for claim in claims_of(entries, entry)),
-        ]
-        for entry in sentences
-        if claims_of(entries, entry)
-    ]
+            position = re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", sentence["place"])
+            rows.append([position, sentence["paraphrase"], ", ".join(f"`{claim}`" for claim in claims)])
     return table(["section", "what it says", "claims"], rows, [22, 45, 33], "lll")
 
 
@@ -200,16 +189,11 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
 
 def presets(config: Mapping) -> str:
     """The presets of the configuration; the one of this run is in bold."""
-    rows = [
-        [
-            f"**{name}**" if name == config["preset"] else name,
-            setting(preset["dx"]),
-            setting(preset["max_step"]),
-            str(preset["order"]),
-            " and ".join(setting(factor) for factor in preset["coarser"]),
-        ]
-        for name, preset in config["presets"].items()
-    ]
+    rows = []
+    for name, preset in config["presets"].items():
+        settings = [setting(preset[key]) for key in ("dx", "max_step", "order")]
+        coarser = " and ".join(map(setting, preset["coarser"]))
+        rows.append([f"**{name}**" if name == config["preset"] else name, *settings, coarser])
     step = r"largest step over $\Delta x$"
     head = ["preset", r"spacing $\Delta x$", step, "order", "grid study, times coarser"]
     return table(head, rows, [18, 18, 24, 12, 28], "lrrrr")
@@ -219,22 +203,13 @@ def speeds(runs: pd.DataFrame, study: pd.DataFrame) -> str:
     """Front speed and peak slip velocity of a sweep: simulated, with uncertainty, exact, and by the paper."""
     errors = study.set_index(["point", "quantity"])["uncertainty"]
 
-    def measured(row, quantity: str) -> str:
-        return with_uncertainty(getattr(row, quantity), errors.get((row.Index, quantity)))
-
-    rows = [
-        [
-            setting(row.left),
-            setting(row.damping_ratio),
-            measured(row, "front_speed_right"),
-            number(row.exact_front_speed_right, 5),
-            number(row.paper_front_speed_right, 5),
-            measured(row, "pulse_peak_velocity"),
-            number(row.exact_pulse_peak_velocity, 5),
-            number(row.paper_pulse_peak_velocity, 5),
-        ]
-        for row in runs.itertuples()
-    ]
+    rows = []
+    for run, row in enumerate(runs.to_dict("records")):
+        cells = [setting(row["left"]), setting(row["damping_ratio"])]
+        for name in ("front_speed_right", "pulse_peak_velocity"):
+            cells.append(with_uncertainty(row[name], errors.get((run, name))))
+            cells += [number(row[f"{theory}_{name}"], 5) for theory in ("exact", "paper")]
+        rows.append(cells)
     speed = ["$v$, run", "$v$, exact", r"$1/\sqrt{1-\tau_0^2}$"]
     head = [r"$\tau_0$", "$b$", *speed, "peak, run", "peak, exact", r"$1/\sqrt{\gamma}$"]
     return table(head, rows, [9, 9, 13, 13, 16, 13, 14, 13], "rrrrrrrr")
@@ -279,22 +254,22 @@ def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mappin
     def code(value: object) -> str:
         return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
 
-    keys = "; ".join(
+    keys = [
         f"`{change['key']}`: {code(change['here'])} (shipped: {code(change['shipped'])})"
         for change in altered
-    )
-    judged = "; ".join(
+    ]
+    judged = [
         f"`{claim.id}`: {claim.verdict} (shipped: {verdicts.get(claim.id, 'absent')})"
         for claim in ledger
         if claim.verdict != verdicts.get(claim.id)
-    )
+    ]
     lines = []
     if keys:
         lines.append(
-            f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."
+            f"> **Altered configuration.** This run differs from the shipped configuration in {'; '.join(keys)}."
         )
     if judged:
-        lines.append(f"> **Verdicts that differ from the shipped report:** {judged}.")
+        lines.append(f"> **Verdicts that differ from the shipped report:** {'; '.join(judged)}.")
     elif keys:
         lines.append("> No verdict differs from the shipped report.")
     return "\n>\n".join(lines)

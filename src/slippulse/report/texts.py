@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,19 +39,16 @@ def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[st
     ValueError
         If a caption is not whole, naming the figure, the key, and what is allowed.
     """
-    found = {}
-    for name, parts in read_text(path).items():
-        check_whole(f"{path}: {name}", parts, PARTS)
-        found[name] = Caption(**{key: " ".join(fill(parts[key]).split()) for key in PARTS})
-    return found
+    return {
+        name: Caption(*(" ".join(fill(parts[key]).split()) for key in PARTS))
+        for name, parts in _whole(path, read_text(path), PARTS).items()
+    }
 
 
 def read_errata(path: str | Path) -> list[dict[str, str]]:
     """The errata, mappings with the keys `ERRATUM`; one that is not whole is refused as a caption is."""
-    entries = read_text(path)
-    for i, entry in enumerate(entries, start=1):
-        check_whole(f"{path}: entry {i}", entry, ERRATUM)
-    return entries
+    entries = {f"entry {i}": entry for i, entry in enumerate(read_text(path), start=1)}
+    return [*_whole(path, entries, ERRATUM).values()]
 
 
 def read_text(path: str | Path):
@@ -59,10 +56,12 @@ def read_text(path: str | Path):
     return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
 
 
-def check_whole(where: str, entry: Mapping[str, str], keys: Collection[str]) -> None:
-    """Refuse an entry without a text for each key, or with another key, by a ValueError that begins with ``where``."""
-    for key in [*entry, *keys]:
-        if key not in keys:
-            raise ValueError(f"{where}: {key}: unknown key; allowed: {', '.join(keys)}")
-        if not str(entry.get(key) or "").strip():
-            raise ValueError(f"{where}: {key}: missing; allowed: some text")
+def _whole(path: str | Path, entries: dict[str, dict], keys: Collection[str]) -> dict[str, dict]:
+    """Refuse an entry without a text for each key, or with another key."""
+    for name, entry in entries.items():
+        for key in [*entry, *keys]:
+            if key not in keys:
+                raise ValueError(f"{path}: {name}: {key}: unknown key; allowed: {', '.join(keys)}")
+            if not str(entry.get(key) or "").strip():
+                raise ValueError(f"{path}: {name}: {key}: missing; allowed: some text")
+    return entries
