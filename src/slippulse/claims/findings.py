@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 
 import numpy as np
 
 from ..data.prose import fill
-from .evidence import Evidence, NoRuns, deviations
+from .evidence import Evidence, NoRuns, deviations, ratios
 from .inference import inference
-from .pulses import exact_pulses, undamped
+from .pulses import UNDAMPED
 from .reading import Numbers
-from .transition import arrests
+from .transition import PERCENT, arrests
 
-PULSE = {
-    "speed": "front_speed_right",
-    "peak": "pulse_peak_velocity",
-    "width": "pulse_width",
-    "slip": "pulse_slip",
-}
 # Pre-stress at which the effect of damping on the front speed is shown.
 LEVEL = 0.6
 
@@ -36,27 +31,13 @@ def findings(evidence: Evidence, damping_ratio: float, texts: Mapping[str, str])
     ValueError
         If the texts are not about the same findings, or ask for a number that there is not.
     """
-    numbers: dict[str, Callable[[], dict]] = {
-        "pulse_at_figure_damping": lambda: damped_pulse(evidence, damping_ratio),
-        "third_parameter": lambda: third_parameter(evidence),
-        "collapse_against_damping": lambda: collapse(evidence),
-        "front_never_arrives": lambda: never_arrives(evidence),
-        "strain_term_not_small": lambda: strain_term(evidence),
-        "literal_slip_threshold": lambda: literal_threshold(evidence),
-        "width_of_order_H": lambda: widths(evidence),
-        "speed_exact_at_every_gamma": lambda: every_gamma(evidence),
-        "chain_front_speed": lambda: chain_front_speed(evidence),
-        "published_figure_made_with": lambda: best_fit(evidence),
-        "duration_criterion": lambda: {"factor": float(np.pi / np.sqrt(2.0))},
-    }
-    if odd := sorted({*numbers} ^ {*texts}):
+    if odd := sorted({*FINDINGS} ^ {*texts}):
         raise ValueError(f"findings: {', '.join(odd)}; allowed: the same in the texts and in the code")
     out = []
-    for id, find in numbers.items():
-        try:
-            found = find()
-        except NoRuns:
-            found = {}
+    for id, find in FINDINGS.items():
+        found: Mapping = {}
+        with suppress(NoRuns):
+            found = find(evidence, damping_ratio)
         out.append({"id": id, "numbers": found, "text": fill(texts[id], {"n": Numbers(found)})})
     return out
 
@@ -67,67 +48,66 @@ def damped_pulse(evidence: Evidence, ratio: float) -> dict[str, float]:
     off = (table["damping_ratio"] - ratio).abs()
     table = table[off == off.min()]
     out = {"damping_ratio": float(table["damping_ratio"].iloc[0])}
-    for name, quantity in PULSE.items():
+    for quantity in ("front_speed_right", "pulse_peak_velocity", "pulse_width", "pulse_slip"):
+        name = quantity.removesuffix("_velocity").removeprefix("pulse_").replace("front_speed_right", "speed")
         for who in ("paper", "exact"):
             out[f"{name}_{who}"] = float(np.max(deviations(table, quantity, f"{who}_{quantity}")))
     return out
 
 
-def third_parameter(evidence: Evidence) -> dict[str, float]:
+def third_parameter(evidence: Evidence, _: float) -> dict[str, float]:
     """Exact front speeds at one pre-stress, without damping and at the largest damping ratio of the collapses."""
     ratio = float(evidence.tables["damping_displacement"]["damping_ratio"].max())
-    table = evidence.tables["front_speed"]
-    table = table[(table["right"] == LEVEL) & (table["release"] == "total")]
+    table = evidence.tables["front_speed"].query(f"right == {LEVEL} and release == 'total'")
     speeds = table.groupby("damping_ratio")["exact_front_speed_right"].first().to_dict()
     if not {0.0, ratio} <= {*speeds}:
         raise NoRuns("front_speed")
     return {"level": LEVEL, "ratio": ratio, "slowest": speeds[0.0], "fastest": speeds[ratio]}
 
 
-def collapse(evidence: Evidence) -> dict[str, float]:
+def collapse(evidence: Evidence, _: float) -> dict[str, float]:
     """Median of L_trans over its prediction without damping and at the largest ratio, for both boundaries."""
     out: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
         table = evidence.runs(f"damping_{boundary}")
-        ratios = table["transition_length"] / table["paper_transition_length"]
-        medians = ratios.groupby(table["damping_ratio"]).median()
+        length = table["transition_length"] / table["paper_transition_length"]
+        medians = length.groupby(table["damping_ratio"]).median()
         first, last = float(medians.iloc[0]), float(medians.iloc[-1])
         out |= {f"{boundary}_undamped": first, f"{boundary}_damped": last, f"{boundary}_change": last / first}
     return out | {"ratio": float(medians.index[-1])}
 
 
-def never_arrives(evidence: Evidence) -> dict[str, float]:
+def never_arrives(evidence: Evidence, _: float) -> dict[str, float]:
     """Gap and time of the last release, and how they change with the lattice; exact times at fractions of the way."""
-    evidence.runs("scaling_stress")
-    tables = evidence.lattices("scaling_stress")
-    gaps = [float((t["balance_distance"] - t["last_release_distance"]).abs().median()) for t in tables]
-    late = tables[0]["last_release_time"] / tables[0]["balance_distance"]
-    relative = {}
-    for name, quantity in {"last": "last_release_time", "share": "transition_time"}.items():
-        rows = evidence.points("scaling_stress", quantity)
-        relative[f"uncertainty_of_{name}"] = float((rows["uncertainty"] / rows["value"]).median())
+    table = evidence.runs("scaling_stress")
+    gaps = [
+        float((t["balance_distance"] - t["last_release_distance"]).abs().median())
+        for t in evidence.lattices("scaling_stress")
+    ]
+    late = ratios(table, "last_release_time", "balance_distance")
     out = {
         "gap": gaps[0],
         "gap_coarsest": gaps[-1],
         "earliest": float(late.min()),
         "latest": float(late.max()),
     }
-    out |= relative
-    for where, (times, *_) in list(arrests(evidence).items())[:-1]:
-        fraction = where.removeprefix("at ").removesuffix(" %")
-        out[f"median_{fraction}"] = float((times["time"] / times["distance"]).median())
+    for name, quantity in {"last": "last_release_time", "share": "transition_time"}.items():
+        relative = ratios(table, f"uncertainty_{quantity}", quantity)
+        out[f"uncertainty_of_{name}"] = float(np.nanmedian(relative))
+    for percent, tables in zip(PERCENT, arrests(evidence).values(), strict=False):
+        out[f"median_{percent}"] = float(np.nanmedian(ratios(tables[0], "time", "distance")))
     return out
 
 
-def strain_term(evidence: Evidence) -> dict[str, float]:
+def strain_term(evidence: Evidence, _: float) -> dict[str, float]:
     """Curvature of slip at the nucleation point over the pre-stress there, halfway to the transition of figure 4."""
-    study = exact_pulses(evidence, "space_time_displacement", "strain_term")
+    study = evidence.exact_pulses("space_time_displacement", "strain_term")
     if study.empty:
         raise NoRuns("space_time_displacement")
     return {"share": float(study["difference"].iloc[0])}
 
 
-def literal_threshold(evidence: Evidence) -> dict[str, float]:
+def literal_threshold(evidence: Evidence, _: float) -> dict[str, float]:
     """Runs that reach the slip 2 tau/gamma with tau = 1 and tau = tau_0, and when, over the first stick."""
     table = evidence.runs("scaling_displacement")
     when = (table["slip_time_background"] / table["transition_time"]).dropna()
@@ -137,24 +117,23 @@ def literal_threshold(evidence: Evidence) -> dict[str, float]:
     }  # fmt: skip
 
 
-def widths(evidence: Evidence) -> dict[str, float]:
+def widths(evidence: Evidence, _: float) -> dict[str, float]:
     """Width of the undamped pulse of figure 4, and the spread over the steady pulses that were run."""
     width = evidence.runs("any_prestress")["pulse_width"]
     figure = float(evidence.tables["space_time_displacement"]["paper_pulse_width"].iloc[0])
     return {"figure": figure, "narrowest": float(width.min()), "widest": float(width.max())}
 
 
-def every_gamma(evidence: Evidence) -> dict[str, float]:
+def every_gamma(evidence: Evidence, _: float) -> dict[str, float]:
     """How far the exact undamped speed on the finest lattice of the sweep is from the formula, at its largest gamma."""
-    rows = evidence.runs("speed_against_gamma", where=undamped)
-    rows = rows[rows["gamma"] == rows["gamma"].max()]
+    rows = evidence.runs("speed_against_gamma", where=UNDAMPED).query("gamma == gamma.max()", engine="python")
     off = deviations(rows, "lattice_front_speed_right", "paper_front_speed_right")
     return {
         "gamma": float(rows["gamma"].iloc[0]), "spacing": float(rows["dx"].iloc[0]), "largest": float(off.max()),
     }  # fmt: skip
 
 
-def chain_front_speed(evidence: Evidence) -> dict[str, float]:
+def chain_front_speed(evidence: Evidence, _: float) -> dict[str, float]:
     """How far simulated fronts on single blocks are from the exact speed of a chain with leaf springs."""
     off = deviations(
         evidence.runs("burridge_knopoff_speed"), "front_speed_right", "lattice_front_speed_right"
@@ -162,7 +141,7 @@ def chain_front_speed(evidence: Evidence) -> dict[str, float]:
     return {"median": float(np.median(off)), "largest": float(off.max())}
 
 
-def best_fit(evidence: Evidence) -> dict[str, float | str]:
+def best_fit(evidence: Evidence, _: float) -> dict[str, float | str]:
     """What the published figure was made with: best fit, confidence region, how much worse the other rule is."""
     found = inference(evidence.tables["published_figure"])
     best = found["best"]
@@ -171,3 +150,18 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
         "release": best["release"], "chi_square": best["chi2"], "degrees": float(best["dof"]),
         "ratio": best["damping_ratio"], "low": low, "high": high, "difference": found["difference"],
     }  # fmt: skip
+
+
+FINDINGS: dict[str, Callable[[Evidence, float], Mapping[str, float | str]]] = {
+    "pulse_at_figure_damping": damped_pulse,
+    "third_parameter": third_parameter,
+    "collapse_against_damping": collapse,
+    "front_never_arrives": never_arrives,
+    "strain_term_not_small": strain_term,
+    "literal_slip_threshold": literal_threshold,
+    "width_of_order_H": widths,
+    "speed_exact_at_every_gamma": every_gamma,
+    "chain_front_speed": chain_front_speed,
+    "published_figure_made_with": best_fit,
+    "duration_criterion": lambda *_: {"factor": float(np.pi / np.sqrt(2.0))},
+}

@@ -6,14 +6,20 @@ import math
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 
+from scipy.special import chdtrc
+
+from ..data.numerals import rounded
+from . import rules
 from .entries import positions
 from .evidence import Claim, Evidence
-from .published import published_figure
+from .inference import inference, right_panel
 from .pulses import pulse_claims
 from .reading import why_text
 from .regimes import regime_claims
 from .transition import transition_claims
 
+# Fitted parameters of the left panel of the published figure.
+FITTED = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
 # Whose measured numbers, grid studies, coarser tables and predictions the claims are computed from.
 SIMULATIONS = [
     "any_prestress",
@@ -54,29 +60,43 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
     ValueError
         If the entries and what is computed are not about the same claims.
     """
-    claims = [
-        *pulse_claims(evidence),
-        *transition_claims(evidence),
-        *regime_claims(evidence),
-        published_figure(evidence, readings),
-    ]
-    found = {claim.id: claim for claim in claims}
+    claims = [*pulse_claims(evidence), *transition_claims(evidence), *regime_claims(evidence)]
+    found = {claim["id"]: claim for claim in [*claims, published_figure(evidence, readings)]}
     if odd := sorted({*evidence.entries} ^ {*found}):
         raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
     where = positions(evidence.entries, sentences)
     return [written(found[id], entry, where[id]) for id, entry in evidence.entries.items()]
 
 
+def published_figure(evidence: Evidence, readings: Mapping) -> Claim:
+    """The published space-time figure, all its readings as one claim: is there a run of this model that it may show?"""
+    id, study = "published_space_time_figure", evidence.tables["published_figure"]
+    left, right = inference(study)["best"], right_panel(study)
+    chi_square, degrees = left["chi2"] + right["chi2"], left["dof"] + right["dof"]
+    p = float(chdtrc(degrees, chi_square)) if degrees > 0 else float("nan")
+    fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
+    ours = {
+        entry["statement"]: float(evidence.lattices(entry["simulation"])[0][entry["quantity"]].iloc[0])
+        for entry in readings.values()
+    }
+    return {
+        "id": id, "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
+        "measured": chi_square, "deviation": p, "further": ours,
+        "note": f"chi-square of all readings of both panels at the best fit of the left one, {fit}, release rule"
+        f" `{left['release']}`; then the readings in our own figure",
+    }  # fmt: skip
+
+
 def written(claim: Claim, entry: Mapping, where: str) -> dict:
     """One claim with its text, as JSON has it."""
+    numbers = dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
     out = {
-        "figure": "", "follows_from": [], **entry, **vars(claim), **claim.numbers, "figure_or_section": where,
-        "counted": "follows_from" not in entry, "note": claim.note or entry.get("note", ""),
-        "source": claim.source or entry.get("source", ""),
+        "figure": "", "follows_from": [], "note": "", "source": "", "further": {}, "why": "", **numbers, **entry,
+        **claim, "figure_or_section": where, "counted": "follows_from" not in entry,
     }  # fmt: skip
-    del out["numbers"], out["sentences"]
-    out["why"] = why_text(SimpleNamespace(**out))
-    return finite(out)
+    del out["sentences"]
+    out = finite(out)
+    return out | {"why": why_text(SimpleNamespace(**out))}
 
 
 def finite(value):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from types import SimpleNamespace
+from typing import Any
 
 from ..data.numerals import number, percent, rounded, setting, with_uncertainty
 from .rules import EXCLUDED, KINDS, VERDICTS, WORST_FIRST
@@ -26,7 +28,7 @@ class Numbers(SimpleNamespace):
 
 
 class Ledger:
-    """Claims by id, each with its fields as attributes.
+    """Claims by id, each with its fields as attributes, and findings.
 
     Parameters
     ----------
@@ -42,18 +44,12 @@ class Ledger:
         return iter(self.claims.values())
 
     def __call__(self, id: str) -> SimpleNamespace:
-        """One claim.
-
-        Raises
-        ------
-        ValueError
-            Naming the id and those that there are.
-        """
-        return self.claims[_known("claim", id, self.claims)]
+        """One claim; of an unknown name a ValueError says which there are, here and in `found`."""
+        return _known("claim", id, self.claims)
 
     def found(self, id: str) -> Numbers:
-        """The numbers of one finding; an unknown name is refused as in a call."""
-        return Numbers(self.findings[_known("finding", id, self.findings)]["numbers"])
+        """The numbers of one finding."""
+        return Numbers(_known("finding", id, self.findings)["numbers"])
 
     def measured(self, id: str) -> str:
         """Measured value, as `measured_text`."""
@@ -89,20 +85,21 @@ class Ledger:
 
     def by_kind(self) -> list[tuple[str, list[str]]]:
         """Of each kind how many claims have each verdict, counted ones and, behind a plus, those that follow."""
-        found: dict[str, list[str]] = {}
+        found = []
         for kind in KINDS:
-            claims = [claim for claim in self if claim.kind == kind]
-            for name in FAILURES_FIRST if claims else ():
-                counted = [claim.counted for claim in claims if claim.verdict == name]
-                follow = f" + {counted.count(False)}" if False in counted else ""
-                found.setdefault(kind, []).append(f"{sum(counted)}{follow}")
-        return [*found.items()]
+            counts = Counter((claim.verdict, claim.counted) for claim in self if claim.kind == kind)
+            row = [
+                f"{counts[name, True]}" + (f" + {counts[name, False]}" if counts[name, False] else "")
+                for name in FAILURES_FIRST
+            ]
+            found += [(kind, row)] if counts else []
+        return found
 
 
-def _known(what: str, id: str, names: Iterable[str]) -> str:
-    if id not in names:
-        raise ValueError(f"{what}: {id!r}; allowed: {', '.join(names)}")
-    return id
+def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
+    if id not in entries:
+        raise ValueError(f"{what}: {id!r}; allowed: {', '.join(entries)}")
+    return entries[id]
 
 
 def predicted_text(claim: SimpleNamespace) -> str:
@@ -119,8 +116,6 @@ def predicted_text(claim: SimpleNamespace) -> str:
 def measured_text(claim: SimpleNamespace) -> str:
     """What was measured, with its uncertainty; of a qualitative claim whole numbers of runs."""
     if claim.kind == "qualitative":
-        if claim.held is None:
-            return number(None)
         counts = {"against": claim.failed, "undecided": claim.undecided}
         rest = [f"{count} {name}" for name, count in counts.items() if count]
         return ", ".join([f"{claim.held} of {claim.held + claim.failed + claim.undecided}", *rest])
@@ -170,23 +165,18 @@ def why_text(claim: SimpleNamespace) -> str:
             return f"In {claim.undecided} of {claim.runs} runs the lattices disagree."
         case "qualitative":
             return "It needs a condition that the paper does not state."
-    relative = claim.predicted != 0.0
-    write = percent if relative else number
-    off, allowed = write(claim.deviation), write(claim.tolerance)
-    blur = write(claim.uncertainty / (abs(claim.predicted) if relative else 1.0))
-    if claim.kind == "approximate":
-        if claim.deviation > claim.tolerance:
-            return f"The median run is off by {off}, where {allowed} is allowed."
-        if claim.exponent is not None and (
-            abs(claim.exponent - 1.0) + claim.exponent_uncertainty > claim.tolerance_exponent
-        ):
+    write, scale = (percent, abs(claim.predicted)) if claim.predicted else (number, 1.0)
+    off, allowed, blur = map(write, (claim.deviation, claim.tolerance, claim.uncertainty / scale))
+    median = claim.kind == "approximate"
+    if claim.deviation > claim.tolerance if median else claim.verdict == "not reproduced":
+        return f"{'The median run' if median else 'It'} is off by {off}, where {allowed} is allowed."
+    if median:
+        most = claim.exponent is not None and abs(claim.exponent - 1.0) + claim.exponent_uncertainty
+        if most and most > claim.tolerance_exponent:
             exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
-            return (
-                f"The exponent is {exponent}, where 1 within {setting(claim.tolerance_exponent)} is allowed."
-            )
+            within = setting(claim.tolerance_exponent)
+            return f"The exponent is {exponent}, where 1 within {within} is allowed."
         return f"The median run is off by {off}, and the tolerance of {allowed} lies within the uncertainty."
-    if claim.verdict == "not reproduced":
-        return f"It is off by {off}, where {allowed} is allowed."
     if claim.verdict == "inconclusive":
         return f"Its uncertainty, {blur}, exceeds the tolerance of {allowed}."
     return (
@@ -196,21 +186,21 @@ def why_text(claim: SimpleNamespace) -> str:
 
 def evidence_text(claim: SimpleNamespace) -> str:
     """What the verdict rests on besides the numbers shown, as Markdown."""
-    parts = [claim.note] if claim.note else []
-    if claim.kind in ("exact", "approximate"):
-        parts += [f"{claim.runs} runs"] if claim.runs else []
-    if claim.kind == "approximate" and claim.largest is not None:
+    counted, estimate = claim.kind in ("exact", "approximate"), claim.kind == "approximate"
+    parts = [claim.note]
+    if counted and claim.runs:
+        parts.append(f"{claim.runs} runs")
+    if estimate and claim.largest is not None:
         parts.append(
             f"90 % of them within {percent(claim.ninety)}, the largest deviation {percent(claim.largest)}"
         )
-    if claim.kind in ("exact", "approximate") and claim.left_out:
+    if counted and claim.left_out:
         parts.append(f"left out, without numbers: {claim.left_out}")
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
-    if claim.kind == "approximate" and claim.exact_largest is not None:
-        parts.append(
-            f"runs off the exact theory by {percent(claim.exact_median)} (median) to {percent(claim.exact_largest)}"
-        )
+    if estimate and claim.exact_largest is not None:
+        median, largest = percent(claim.exact_median), percent(claim.exact_largest)
+        parts.append(f"runs off the exact theory by {median} (median) to {largest}")
     if claim.follows_from:
         names = ", ".join(f"`{id}`" for id in claim.follows_from)
         parts.append(f"follows from {names} and is not counted again")
-    return "; ".join(parts)
+    return "; ".join(filter(None, parts))

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from ..data.numerals import number
-from ..measure.regime import UNDECIDED
+from ..measure.regime import REGIMES, UNDECIDED
 from . import rules
-from .evidence import Claim, Evidence, Where
-from .pulses import every
+from .evidence import Claim, Evidence
 
+TWO_WAY, STEADY = "pulses, two-way", "pulse, one-way, steady"
 # A pulse about a block wide has at most this many that slide at once.
 BLOCKS = 2.0
-LASTING = ("pulse, one-way, steady", "pulse, one-way, growing", "pulses, two-way")
-# A run tells of the transition if it lasts this many of the paper's T_trans; under a stress boundary, of |x_minus|, as
-# the collapses of figure 5 are run.
-HALF_PERIODS, BALANCE_DISTANCES = 1.5, 2.6
 FRICTION = r"$\mu_k/(\mu_s-\mu_k)$"
 
 
@@ -28,112 +22,105 @@ class Regimes(NamedTuple):
     """In which runs of a sweep the regime is one of some; which last long enough to tell; which are only counted."""
 
     sweep: str
-    where: Where
-    holds: Callable[[pd.Series], pd.Series]
-    told: Where = every
-    counted: tuple[str, Where] | None = None
+    where: str
+    allowed: list[str]
+    told: str = ""
+    counted: str = ""
+    position: str = ""
 
 
-REGIMES = {
+# A run tells of the transition if it lasts 1.5 of the paper's T_trans; under a stress boundary, 2.6 |x_minus|, as the
+# collapses of figure 5 are run.
+ENDS = {
     "symmetric_displacement_pulses": Regimes(
-        "regimes_displacement",
-        lambda t: t["left"] > 0.0,
-        lambda regime: regime == "pulses, two-way",
-        lambda t: t["duration"] > HALF_PERIODS * t["paper_transition_time"],
+        "regimes_displacement", "left > 0", [TWO_WAY], "duration > 1.5 * paper_transition_time"
     ),
     "one_way_pulse_displacement": Regimes(
         "regimes_displacement_asymmetric",
-        lambda t: t["right"] > 0.0,
-        lambda regime: regime.str.startswith("pulse, one-way"),
-        counted=(r"at $\tau_{0,r}=0$", lambda t: t["right"] == 0.0),
+        "right > 0",
+        [regime for regime in REGIMES if regime.startswith("pulse, one-way")],
+        counted="right == 0",
+        position=r"at $\tau_{0,r}=0$",
     ),
-    "symmetric_stress_cracks": Regimes(
-        "regimes_stress",
-        lambda t: (t["left"] == t["right"]) & (t["left"] > 0.0),
-        lambda regime: regime == "crack-like, two-way",
-    ),
+    "symmetric_stress_cracks": Regimes("regimes_stress", "left == right > 0", ["crack-like, two-way"]),
     "one_way_pulse_stress": Regimes(
         "regimes_stress",
-        lambda t: (t["left"] < 0.0) & (t["right"] == 0.0),
-        lambda regime: regime == "pulse, one-way, steady",
-        lambda t: t["duration"] >= BALANCE_DISTANCES * t["exact_balance_distance"],
-        counted=(r"at $\tau_{0,r}>0$", lambda t: (t["left"] < 0.0) & (t["right"] > 0.0)),
+        "left < 0 and right == 0",
+        [STEADY],
+        "duration >= 2.6 * exact_balance_distance",
+        counted="left < 0 < right",
+        position=r"at $\tau_{0,r}>0$",
     ),
     "stress_pulse_needs_barrier": Regimes(
         "regimes_stress",
-        lambda t: (t["left"] < 0.0) == (t["right"] < 0.0),
-        lambda regime: ~regime.isin(LASTING),
+        "(left < 0) == (right < 0)",
+        [regime for regime in REGIMES if regime not in (TWO_WAY, STEADY, "pulse, one-way, growing")],
     ),
 }
 
 
 def regime_claims(evidence: Evidence) -> list[Claim]:
     """Symmetric and asymmetric pre-stress, barriers, blocks and springs, and velocities that are never negative."""
-    found = [in_the_end(evidence, id, *row) for id, row in REGIMES.items()]
+    others = (no_weakening, positive, burridge_knopoff, peak_velocity)
     return [
-        *found,
-        no_weakening(evidence),
-        positive(evidence),
-        burridge_knopoff(evidence),
-        peak_velocity(evidence),
+        *(in_the_end(evidence, id, row) for id, row in ENDS.items()),
+        *(judge(evidence) for judge in others),
     ]
 
 
-def in_the_end(evidence: Evidence, id: str, sweep: str, where, holds, told, counted) -> Claim:
+def in_the_end(evidence: Evidence, id: str, row: Regimes) -> Claim:
     """Runs that are too short, and those on which lattices disagree, are decided by the regime that they end in."""
-    decided = evidence.agreed(
-        sweep,
-        where,
-        lambda t: holds(t["regime"]),
-        lambda t: holds(t["exact_regime"]).where(t["exact_regime"] != UNDECIDED, None),
-        told,
+
+    def exactly(table: pd.DataFrame) -> pd.Series:
+        exact = table["exact_regime"]
+        return exact.isin(row.allowed).where(exact != UNDECIDED, None)
+
+    claim = evidence.qualitative(
+        id, evidence.agreed(row.sweep, row.where, f"regime in {row.allowed}", row.told, exactly)
     )
-    claim = evidence.qualitative(id, decided)
-    if counted is None:
+    if not row.counted:
         return claim
-    position, which = counted
-    table = evidence.lattices(sweep)[0]
-    regimes = table[which(table)]["regime"].value_counts()
-    further = {f"{position}, without a verdict: {regime}": float(count) for regime, count in regimes.items()}
-    return replace(claim, further=further)
+    regimes = evidence.lattices(row.sweep, where=row.counted)[0]["regime"].value_counts()
+    further = {
+        f"{row.position}, without a verdict: {regime}": float(count) for regime, count in regimes.items()
+    }
+    return claim | {"further": further}
+
+
+def shown(evidence: Evidence, id: str, held: dict[str, int], **further: float) -> Claim:
+    """A claim that there are runs of each case: one of each suffices."""
+    claim = evidence.qualitative(id, [True] * sum(held.values()))
+    numbers = {name: float(value) for name, value in (held | further).items()}
+    return claim | {"verdict": "reproduced" if all(held.values()) else "inconclusive", "further": numbers}
 
 
 def no_weakening(evidence: Evidence) -> Claim:
     """There are steady pulses under both boundary conditions, and friction is one constant while sliding."""
-    cases = {
-        "with the displacement held": ("any_prestress", "pulses, two-way"),
-        "with the stress held": ("stress_pulses", "pulse, one-way, steady"),
+    cases = {"displacement": ("any_prestress", TWO_WAY), "stress": ("stress_pulses", STEADY)}
+    held = {
+        f"with the {boundary} held": sum(map(bool, evidence.agreed(name, "", f"regime == {regime!r}")))
+        for boundary, (name, regime) in cases.items()
     }
-    held = {}
-    for case, (name, regime) in cases.items():
-        held[case] = sum(map(bool, evidence.agreed(name, every, lambda t: t["regime"] == regime)))  # noqa: B023
-    return _shown(evidence, "no_weakening_needed", held)
-
-
-def _shown(evidence: Evidence, id: str, held: dict[str, int], **further: float) -> Claim:
-    """A claim that there are runs of each case."""
-    claim = evidence.qualitative(id, [True] * sum(held.values()))
-    numbers = {name: float(value) for name, value in (held | further).items()}
-    return replace(claim, verdict=rules.existence([*held.values()]), further=numbers)
+    return shown(evidence, "no_weakening_needed", held)
 
 
 def positive(evidence: Evidence) -> Claim:
     """No run of any simulation has a negative slip velocity; what friction must be for that."""
     id = "only_positive_velocities"
-    names = [name.removeprefix("coarser/") for name in evidence.tables if name.startswith("coarser/")]
-    finest = pd.concat([evidence.tables[name] for name in names], ignore_index=True)
-    needed = float(finest["friction_ratio_needed"].max())
-    decided = list(finest["min_velocity"] >= -evidence.tolerance(id))
-    claim = evidence.qualitative(id, decided, condition=needed > 0.0)
+    finest = pd.concat([evidence.tables[name] for name in evidence.swept], ignore_index=True)
+    needed, smallest = float(finest["friction_ratio_needed"].max()), float(finest["min_velocity"].min())
+    decided = finest["min_velocity"] >= -evidence.tolerance(id)
     why = f"It needs {FRICTION} of at least {number(needed, 3)}." if all(decided) and needed > 0.0 else ""
-    further = {f"{FRICTION} needed": needed, "smallest velocity": float(finest["min_velocity"].min())}
-    return replace(claim, further=further, why=why)
+    return evidence.qualitative(id, decided, condition=needed > 0.0) | {
+        "further": {f"{FRICTION} needed": needed, "smallest velocity": smallest},
+        "why": why,
+    }
 
 
 def burridge_knopoff(evidence: Evidence) -> Claim:
     """There are pulses of one or two blocks both ways with leaf springs, and a pulse one way without."""
     chain, spike = (evidence.lattices(f"burridge_knopoff_{name}")[0] for name in ("chain", "stress"))
-    two_way = chain[chain["regime"] == "pulses, two-way"]["sliding_at_once"]
+    two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
     held = {
         "with leaf springs": int((two_way <= BLOCKS).sum()),
         "without": int(spike["regime"].str.startswith("pulse, one-way").sum()),
@@ -143,7 +130,7 @@ def burridge_knopoff(evidence: Evidence) -> Claim:
         "fewest blocks at once": two_way.min(),
         "most": two_way.max(),
     }
-    return _shown(evidence, "burridge_knopoff_pulses", held, **further)
+    return shown(evidence, "burridge_knopoff_pulses", held, **further)
 
 
 def peak_velocity(evidence: Evidence) -> Claim:
@@ -153,5 +140,7 @@ def peak_velocity(evidence: Evidence) -> Claim:
     derived = slip / time / np.sqrt(2.0 * shear_modulus / modulus)
     ratio = float(1.0 / np.sqrt(2.0 * shear_modulus * density) / derived)
     id, deviation = "dimensional_peak_velocity", abs(ratio - 1.0)
-    verdict = rules.arithmetic(deviation, evidence.tolerance(id))
-    return Claim(id, verdict, 1.0, ratio, 8.0 * float(np.finfo(float).eps), deviation)
+    return {
+        "id": id, "verdict": rules.arithmetic(deviation, evidence.tolerance(id)), "predicted": 1.0,
+        "measured": ratio, "uncertainty": 8.0 * float(np.finfo(float).eps), "deviation": deviation,
+    }  # fmt: skip

@@ -17,19 +17,11 @@ EXCLUDED = 0.003
 
 
 def within(deviation: float, uncertainty: float, tolerance: float) -> str:
-    """Verdict on one number.
+    """Verdict on one number: how far it is from its prediction, how sure that is, and how far it may be.
 
-    Parameters
-    ----------
-    deviation : how far it is from its prediction, >= 0
-    uncertainty : of that
-    tolerance : largest deviation that counts as agreement
-
-    Returns
-    -------
     "not testable" without both numbers; "not reproduced" if the deviation exceeds the tolerance by more than the
     uncertainty; "inconclusive" if the uncertainty itself exceeds the tolerance; "reproduced with caveat" if the
-    tolerance lies within the uncertainty; else "reproduced"
+    tolerance lies within the uncertainty; else "reproduced".
     """
     if not np.isfinite([deviation, uncertainty]).all():
         return "not testable"
@@ -46,20 +38,16 @@ def worst(verdicts: Iterable[str]) -> str:
 
 
 def exact(
-    deviations: Sequence[float], uncertainties: Sequence[float], tolerance: float
+    deviations: Sequence[float] | np.ndarray, uncertainties: Sequence[float] | np.ndarray, tolerance: float
 ) -> tuple[str, int | None]:
-    """Verdict on an equation, which leaves no run out: the worst of the runs that have numbers, as `within`.
-
-    Returns
-    -------
-    the verdict, and of the runs with this verdict the one that deviates most; None without any
-    """
+    """Verdict on an equation, the worst of the runs that have numbers, and of the runs with it the farthest off."""
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
-    tested = [i for i, verdict in enumerate(verdicts) if verdict != "not testable"]
-    if not tested:
-        return "not testable", None
-    found = worst(verdicts[i] for i in tested)
-    return found, max((i for i in tested if verdicts[i] == found), key=lambda i: deviations[i])
+    found = worst(verdict for verdict in verdicts if verdict != "not testable")
+    if found == "not testable":
+        return found, None
+    return found, max(
+        (i for i, verdict in enumerate(verdicts) if verdict == found), key=lambda i: deviations[i]
+    )
 
 
 def approximate(
@@ -85,10 +73,8 @@ def approximate(
 def at_fractions(fractions: Sequence[str], last: str) -> str:
     """Verdict on a time that has no end, from those at several fractions of the way and at the last release.
 
-    Returns
-    -------
     "reproduced" if it is at every fraction; "not reproduced" if it is at none of them nor at the last release; else
-    "reproduced with caveat", which of them being the caveat; "inconclusive" if that is the best there is
+    "reproduced with caveat", which of them being the caveat; "inconclusive" if that is the best there is.
     """
     every = [*fractions, last]
     if all(verdict == "reproduced" for verdict in fractions):
@@ -99,18 +85,11 @@ def at_fractions(fractions: Sequence[str], last: str) -> str:
 
 
 def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:
-    """Verdict on an always, never or every, from how many runs it holds in.
+    """Verdict on an always, never or every, from how many runs it holds in, and fails in, by both finest lattices.
 
-    Parameters
-    ----------
-    held, failed : runs on which the two finest lattices agree, or which the exact solution decides
-    undecided : the others
-    condition : whether it holds only under a condition that the paper does not state
-
-    Returns
-    -------
     "not reproduced" if it fails in a decided run; "inconclusive" if more than a tenth are undecided; "reproduced with
-    caveat" if some are, or under a condition; "not testable" without runs; else "reproduced"
+    caveat" if some are, or under a condition that the paper does not state; "not testable" without runs; else
+    "reproduced".
     """
     runs = held + failed + undecided
     if runs == 0:
@@ -122,18 +101,11 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
     return "reproduced with caveat" if undecided or condition else "reproduced"
 
 
-def existence(held: Sequence[int]) -> str:
-    """Verdict on "there are", from how many decided runs show each case: one of each suffices."""
-    return "reproduced" if held and all(held) else "inconclusive"
-
-
 def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
     """Verdict on a figure read off, from the probability p of a chi-square at least as large as that of the best fit.
 
-    Returns
-    -------
     "inconclusive" with fewer than two degrees of freedom (readings less fitted parameters); "not reproduced" below
-    `EXCLUDED`, "reproduced with caveat" below the tolerance, else "reproduced"
+    `EXCLUDED`, "reproduced with caveat" below the tolerance, else "reproduced".
     """
     if not np.isfinite(p):
         return "not testable"

@@ -60,7 +60,7 @@ def longest_wait(run: xr.Dataset, distance: float, side: str = "right") -> float
 
 
 def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[float, float, float]:
-    """Speed, intercept and standard error of a straight line through the last fraction of a front's path.
+    """Speed, intercept (units of H) and standard error of the speed from the last fraction of a front's path.
 
     Parameters
     ----------
@@ -70,19 +70,20 @@ def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[fl
 
     Returns
     -------
-    speed (wave speeds), intercept (units of H), standard error of the speed; NaN with fewer than 4 blocks
+    as `straight_line`, NaN with fewer than 4 blocks
     """
     times, distances = path(run, side)
     chosen = distances >= (1.0 - window) * distances[-1] if distances.size else np.zeros(0, dtype=bool)
-    n = int(chosen.sum())
-    if n < 4:
-        return float("nan"), float("nan"), float("nan")
-    t, x = times[chosen], distances[chosen]
-    centred = t - t.mean()
+    return straight_line(times[chosen], distances[chosen]) if chosen.sum() >= 4 else (np.nan, np.nan, np.nan)
+
+
+def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
+    """Slope, intercept and standard error of the slope of a straight line by least squares; NaN if all x are equal."""
+    centred = x - x.mean()
     scatter = float(np.sum(centred**2))
     if scatter == 0.0:
-        return float("nan"), float("nan"), float("nan")
-    speed = float(np.sum(centred * (x - x.mean())) / scatter)
-    intercept = float(x.mean() - speed * t.mean())
-    rest = x - intercept - speed * t
-    return speed, intercept, float(np.sqrt(np.sum(rest**2) / (n - 2) / scatter))
+        return np.nan, np.nan, np.nan
+    slope = float(np.sum(centred * (y - y.mean())) / scatter)
+    intercept = float(y.mean() - slope * x.mean())
+    rest = y - intercept - slope * x
+    return slope, intercept, float(np.sqrt(np.sum(rest**2) / max(len(x) - 2, 1) / scatter))
