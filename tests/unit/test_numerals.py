@@ -32,27 +32,32 @@ def test_an_uncertainty_stands_in_the_last_digits(value, uncertainty, text):
     assert with_uncertainty(value, uncertainty) == text
 
 
-def test_without_one_there_are_at_most_five_digits():
-    assert number(math.pi, 9) == "3.1416"
-    assert [number(value) for value in (0.0, 2, -0.5, 1e-7, math.inf, math.nan, None)] == [
-        "0", "2", "−0.500", "1.00×10⁻⁷", "∞", "not measured", "not measured",
-    ]  # fmt: skip
-    assert [percent(value) for value in (0.95, 0.0712, 1e-8, None)] == [
-        "95 %",
-        "7.1 %",
-        "10⁻⁸",
-        "not measured",
-    ]
-    # Digits are counted in what is written: 0.9996 with three digits is 1.00.
-    assert [number(value, 3) for value in (0.9996, 0.9994, 9.996, 0.09996)] == [
-        "1.00",
-        "0.999",
-        "10.0",
-        "0.100",
-    ]
-    assert [setting(value) for value in (0.01, -0.3, 1e-9, 12)] == ["0.01", "−0.3", "10⁻⁹", "12"]
-    assert [rounded(value) for value in (0.1, 1.23456, None)] == ["0.1", "1.235", "not measured"]
-    assert short([1] * 99, 10) == "[1, 1, ..." and short(None) == "–"
+NOT = "not measured"
+
+
+@pytest.mark.parametrize(
+    ("write", "values", "texts"),
+    [
+        (
+            number,
+            (0.0, 2, -0.5, 1e-7, math.inf, math.nan, None),
+            ("0", "2", "−0.500", "1.00×10⁻⁷", "∞", NOT, NOT),
+        ),
+        (lambda value: number(value, 9), (math.pi,), ("3.1416",)),
+        # Digits are counted in what is written: 0.9996 with three digits is 1.00.
+        (
+            lambda value: number(value, 3),
+            (0.9996, 0.9994, 9.996, 0.09996),
+            ("1.00", "0.999", "10.0", "0.100"),
+        ),
+        (percent, (0.95, 0.0712, 1e-8, None), ("95 %", "7.1 %", "10⁻⁸", NOT)),
+        (setting, (0.01, -0.3, 1e-9, 12), ("0.01", "−0.3", "10⁻⁹", "12")),
+        (rounded, (0.1, 1.23456, None), ("0.1", "1.235", NOT)),
+        (lambda value: short(value, 10), ([1] * 99, None), ("[1, 1, ...", "–")),
+    ],
+)
+def test_numbers_as_they_are_written(write, values, texts):
+    assert tuple(write(value) for value in values) == texts
 
 
 def test_prose_says_what_is_missing_and_refuses_what_is_unknown():
