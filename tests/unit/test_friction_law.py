@@ -14,47 +14,43 @@ from scipy.optimize import brentq
 import slippulse as sp
 from slippulse.model.scene import LATTICE_SCHEMES
 
+GAMMA = 0.65
 FINE = {"max_step": 0.05, "order": 8, "resolved_blocks": 1}
+RELEASES = ("total", "elastic")
 
 
-def lone_block(**changes) -> sp.Scene:
+def under_stress(
+    left: float, right: float, duration: float, dx: float, peak: float = 1.0, **values
+) -> sp.Scene:
+    return sp.Scene("stress", sp.Prestress(left, right, peak=peak), duration, dx, **values)
+
+
+def with_leaf_springs(left: float, right: float, duration: float, dx: float, **values) -> sp.Scene:
+    return sp.Scene("displacement", sp.Prestress(left, right), duration, dx, gamma=GAMMA, **values)
+
+
+def lone_block(level: float = -3.0, duration: float = 5.0, **values) -> sp.Scene:
     """One block between neighbours that nothing can release: an oscillator that stops after half a period."""
-    values = {
-        "boundary": "displacement",
-        "gamma": 0.65,
-        "dx": 1.0,
-        "duration": 5.0,
-        "prestress": sp.Prestress(-3.0, -3.0),
-        **FINE,
-    }
-    return sp.Scene(**values | changes)
+    return with_leaf_springs(level, level, duration, 1.0, **FINE, **values)
 
 
 SCENES = {
-    "crack to pulses": sp.Scene(
-        "displacement", sp.Prestress(0.5, 0.5), 9.0, 0.05, gamma=0.65, beta=0.005, max_step=0.5
-    ),
-    "undamped": sp.Scene("displacement", sp.Prestress(0.3, 0.7), 9.0, 0.05, gamma=0.65, max_step=0.5),
-    "elastic release": sp.Scene(
-        "displacement", sp.Prestress(0.5, 0.4), 9.0, 0.05, gamma=0.65, beta=0.01, release="elastic"
-    ),
-    "one-way": sp.Scene("stress", sp.Prestress(-0.5, 0.0), 9.0, 0.05, beta=0.005, max_step=0.5),
-    "one-way, undamped": sp.Scene("stress", sp.Prestress(-0.5, 0.0), 9.0, 0.05),
-    "one-way, elastic": sp.Scene("stress", sp.Prestress(-0.5, 0.0), 9.0, 0.05, beta=0.01, release="elastic"),
-    "blocks": sp.Scene("stress", sp.Prestress(-0.5, 0.0), 16.0, 1.0, max_step=0.1, resolved_blocks=1),
-    "fixed step": sp.Scene(
-        "displacement", sp.Prestress(0.5, 0.5), 9.0, 0.05, gamma=0.65, beta=0.005, scheme="fixed_step"
-    ),
-    "fixed step, one-way": sp.Scene(
-        "stress", sp.Prestress(-0.5, 0.0), 9.0, 0.05, beta=0.005, scheme="fixed_step", max_step=0.05
-    ),
+    "crack to pulses": with_leaf_springs(0.5, 0.5, 9.0, 0.05, beta=0.005, max_step=0.5),
+    "undamped": with_leaf_springs(0.3, 0.7, 9.0, 0.05, max_step=0.5),
+    "elastic release": with_leaf_springs(0.5, 0.4, 9.0, 0.05, beta=0.01, release="elastic"),
+    "one-way": under_stress(-0.5, 0.0, 9.0, 0.05, beta=0.005, max_step=0.5),
+    "one-way, undamped": under_stress(-0.5, 0.0, 9.0, 0.05),
+    "one-way, elastic": under_stress(-0.5, 0.0, 9.0, 0.05, beta=0.01, release="elastic"),
+    "blocks": under_stress(-0.5, 0.0, 16.0, 1.0, max_step=0.1, resolved_blocks=1),
+    "fixed step": with_leaf_springs(0.5, 0.5, 9.0, 0.05, beta=0.005, scheme="fixed_step"),
+    "fixed step, one-way": under_stress(-0.5, 0.0, 9.0, 0.05, beta=0.005, scheme="fixed_step", max_step=0.05),
 }
 
 
 @pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
 def test_nothing_moves_just_below_the_threshold(scheme):
     peak = math.nextafter(1.0, 0.0)
-    scene = sp.Scene("stress", sp.Prestress(0.9, 0.9, peak=peak), 5.0, 0.1, scheme=scheme, resolved_blocks=1)
+    scene = under_stress(0.9, 0.9, 5.0, 0.1, peak, scheme=scheme, resolved_blocks=1)
     run = sp.simulate(scene, sp.Samples([0.0, 1.0, 5.0], [0.0, 0.5]))
     assert run.attrs["releases"] == 0
     assert run.attrs["stopped_because"] == "everything is stuck"
@@ -64,43 +60,37 @@ def test_nothing_moves_just_below_the_threshold(scheme):
 
 
 @pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
-def test_the_nucleation_block_alone_is_released_exactly_at_the_threshold(scheme):
-    scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 0.005, 0.1, scheme=scheme)
-    run = sp.simulate(scene)
-    released = run["x"].values[np.isfinite(run["release_time"].values)]
-    assert released.tolist() == [0.0]
-    assert float(run["release_time"].sel(x=0.0)) == 0.0
-    assert float(run["slip_velocity"].sel(x=0.0)) > 0.0
+def test_every_block_at_or_above_the_threshold_is_released_at_once_and_no_other(scheme):
+    for peak, blocks in ((1.0, 1), (1.3, 17)):
+        run = sp.simulate(under_stress(0.2, 0.5, 0.001, 0.1, peak, scheme=scheme))
+        above = run["prestress"].values >= 1.0
+        assert above.sum() == blocks
+        assert np.array_equal(run["release_time"].values == 0.0, above)
+        assert np.array_equal(run["slip_velocity"].values > 0.0, above)
 
 
-def test_every_block_at_or_above_the_threshold_is_released_at_once():
-    run = sp.simulate(sp.Scene("stress", sp.Prestress(0.2, 0.5, peak=1.3), 0.001, 0.1))
-    above = run["prestress"].values >= 1.0
-    assert above.sum() > 3
-    assert np.array_equal(run["release_time"].values == 0.0, above)
-
-
-def test_a_second_nucleation_point_beyond_the_first_lattice_is_released_at_once():
+@pytest.mark.parametrize("half", [True, False])
+def test_a_second_nucleation_point_beyond_the_first_lattice_is_released_at_once(half):
     far = 80.0
     profile = sp.Prestress(0.1, 0.1, bumps=((far, 0.95, 1.0), (-far, 0.95, 1.0)))
-    for half in (True, False):
-        run = sp.simulate(sp.Scene("stress", profile, 0.01, 0.1, half_lattice=half))
-        released = np.abs(run["x"].values[run["release_time"].values == 0.0])
-        assert np.count_nonzero(np.abs(released - far) < 1.0) == 2 * np.count_nonzero(
-            profile(np.arange(0.0, 2.0 * far, 0.1)[1:]) >= 1.0
-        )
+    run = sp.simulate(sp.Scene("stress", profile, 0.01, 0.1, half_lattice=half))
+    released = np.abs(run["x"].values[run["release_time"].values == 0.0])
+    expected = 2 * np.count_nonzero(profile(np.arange(0.0, 2.0 * far, 0.1)[1:]) >= 1.0)
+    assert np.count_nonzero(np.abs(released - far) < 1.0) == expected
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_the_state_at_the_end(name):
-    """Never released: at rest; stuck: below the threshold; sliding: as the equation of motion says."""
-    run = sp.simulate(SCENES[name])
+def test_states_along_a_run_and_at_its_end(name):
+    """Never released: at rest; stuck: below the threshold; sliding: as the equation of motion says, forwards."""
+    scene = SCENES[name]
+    run = sp.simulate(scene, sp.Samples(np.linspace(0.0, 9.0, 181), np.linspace(-6.0, 6.0, 121)))
+    assert run["sample_velocity"].values.min() >= (0.0 if scene.scheme == "fixed_step" else -tol.ROOT)
     never, moving = ~np.isfinite(run["release_time"].values), sliding(run)
     assert never.any() and moving.any() and not moving.all()
     for field in ("slip", "slip_velocity", "slip_acceleration"):
         assert not run[field].values[never].any()
     assert threshold_stress(run)[~moving].max() < 1.0 + tol.STRESS_AT_END
-    if SCENES[name].scheme == "localised":
+    if scene.scheme == "localised":
         difference = run["slip_acceleration"].values - np.where(moving, total_stress(run), 0.0)
         assert np.abs(difference).max() < tol.STRESS_AT_END
         assert (run["slip_velocity"].values[moving] >= 0.0).all()
@@ -108,12 +98,7 @@ def test_the_state_at_the_end(name):
 
 
 @pytest.mark.parametrize(
-    "scene",
-    [
-        lone_block(prestress=sp.Prestress(0.0, 0.0), duration=40.0, friction_ratio=0.0),
-        lone_block(prestress=sp.Prestress(-0.6, -0.6), duration=40.0),
-    ],
-    ids=["three blocks", "one block"],
+    "scene", [lone_block(0.0, 40.0, friction_ratio=0.0), lone_block(-0.6, 40.0)], ids=["three", "one"]
 )
 def test_the_lowest_stress_of_a_stuck_block_is_not_above_what_is_left_at_the_end(scene):
     run = sp.simulate(scene)
@@ -123,50 +108,34 @@ def test_the_lowest_stress_of_a_stuck_block_is_not_above_what_is_left_at_the_end
         assert "reverse_sliding" in run.attrs["run_flags"]
 
 
-@pytest.mark.parametrize("release", ["total", "elastic"])
+@pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("beta", [0.0, 0.4])
 def test_a_neighbour_is_released_when_its_own_stress_reaches_one(release, beta):
     """While one block slides alone it is an oscillator in closed form, and so is the stress of its neighbour."""
-    gamma = 0.65
-    scene = lone_block(
-        prestress=sp.Prestress(0.3, 0.3), gamma=gamma, beta=beta, release=release, duration=1.2
-    )
-    run = sp.simulate(scene)
-    expected = first_neighbour_release(scene, release)
-    assert float(run["release_time"].sel(x=1.0)) == pytest.approx(expected, abs=tol.OSCILLATOR)
-    assert float(run["release_time"].sel(x=-1.0)) == float(run["release_time"].sel(x=1.0))
-
-
-def first_neighbour_release(scene: sp.Scene, release: str) -> float:
-    stiffness, damping = 2.0 + scene.gamma, 2.0 * scene.beta
-    root = np.roots([1.0, damping, stiffness])[0]
-
-    def slip_and_velocity(time: float) -> tuple[float, float]:
-        decay, frequency = root.real, abs(root.imag)
-        wave = math.exp(decay * time)
-        cosine, sine = math.cos(frequency * time), math.sin(frequency * time) / frequency
-        slip = (1.0 - wave * (cosine - decay * sine)) / stiffness
-        return slip, wave * sine
+    scene = lone_block(0.3, 1.2, beta=beta, release=release)
+    root = np.roots([1.0, 2.0 * beta, 2.0 + GAMMA])[0]
+    decay, frequency = root.real, abs(root.imag)
 
     def margin(time: float) -> float:
-        slip, velocity = slip_and_velocity(time)
-        drag = scene.beta * velocity if release == "total" else 0.0
+        wave = math.exp(decay * time)
+        cosine, sine = math.cos(frequency * time), math.sin(frequency * time) / frequency
+        slip = (1.0 - wave * (cosine - decay * sine)) / (2.0 + GAMMA)
+        drag = beta * wave * sine if release == "total" else 0.0
         return slip + drag + float(scene.prestress(1.0)) - 1.0
 
-    return brentq(margin, 1e-6, 1.2, xtol=1e-14)
+    left, right = sp.simulate(scene)["release_time"].sel(x=[-1.0, 1.0]).values
+    assert right == pytest.approx(brentq(margin, 1e-6, 1.2, xtol=1e-14), abs=tol.OSCILLATOR)
+    assert left == right
 
 
 def test_the_damping_force_releases_sooner_and_by_its_own_size():
     """At each release under "total" the elastic stress misses 1 by exactly the damping force."""
-    runs = {
-        release: sp.simulate(
-            lone_block(prestress=sp.Prestress(0.3, 0.3), beta=0.4, release=release, duration=1.2)
-        )
-        for release in ("total", "elastic")
-    }
-    times = {release: float(run["release_time"].sel(x=1.0)) for release, run in runs.items()}
-    assert times["total"] < times["elastic"] - 0.05
-    at_release = sp.simulate(lone_block(prestress=sp.Prestress(0.3, 0.3), beta=0.4, duration=times["total"]))
+    total, elastic = (
+        float(sp.simulate(lone_block(0.3, 1.2, beta=0.4, release=release))["release_time"].sel(x=1.0))
+        for release in RELEASES
+    )
+    assert total < elastic - 0.05
+    at_release = sp.simulate(lone_block(0.3, total, beta=0.4))
     at = int(np.flatnonzero(at_release["x"].values == 1.0)[0])
     drag = total_stress(at_release)[at] - elastic_stress(at_release)[at]
     assert drag > 0.05
@@ -174,40 +143,28 @@ def test_the_damping_force_releases_sooner_and_by_its_own_size():
 
 
 def test_without_damping_the_release_rules_are_one():
-    runs = [
-        sp.simulate(sp.Scene("stress", sp.Prestress(-0.5, 0.0), 6.0, 0.1, release=release))
-        for release in ("total", "elastic")
-    ]
-    assert runs[0].equals(runs[1])
+    one, two = (sp.simulate(under_stress(-0.5, 0.0, 6.0, 0.1, release=release)) for release in RELEASES)
+    assert one.equals(two)
 
 
 def test_a_block_sticks_when_its_velocity_returns_to_zero_and_keeps_its_slip():
-    frequency = math.sqrt(2.65)
-    times = np.linspace(0.0, 5.0, 101)
+    frequency, times = math.sqrt(2.0 + GAMMA), np.linspace(0.0, 5.0, 101)
     run = sp.simulate(lone_block(), sp.Samples(times, [0.0]))
-    stick = math.pi / frequency
-    assert float(run["stick_time"].sel(x=0.0)) == pytest.approx(stick, abs=tol.OSCILLATOR)
-    assert float(run["slip"].sel(x=0.0)) == pytest.approx(2.0 / 2.65, abs=tol.OSCILLATOR)
-    assert float(run["slip_velocity"].sel(x=0.0)) == 0.0
+    block, stick = run.sel(x=0.0), math.pi / frequency
+    assert float(block["stick_time"]) == pytest.approx(stick, abs=tol.OSCILLATOR)
+    assert float(block["slip"]) == pytest.approx(2.0 / frequency**2, abs=tol.OSCILLATOR)
+    assert float(block["slip_velocity"]) == 0.0
     assert run.attrs["stopped_because"] == "everything is stuck"
     slip, velocity = run["sample_slip"].values[:, 0], run["sample_velocity"].values[:, 0]
     moving = times < stick
-    assert np.abs(slip - (1.0 - np.cos(frequency * times)) / 2.65)[moving].max() < tol.OSCILLATOR
+    assert np.abs(slip - (1.0 - np.cos(frequency * times)) / frequency**2)[moving].max() < tol.OSCILLATOR
     assert np.abs(velocity - np.sin(frequency * times) / frequency)[moving].max() < tol.OSCILLATOR
-    assert (slip[~moving] == float(run["slip"].sel(x=0.0))).all()
+    assert (slip[~moving] == float(block["slip"])).all()
     assert not velocity[~moving].any()
 
 
-def test_slip_velocity_is_never_negative():
-    times = np.linspace(0.0, 9.0, 181)
-    for name, scene in SCENES.items():
-        run = sp.simulate(scene, sp.Samples(np.minimum(times, scene.duration), np.linspace(-6.0, 6.0, 121)))
-        floor = 0.0 if scene.scheme == "fixed_step" else -tol.ROOT
-        assert run["sample_velocity"].values.min() >= floor, name
-
-
 def test_a_block_released_again_is_counted_and_slides_on():
-    scene = sp.Scene("stress", sp.Prestress(-0.5, 0.0), 16.0, 1.0, max_step=0.05, order=8, resolved_blocks=1)
+    scene = under_stress(-0.5, 0.0, 16.0, 1.0, **FINE)
     run = sp.simulate(scene)
     chain = Chain(scene.prestress(np.arange(-40.0, 41.0)), 0.0, 0.0, "total").run(scene.duration)
     distinct = int(np.isfinite(run["release_time"].values).sum())
