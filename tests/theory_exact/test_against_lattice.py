@@ -8,7 +8,6 @@ import pytest
 import slippulse as sp
 from slippulse.theory import Rupture
 
-SPACINGS = (0.02, 0.01, 0.005)
 LEVEL = 0.5
 # Profile, gamma, damping ratio, duration, positions.
 SCENES = {
@@ -22,22 +21,27 @@ ORDER = (0.9, 1.1)
 RICHARDSON = 1e-4
 
 
+def lattice_run(profile, gamma, ratio, duration, dx, samples=None):
+    boundary = "displacement" if gamma else "stress"
+    values = {"gamma": gamma, "beta": ratio * dx, "max_step": 0.5, "order": 8}
+    return sp.simulate(sp.Scene(boundary, profile, duration, dx, **values), samples=samples)
+
+
+def at(run, x, *quantities):
+    """Of the blocks nearest to positions, shape (quantities, positions)."""
+    blocks = run.sel(x=x, method="nearest")
+    return np.array([blocks[quantity].values for quantity in quantities])
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
     profile, gamma, ratio, duration, positions = SCENES[name]
     x = np.array(positions)
     exact = Rupture(profile, gamma, ratio, "total", duration)
-    truth = exact.release_time(x), exact.stick_time(x), exact.final_slip(x)
+    truth = np.array([exact.release_time(x), exact.stick_time(x), exact.final_slip(x)])
     assert np.all(np.isfinite(truth))
-    errors = []
-    for dx in SPACINGS:
-        scene = sp.Scene(
-            "displacement", profile, duration, dx, gamma=gamma, beta=ratio * dx, max_step=0.5, order=8
-        )  # fmt: skip
-        run = sp.simulate(scene)
-        here = np.argmin(np.abs(run["x"].values - x[:, None]), axis=1)
-        found = [run[quantity].values[here] for quantity in ("release_time", "stick_time", "slip")]
-        errors.append(np.array(found) - truth)
+    runs = (lattice_run(profile, gamma, ratio, duration, dx) for dx in (0.02, 0.01, 0.005))
+    errors = [at(run, x, "release_time", "stick_time", "slip") - truth for run in runs]
     coarse, middle, fine = errors
     for quantity in range(3):
         worst = np.argmax(np.abs(fine[quantity]))
@@ -49,22 +53,16 @@ def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
 
 @pytest.mark.parametrize("gamma", [0.65, 0.0])
 def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma):
-    profile, ratio, duration = sp.Prestress(-0.5, 0.5), 0.1, 5.0
-    exact = Rupture(profile, gamma, ratio, "total", duration)
-    times, x = np.array([1.5, 2.5, 3.3]), np.array([-2.0, -1.0, 0.0, 1.5])
+    scene = sp.Prestress(-LEVEL, LEVEL), gamma, 0.1
+    exact = Rupture(*scene, "total", 5.0)
+    times, x, slow = np.array([1.5, 2.5, 3.3]), np.array([-2.0, -1.0, 0.0, 1.5]), np.array([-3.0, -2.4, -1.8])
     fields = exact.map(times, x, ("slip_velocity", "slip"))
     errors, arrival = [], []
     for dx in (0.02, 0.01):
-        scene = sp.Scene(
-            "displacement" if gamma else "stress", profile, duration, dx, gamma=gamma, beta=ratio * dx, max_step=0.5,
-            order=8,
-        )  # fmt: skip
-        run = sp.simulate(scene, samples=sp.Samples(times, x))
-        errors.append([np.max(np.abs(run[f"sample_{q}"].values - fields[f"slip_{q}" if q == "velocity" else q]))
-                       for q in ("velocity", "slip")])  # fmt: skip
-        slow = np.array([-3.0, -2.4, -1.8])
-        here = np.argmin(np.abs(run["x"].values - slow[:, None]), axis=1)
-        arrival.append(np.max(np.abs(run["release_time"].values[here] - exact.release_time(slow))))
+        run = lattice_run(*scene, 5.0, dx, sp.Samples(times, x))
+        pairs = (("sample_velocity", "slip_velocity"), ("sample_slip", "slip"))
+        errors.append([np.max(np.abs(run[sampled].values - fields[name])) for sampled, name in pairs])
+        arrival.append(np.max(np.abs(at(run, slow, "release_time") - exact.release_time(slow))))
     for coarse, fine in zip(*errors, strict=True):
         assert fine < 0.62 * coarse
         assert fine < 0.015
@@ -72,12 +70,9 @@ def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma):
     assert arrival[1] < 0.65 * arrival[0] < 0.05
 
 
-def test_a_barrier_on_the_lattice_is_passed_when_it_is_shorter():
-    depth = sp.theory.barrier_depth(LEVEL, -LEVEL, 0.65, 0.1)
-    for length, passed in ((0.9 * depth, True), (1.1 * depth, False)):
-        profile = sp.Prestress(LEVEL, LEVEL, steps=((9.0, -LEVEL), (9.0 + length, LEVEL)))
-        run = sp.simulate(
-            sp.Scene("displacement", profile, 13.0, 0.02, gamma=0.65, beta=0.002, max_step=0.5, order=8)
-        )
-        released = run["x"].values[np.isfinite(run["release_time"].values)]
-        assert (released.max() > 9.0 + length + 0.5) == passed
+@pytest.mark.parametrize(("fraction", "passed"), [(0.9, True), (1.1, False)])
+def test_a_barrier_on_the_lattice_is_passed_when_it_is_shorter(fraction, passed):
+    end = 9.0 + fraction * sp.theory.barrier_depth(LEVEL, -LEVEL, 0.65, 0.1)
+    run = lattice_run(sp.Prestress(LEVEL, LEVEL, steps=((9.0, -LEVEL), (end, LEVEL))), 0.65, 0.1, 13.0, 0.02)
+    released = run["x"].values[np.isfinite(run["release_time"].values)]
+    assert (released.max() > end + 0.5) == passed

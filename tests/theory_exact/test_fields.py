@@ -10,9 +10,11 @@ from scipy.special import j0, jn_zeros
 
 import slippulse as sp
 from slippulse.theory import (
+    Fronts,
     Rupture,
     exact_transition_displacement,
     front_speed,
+    slip_velocity,
     steady_pulse,
     uniform_transition_time,
 )
@@ -30,6 +32,11 @@ SCENES = {
     "stress": (sp.Prestress(-0.4, 0.3, 1.5), 0.0, 0.1),
     "step": (sp.Prestress(0.5, 0.5, steps=((2.0, 0.3),)), 0.65, 0.0),
 }
+# Barrier and step, where the panels of the fronts end.
+PANELS = SCENES | {
+    f"fronts, {ratio}": (sp.Prestress(-0.5, 0.4, steps=((4.0, 0.7),)), 0.65, ratio)
+    for ratio in (0.0, 0.01, 0.1)
+}
 
 
 def test_the_published_scene():
@@ -41,18 +48,27 @@ def test_the_published_scene():
     assert rupture.first_stick == pytest.approx((STICK[0], 0.0), abs=1e-6)
     assert rupture.transition_time == pytest.approx(STICK[0], abs=1e-6)
     assert rupture.pulse_width(STICK[5]) == pytest.approx(rupture.fronts_at(STICK[5])[1] - X[5], abs=2e-6)
-    assert rupture.pulse_width(2.0) != rupture.pulse_width(2.0)
+    assert np.isnan(rupture.pulse_width(2.0))
+    # Nothing moves ahead of the fronts and behind the trailing edges.
+    fields = rupture.map([1.0, 8.5], [-7.0, 0.0, 5.0, 12.0])
+    assert fields["slip_velocity"][0, [0, 2, 3]] == pytest.approx(0.0, abs=0.0)
+    assert fields["slip_velocity"][1, 1:] == pytest.approx(0.0, abs=0.0)
+    assert fields["slip"][1, 1] == pytest.approx(SLIP[0], abs=1e-6)
+    assert fields["strain"][1, 0] > 0.0 > fields["strain"][1, 2]
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_stick_times_and_slip_owe_nothing_to_the_panels(name):
-    profile, gamma, ratio = SCENES[name]
-    x = np.linspace(-3.0, 4.0, 30)
+@pytest.mark.parametrize("name", PANELS)
+def test_times_and_slip_owe_nothing_to_the_panels(name):
+    profile, gamma, ratio = PANELS[name]
+    x = np.linspace(-3.4, 6.0, 40)
     coarse, fine = (Rupture(profile, gamma, ratio, "total", 6.5, refinement=n) for n in (1, 2))
-    for quantity in ("stick_time", "final_slip"):
+    assert np.isfinite(fine.release_time(x)).sum() > 30
+    for quantity in ("release_time", "stick_time", "final_slip"):
         a, b = getattr(coarse, quantity)(x), getattr(fine, quantity)(x)
-        assert np.array_equal(np.isfinite(a), np.isfinite(b))
-        assert a[np.isfinite(a)] == pytest.approx(b[np.isfinite(b)], abs=1e-8)
+        # Arrival times are known to a relative error.
+        relative = 1e-8 if quantity == "release_time" else 0.0
+        accuracy = 1e-13 if relative else 1e-8
+        assert a == pytest.approx(b, rel=relative, abs=accuracy, nan_ok=True), quantity
     times = np.linspace(0.5, 6.0, 5)
     for field, values in coarse.map(times, x).items():
         assert values == pytest.approx(fine.map(times, x)[field], abs=1e-7, nan_ok=True), field
@@ -61,6 +77,7 @@ def test_stick_times_and_slip_owe_nothing_to_the_panels(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_velocity_is_riemanns_integral(name):
     profile, gamma, ratio = SCENES[name]
+    early = Fronts(profile, ratio, "total", 8.0)
     rupture = Rupture(profile, gamma, ratio, "total", 8.0)
 
     def arrival(x: float) -> float:
@@ -76,10 +93,12 @@ def test_velocity_is_riemanns_integral(name):
 
         exact = quad(integrand, left, right, points=[-1.3, 0.0, min(2.0, 0.999 * right)], epsabs=1e-9)[0]
         assert float(rupture.slip_velocity(y, time)) == pytest.approx(exact, abs=1e-8)
+        if name != "asymmetric":
+            assert slip_velocity(early, gamma, y, time) == pytest.approx(exact, abs=1e-8)
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_slip_and_strain_belong_to_the_velocity(name):
+def test_slip_and_strain_belong_to_the_velocity_and_obey_the_equation(name):
     """u is its integral in time, and the strain the derivative of u: three formulas, found apart."""
     profile, gamma, ratio = SCENES[name]
     rupture = Rupture(profile, gamma, ratio, "total", 6.0)
@@ -95,28 +114,13 @@ def test_slip_and_strain_belong_to_the_velocity(name):
         assert float(rupture.slip(x, time)) == pytest.approx(total, abs=1e-7)
         difference = np.diff(rupture.slip(np.array([x - h, x + h]), time))[0] / (2.0 * h)
         assert float(rupture.strain(x, time)) == pytest.approx(difference, abs=1e-6)
-
-
-@pytest.mark.parametrize("name", ["symmetric", "asymmetric"])
-def test_the_slip_obeys_the_equation(name):
-    profile, gamma, ratio = SCENES[name]
-    rupture = Rupture(profile, gamma, ratio, "total", 6.0)
     h = 1e-3
-    for x, time in ((0.7, 2.5), (-1.5, 2.8), (2.2, 3.0)):
+    for x, time in ((0.7, 2.5), (-1.5, 2.8), (2.2, 3.0)) if name.endswith("symmetric") else ():
         u = rupture.slip(
             x + h * np.array([-1.0, 0.0, 1.0, 0.0, 0.0]), time + h * np.array([0.0, -1.0, 0.0, 1.0, 0.0])
         )
-        balance = u[1] + u[3] - u[0] - u[2]
-        assert balance / h**2 + gamma * u[4] == pytest.approx(float(profile(x)), abs=1e-5)
-
-
-def test_nothing_moves_ahead_of_the_fronts_and_behind_the_trailing_edges():
-    rupture = Rupture(*PUBLISHED, "total", 9.0)
-    fields = rupture.map([1.0, 8.5], [-7.0, 0.0, 5.0, 12.0])
-    assert fields["slip_velocity"][0, [0, 2, 3]] == pytest.approx(0.0, abs=0.0)
-    assert fields["slip_velocity"][1, 1:] == pytest.approx(0.0, abs=0.0)
-    assert fields["slip"][1, 1] == pytest.approx(SLIP[0], abs=1e-6)
-    assert fields["strain"][1, 0] > 0.0 > fields["strain"][1, 2]
+        balance = (u[1] + u[3] - u[0] - u[2]) / h**2 + gamma * u[4]
+        assert balance == pytest.approx(float(profile(x)), abs=1e-5)
 
 
 @pytest.mark.parametrize(("ratio", "level", "then"), [(0.0, 0.3, 0.6), (0.0, 0.6, 0.35), (0.1, 0.5, 0.7)])

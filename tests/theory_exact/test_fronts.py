@@ -39,17 +39,6 @@ def test_arrival_times_are_integrals_of_the_slowness():
         assert float(rupture.release_time(x)) == pytest.approx(exact, rel=RELATIVE)
 
 
-@pytest.mark.parametrize("ratio", [0.0, 0.01, 0.1])
-def test_arrival_times_owe_nothing_to_the_panels(ratio):
-    profile = sp.Prestress(-0.5, 0.4, steps=((4.0, 0.7),))
-    x = np.linspace(-3.4, 6.0, 95)
-    coarse, fine = (Rupture(profile, 0.65, ratio, "total", 6.0, refinement=n).release_time(x) for n in (1, 2))
-    known = np.isfinite(fine)
-    assert known.sum() > 85
-    assert np.array_equal(known, np.isfinite(coarse))
-    assert coarse[known] == pytest.approx(fine[known], rel=RELATIVE, abs=1e-13)
-
-
 def test_the_earlier_front_counts_where_two_meet():
     profile = sp.Prestress(0.3, 0.3, bumps=((6.0, 0.9, 1.0),))
     rupture = Rupture(profile, 0.65, 0.1, "total", 3.0)
@@ -88,9 +77,8 @@ def test_velocity_vanishes_on_a_slow_front(gamma, ratio):
 def test_a_slow_front_without_leaf_springs_is_the_closed_form():
     crack = ArrestingCrack(sp.Prestress(-0.5, 0.0), 0.1)
     rupture = Rupture(sp.Prestress(-0.5, 0.0), 0.0, 0.1, "total", 12.0)
-    for x in (-3.5, -2.5, -1.5, -0.5, 1.0):
-        if x < 0.0:
-            assert float(rupture.release_time(x)) == pytest.approx(crack.time_at(x), rel=RELATIVE)
+    for x in (-3.5, -2.5, -1.5, -0.5):
+        assert float(rupture.release_time(x)) == pytest.approx(crack.time_at(x), rel=RELATIVE)
     ((left, _),) = rupture.front_ends
     assert left.reason == "duration"
     assert abs(left.x) < abs(crack.balance_position)
@@ -134,41 +122,27 @@ def test_a_barrier_is_passed_if_and_only_if_it_is_shorter_than_the_depth(share, 
 
 
 @pytest.mark.parametrize(
-    ("keys", "word"),
+    ("function", "values", "keys", "word"),
     [
-        ({"gamma": -1.0}, "gamma"),
-        ({"damping_ratio": float("nan")}, "damping_ratio"),
-        ({"release": "both"}, "release"),
-        ({"duration": 0.0}, "duration"),
-        ({"prestress": sp.Prestress(0.5, 0.5, peak=0.9)}, "prestress"),
-        ({"prestress": "flat"}, "prestress"),
-        ({"refinement": 0}, "refinement"),
-        ({"refinement": 2.7}, "refinement"),
-        ({"damping_ratio": 1e9}, "damping_ratio"),
+        *(
+            (Rupture, (), {"prestress": ASYMMETRIC, "gamma": 0.65, "duration": 2.0} | {name: value}, name)
+            for name, values in {
+                "gamma": (-1.0,),
+                "damping_ratio": (float("nan"), 1e9),
+                "release": ("both",),
+                "duration": (0.0,),
+                "prestress": (sp.Prestress(0.5, 0.5, peak=0.9), "flat"),
+                "refinement": (0, 2.7),
+            }.items()
+            for value in values
+        ),
+        (barrier_depth, (0.5, 0.1, 0.65), {}, "tau_barrier"),
+        (barrier_depth, (1.0, -0.1, 0.65), {}, "tau0"),
+        (barrier_depth, (0.5, -0.1, 0.0), {}, "gamma"),
+        (barrier_depth_estimate, (0.5, 0.5, 0.65), {}, "tau_barrier"),
+        (sp.theory.uniform_transition_time, (0.0, 0.65), {}, "tau0"),
     ],
 )
-def test_what_is_outside_the_domain_is_refused_in_one_line(keys, word):
-    settings = {
-        "prestress": ASYMMETRIC,
-        "gamma": 0.65,
-        "damping_ratio": 0.1,
-        "release": "total",
-        "duration": 2.0,
-    }
+def test_what_is_outside_the_domain_is_refused_in_one_line(function, values, keys, word):
     with pytest.raises(ValueError, match=rf"^{word}: .*allowed: [^\n]+$"):
-        Rupture(**settings | keys)
-
-
-@pytest.mark.parametrize(
-    ("function", "values", "word"),
-    [
-        (barrier_depth, (0.5, 0.1, 0.65), "tau_barrier"),
-        (barrier_depth, (1.0, -0.1, 0.65), "tau0"),
-        (barrier_depth, (0.5, -0.1, 0.0), "gamma"),
-        (barrier_depth_estimate, (0.5, 0.5, 0.65), "tau_barrier"),
-        (sp.theory.uniform_transition_time, (0.0, 0.65), "tau0"),
-    ],
-)
-def test_functions_refuse_too(function, values, word):
-    with pytest.raises(ValueError, match=rf"^{word}: .*allowed: "):
-        function(*values)
+        function(*values, **keys)
