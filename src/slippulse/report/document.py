@@ -89,10 +89,10 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     source = re.sub(r'image\("([^"]+)"', with_alternative, source)
     compiled = partial(typst.compile, ignore_system_fonts=True, font_paths=[FONTS], timestamp=TIMESTAMP)
     try:
-        pdf = compiled(source.encode(), root=Path("/"), format="pdf")
+        pdf: bytes | None = compiled(source.encode(), root=Path("/"), format="pdf")
     except typst.TypstError as error:
         raise ValueError(f"Typst: {error}") from None
-    write_whole(output, lambda part: part.write_bytes(pdf))
+    write_whole(output, lambda part: part.write_bytes(pdf or b""))
 
 
 def _pandoc(text: str, manuscript: Path, template: Path, options: Sequence[str]) -> str:
