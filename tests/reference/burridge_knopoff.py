@@ -22,19 +22,14 @@ TOGETHER = 1e-9
 
 @dataclass
 class Chain:
-    """A chain of blocks at positions 0, +-1, +-2, ..., at rest at first.
+    """A chain of blocks at positions 0, +-1, +-2, ..., at rest at first; the end blocks must never move."""
 
-    Parameters
-    ----------
-    pull : force on each block when nothing has moved, shape (n,); the end blocks must never move
-    leaf : stiffness of each block's leaf spring
-    damping : of the springs between neighbours
-    release : "total" or "elastic", whether the damping force helps to release a block
-    """
-
+    # On each block when nothing has moved.
     pull: np.ndarray
+    # Stiffness of each block's leaf spring, and damping of the springs between neighbours.
     leaf: float
     damping: float
+    # "total" or "elastic", whether the damping force helps to release a block.
     release: str
 
     def __post_init__(self) -> None:
@@ -97,18 +92,15 @@ class Chain:
         for share in MESH:
             now = path.t_old + share * (path.t - path.t_old)
             fallen = np.flatnonzero(self._margins(path(now)) < 0.0)
-            times = []
-            for block in fallen:
-
-                def margin(time: float, block: int = block) -> float:
-                    return self._margins(path(time))[block]
-
-                # A block released at the start of the step has velocity 0 there.
-                times.append(brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before)
-            if times:
-                return min(times)
+            if fallen.size:
+                return min(self._zero(path, block, before, now) for block in fallen)
             before = now
         return None
+
+    def _zero(self, path, block: int, before: float, now: float) -> float:
+        """When one block's margin passes 0; one released at the start of the step has velocity 0 there."""
+        margin = lambda time: self._margins(path(time))[block]  # noqa: E731
+        return brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
 
     def _apply(self, time: float) -> None:
         """Stick what has stopped and release what has reached the threshold."""
