@@ -11,6 +11,15 @@ from typing import Any
 
 import numpy as np
 
+# What arguments of formulas may be. Beyond this damping ratio, with tau_0 as near 1 as floating point comes,
+# products of speed and damping would overflow.
+DOMAINS: dict[str, dict[str, Any]] = {
+    "tau0": {"above": 0.0, "below": 1.0},
+    "gamma": {"above": 0.0},
+    "dx": {"above": 0.0},
+    "damping_ratio": {"at_least": 0.0, "at_most": 1e100},
+}
+
 
 class ConfigError(ValueError):
     """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
@@ -63,6 +72,15 @@ def check_number(
         ]
     )
     raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+
+
+def check_domains(**values: Any) -> None:
+    """Refuse arguments of formulas, by name, that are outside DOMAINS.
+
+    Raises ValueError: naming the key, the value and the range.
+    """
+    for key, value in values.items():
+        check_number(key, value, **DOMAINS[key])
 
 
 def _finite(value: Any) -> bool:

@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..model.checks import check_number
+from ..model.checks import check_domains, check_number
 from ..model.prestress import Prestress
 from .curve import Curve
-from .front_law import LARGEST_RATIO, front_speed
+from .front_law import front_speed
 from .fronts import straight_panel
 from .pulse import steady_pulse
 from .slow_front import advance
@@ -38,14 +38,12 @@ def barrier_depth(
     damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises ValueError: outside the domain, naming the value and the range.
-
+    Raises ValueError: outside the domain.
     Source: the free boundary (`slow_front`) behind a front at constant speed, in the continuum limit.
     """
     check_number("tau0", tau0, at_least=SLOWEST, below=1.0)
     check_number("tau_barrier", tau_barrier, at_least=-STRONGEST, at_most=-WEAKEST * tau0)
-    check_number("gamma", gamma, above=0.0)
-    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+    check_domains(gamma=gamma, damping_ratio=damping_ratio)
     speed = float(front_speed(tau0, damping_ratio, release))
     check_number(f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST)
     # The depth scales like 1/sqrt(gamma). Its characteristics entered no further back than the pulse remembers.
@@ -78,11 +76,10 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
     tau_barrier : pre-stress of the barrier, <= -1e-100
     gamma : elasticity ratio, >= 1e-100
 
-    Raises ValueError: outside the domain, naming the value and the range.
-
+    Raises ValueError: outside the domain.
     Source: the authors' public code of later work.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_domains(tau0=tau0)
     check_number("tau_barrier", tau_barrier, at_most=-SMALLEST)
     check_number("gamma", gamma, at_least=SMALLEST)
     return 2.0 / gamma * math.log((tau_barrier - tau0) / tau_barrier)

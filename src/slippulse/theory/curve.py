@@ -8,7 +8,6 @@ rises to eta, going right.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -35,8 +34,7 @@ TO_POWERS = np.array(
 TO_POWERS = TO_POWERS @ TO_SERIES
 
 
-@dataclass(frozen=True)
-class Panel:
+class Panel(NamedTuple):
     """One panel: x, T and tau dx/ds at the nodes s, and x and T at both ends, with x rising."""
 
     x: np.ndarray
@@ -47,13 +45,8 @@ class Panel:
 
     def mirrored(self) -> Panel:
         """The same at -x."""
-        return Panel(
-            -self.x[::-1],
-            self.time[::-1],
-            self.source[::-1],
-            (-self.x_ends[1], -self.x_ends[0]),
-            self.time_ends[::-1],
-        )
+        ends = (-self.x_ends[1], -self.x_ends[0]), self.time_ends[::-1]
+        return Panel(-self.x[::-1], self.time[::-1], self.source[::-1], *ends)
 
     def until(self, s: float, x_end: float) -> Panel:
         """The part from the left end to the parameter s, where x is x_end."""
@@ -62,6 +55,11 @@ class Panel:
         x, time, source = resample @ self.x, resample @ self.time, half * (resample @ self.source)
         ends = (self.x_ends[0], x_end), (self.time_ends[0], float(time[-1]))
         return Panel(x[:-1], time[:-1], source[:-1], *ends)
+
+
+def seen(panels: list[Panel], side: float) -> list[Panel]:
+    """Panels as they are on one side (+1), or at -x (-1)."""
+    return panels if side > 0.0 else [panel.mirrored() for panel in panels[::-1]]
 
 
 class Crossing(NamedTuple):
@@ -73,13 +71,7 @@ class Crossing(NamedTuple):
 
 
 class Curve:
-    """Panels side by side, from left to right.
-
-    Parameters
-    ----------
-    panels : in order of x, without gaps
-    restarts_left, restarts_right : positions where a front, slower than the waves before, outran them again
-    """
+    """Panels side by side, from left to right without gaps; and where a front on each side outran the waves again."""
 
     def __init__(
         self, panels: list[Panel], restarts_left: Iterable[float] = (), restarts_right: Iterable[float] = ()
@@ -95,11 +87,6 @@ class Curve:
         self.late, self.early = self.time + self.x, self.time - self.x
         self.late_ends, self.early_ends = time_ends + x_ends, time_ends - x_ends
         self.restarts_left, self.restarts_right = tuple(restarts_left), tuple(restarts_right)
-        # A characteristic that leaves the rupture across a front that was slower than the waves sees no source beyond.
-        self._regions_left, self._regions_right = (
-            [0, *sorted(int(np.argmin(np.abs(self.edges - x))) for x in restarts), len(panels)]
-            for restarts in (self.restarts_left, self.restarts_right)
-        )
 
     @cached_property
     def powers(self) -> dict[str, np.ndarray]:
@@ -114,8 +101,8 @@ class Curve:
 
     def mirrored(self) -> Curve:
         """The same at -x."""
-        panels = [panel.mirrored() for panel in self.panels[::-1]]
-        return Curve(panels, [-x for x in self.restarts_right], [-x for x in self.restarts_left])
+        restarts = ([-x for x in side] for side in (self.restarts_right, self.restarts_left))
+        return Curve(seen(self.panels, -1.0), *restarts)
 
     def at(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
         """One of `powers` at a parameter on panels."""
@@ -143,19 +130,27 @@ class Curve:
 
     def right(self, y: np.ndarray, eta: np.ndarray) -> Crossing:
         """Where T + x rises to eta, going right from y."""
-        panel, known = _first_rise(self.edges, self.late_ends[:, 1], self._regions_left, y, eta)
+        regions = self._regions(self.restarts_left)
+        panel, known = _first_rise(self.edges, self.late_ends[:, 1], regions, y, eta)
         s = self._solve("late", panel, eta, *self.late_ends[panel].T)
         return Crossing(panel, np.where(known, s, 1.0), known)
 
     def left(self, y: np.ndarray, xi: np.ndarray) -> Crossing:
         """Where T - x rises to xi, going left from y."""
         # The same at -x.
-        last = len(self.panels) - 1
-        regions = [last + 1 - r for r in reversed(self._regions_right)]
+        count = len(self.panels)
+        regions = [count - r for r in reversed(self._regions(self.restarts_right))]
         panel, known = _first_rise(-self.edges[::-1], self.early_ends[::-1, 0], regions, -y, xi)
-        panel = last - panel
+        panel = count - 1 - panel
         s = self._solve("early", panel, xi, *self.early_ends[panel].T)
         return Crossing(panel, np.where(known, s, -1.0), known)
+
+    def _regions(self, restarts: tuple[float, ...]) -> list[int]:
+        """Panels at which regions begin that a characteristic from beyond does not see, and their number.
+
+        What leaves the rupture across a front that was slower than the waves sees no source beyond.
+        """
+        return [0, *sorted(int(np.argmin(np.abs(self.edges - x))) for x in restarts), len(self.panels)]
 
     def _solve(self, name, panel, level, at_left, at_right) -> np.ndarray:
         """The parameter where a field, monotonic on its panel with these values at the ends, has a value."""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number, of_one_shape
+from ..model.checks import as_numbers, check_choice, check_domains, check_number, of_one_shape
 
 # So that no product overflows.
 LARGEST = 1e100
@@ -27,9 +27,8 @@ class Layer:
     static_friction, kinetic_friction : mu_s > mu_k >= 0
     normal_stress : sigma_n (Pa), > 0
 
-    Raises ValueError: outside these ranges, naming the key and the value; its methods too, at a number that is not
-    finite, a speed outside 1e-100 to 1e100 or a pre-stress outside (0, 1).
-
+    Raises ValueError: outside these ranges; its methods too, at a number that is not finite, a speed outside 1e-100
+    to 1e100 or a pre-stress outside (0, 1).
     Source: sections II and IV A and appendix B of the paper.
     """
 
@@ -108,7 +107,7 @@ class Layer:
 
     def pulse_width(self, tau0: float, front_speed: float) -> float:
         """Width (m) of the paper's pulse: pi tau_0 H sqrt((lambda + 2G)/2G) v_c/v_s (section IV A)."""
-        check_number("tau0", tau0, above=0.0, below=1.0)
+        check_domains(tau0=tau0)
         check_number("front_speed", front_speed, **POSITIVE)
         return np.pi * tau0 * self.thickness / float(np.sqrt(self.gamma)) * front_speed
 
@@ -129,8 +128,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     float or array
         G delta / (H + (G/G_r) H_r) in Pa; G delta / H when G << G_r.
 
-    Raises ValueError: outside these ranges, naming the value and the range.
-
+    Raises ValueError: outside these ranges.
     Source: section IV C 2 of the paper.
     """
     if isinstance(rock_shear_modulus, float | np.ndarray):

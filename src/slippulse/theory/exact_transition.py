@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_kind, check_number
+from ..model.checks import as_numbers, check_choice, check_domains, check_kind, check_number
 from ..model.prestress import Prestress
 from ..model.roots import root_between
-from .curve import Curve
-from .front_law import LARGEST_RATIO, front_speed
+from .curve import Curve, seen
+from .front_law import front_speed
 from .fronts import NARROWEST, FrontLaw, straight_panel
 from .part import Part
 from .profile import nucleations
@@ -50,11 +50,10 @@ class Fronts:
         if len(starts) > 1 or starts[0][0] != starts[0][1]:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
         self.prestress = prestress
-        reach = float(reach)
-        right, end, _ = law.rightwards(0.0, 0.0, reach, np.inf)
-        left, start, _ = law.mirrored().rightwards(0.0, 0.0, reach, np.inf)
-        self.ends = {-1.0: start if start < reach else np.inf, 1.0: end if end < reach else np.inf}
-        self.curve = Curve([panel.mirrored() for panel in left[::-1]] + right)
+        right, end, _ = law.rightwards(0.0, 0.0, float(reach), np.inf)
+        left, start, _ = law.mirrored().rightwards(0.0, 0.0, float(reach), np.inf)
+        self.ends = {side: x if x < reach else np.inf for side, x in ((-1.0, start), (1.0, end))}
+        self.curve = Curve(seen(left, -1.0) + right)
 
     def arrival(self, x) -> np.ndarray:
         """T(x): when the front reaches x; NaN beyond where it outruns the waves.
@@ -92,7 +91,6 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
 
     Raises ValueError: outside these ranges, or if the point's past leaves the part of the fronts that outruns the
     waves.
-
     Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
@@ -110,8 +108,7 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     return velocity
 
 
-@dataclass(frozen=True)
-class ExactTransition:
+class ExactTransition(NamedTuple):
     """When the first block sticks (Gamma = 1) and how far apart the fronts are then."""
 
     time: float
@@ -132,19 +129,18 @@ def exact_transition_displacement(
 
     Raises ValueError: outside these ranges; if the profile is not symmetric and positive, or nucleates elsewhere too;
     or if a front needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
-
     Source: the first zero of du/dt at x = 0; symmetric scenes stick there first. For others, `Rupture`.
     """
     check_kind("prestress", prestress, Prestress)
-    check_number("gamma", gamma, above=0.0)
-    if not prestress.symmetric or float(prestress.level(np.asarray(1e300))) <= 0.0:
+    check_domains(gamma=gamma)
+    level = float(prestress.level(np.asarray(1e300)))
+    if not prestress.symmetric or level <= 0.0:
         raise ValueError("prestress: not symmetric and positive; allowed: equal levels > 0 on both sides")
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.
     fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
     stick = float(Part(fronts.curve, gamma, 2.0 * period).scan(np.zeros(1))[0])
-    level = float(prestress.level(np.asarray(1e300)))
     speed = float(front_speed(level, damping_ratio, release))
     reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width, gamma)
     return ExactTransition(stick, 2.0 * reach.reached(stick, 1.0))
@@ -162,14 +158,11 @@ def uniform_transition_time(
     damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises ValueError: outside the domain, naming the value and the range.
-
+    Raises ValueError: outside the domain.
     Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v: with q = sqrt(gamma) t/(1 + 1/v) it is
     that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, w = 1/v, and depends on v alone.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
-    check_number("gamma", gamma, above=0.0)
-    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+    check_domains(tau0=tau0, gamma=gamma, damping_ratio=damping_ratio)
     rate = 1.0 / float(front_speed(tau0, damping_ratio, release))
     # What is 0 in the velocity, a factor of it does not change.
     tau = max(tau0, 1e-9)

@@ -8,19 +8,23 @@ wider than the layer of damped or lattice waves at its tip, a few blocks unless 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number, of_one_shape
+from ..model.checks import DOMAINS, as_numbers, check_choice, check_domains, check_number, of_one_shape
 from ..model.scene import RELEASES
-from .speed_solver import SLOWEST, first_guess, in_chunks, log_excess, root, slowest
 from .wiener_hopf import log_prestress
 
-# Beyond it, with tau_0 as near 1 as floating point comes, products of speed and damping would overflow.
-LARGEST_RATIO = 1e100
+LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
 # So near 1, in 1 - tau_0, rounding of the quadrature is felt and the first terms in 1/v are better.
 NEARLY_ONE = {"total": 1e-10, "elastic": 1e-13}
 # With leaf springs, where no reference takes the rounding out of 1 - M_+(0), it is felt from here on.
 NEARLY_ONE_WITH_SPRINGS = 1e-7
+# ln(v - 1) where v is 1 to all digits, and beyond any speed in the domain.
+SLOWEST, FASTEST = -80.0, 280.0
+# Elements solved at once: bounds memory.
+CHUNK = 128
 # Where the pre-stress is looked at for its least, and how often the range is narrowed.
 SCAN, NARROWINGS = 64, 6
 
@@ -32,7 +36,7 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
     ----------
     tau0 : float or array, in [0, 1)
 
-    Raises ValueError: outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain.
     """
     return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
@@ -42,26 +46,21 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
 
     Parameters
     ----------
-    tau0 : float or array
-        Pre-stress ahead of the front, in (0, 1).
-    damping_ratio : float or array, broadcast with tau0
-        beta/dx, from 0 to 1e100; time and memory grow with its logarithm.
-    release : "total" or "elastic"
-        Whether the stress that is compared with the threshold includes the damping force.
+    tau0 : float or array, pre-stress ahead of the front, in (0, 1)
+    damping_ratio : float or array, broadcast with tau0, beta/dx, from 0 to 1e100; time grows with its logarithm
+    release : "total" or "elastic", whether the stress that is compared with the threshold includes the damping force
 
-    Returns
-    -------
-    float or array
-        Speed in units of the wave speed, >= 1 (1 where the excess is below rounding).
+    Returns a float or an array, in wave speeds, >= 1 (1 where the excess is below rounding).
 
-    Raises ValueError: outside the domain, naming the value and the range.
-
+    Raises ValueError: outside the domain.
     Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0 the paper's
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
     """
     check_choice("release", release, RELEASES)
-    tau = as_numbers("tau0", tau0, above=0.0, below=1.0)
-    tau, ratio = of_one_shape(tau0=tau, damping_ratio=_ratios(damping_ratio))
+    tau, ratio = of_one_shape(
+        tau0=as_numbers("tau0", tau0, **DOMAINS["tau0"]),
+        damping_ratio=as_numbers("damping_ratio", damping_ratio, **DOMAINS["damping_ratio"]),
+    )
     out = np.array(front_speed_undamped(tau))
     damped = ratio > 0.0
     near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
@@ -81,11 +80,13 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     damping_ratio : float or array, broadcast with speed, from 0 to 1e100
     release : "total" or "elastic"
 
-    Raises ValueError: outside the domain, naming the value and the range.
+    Raises ValueError: outside the domain.
     """
     check_choice("release", release, RELEASES)
-    speeds = as_numbers("speed", speed, above=1.0, at_most=1e100)
-    speeds, ratio = of_one_shape(speed=speeds, damping_ratio=_ratios(damping_ratio))
+    speeds, ratio = of_one_shape(
+        speed=as_numbers("speed", speed, above=1.0, at_most=1e100),
+        damping_ratio=as_numbers("damping_ratio", damping_ratio, **DOMAINS["damping_ratio"]),
+    )
     excess = speeds - 1.0
     out = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
     damped = ratio > 0.0
@@ -111,30 +112,27 @@ def lattice_front_speed(
     the waves (and than sqrt(4 + gamma dx^2)/pi, beyond 1 for gamma dx^2 > pi^2 - 4). Where that least lies at a speed
     above 1 (rule "total", strong damping), two speeds belong to one tau_0: the faster is returned, which grows with
     tau_0.
-
-    Source: the lattice symbol with leaf springs (`wiener_hopf`); without damping it has a closed form, and as
-    gamma dx^2 -> 0 it tends to `front_speed`. Sticking behind the front is left out (module docstring). Relative error
+    Source: the lattice symbol with leaf springs (`wiener_hopf`); without damping it has a closed form, and as gamma
+    dx^2 -> 0 it tends to `front_speed`. Sticking behind the front is left out (module docstring). Relative error
     below 1e-6 next to tau_0 = 1 for gamma dx^2 (1 + beta/dx) up to 10.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
-    check_number("gamma", gamma, above=0.0)
-    check_number("dx", dx, above=0.0)
-    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+    check_domains(tau0=tau0, gamma=gamma, dx=dx, damping_ratio=damping_ratio)
     check_choice("release", release, RELEASES)
     springs = float(gamma) * float(dx) * float(dx)
     # Outside these there is no difference to no springs, or no front for any tau_0 below 1.
     if springs < 1e-30:
         return float(front_speed(tau0, damping_ratio, release))
-    if springs > 1e30:
-        raise _no_front(tau0, 1.0, gamma, dx, damping_ratio)
-    if 1.0 - tau0 < NEARLY_ONE_WITH_SPRINGS and damping_ratio > 0.0:
+    if springs <= 1e30 and 1.0 - tau0 < NEARLY_ONE_WITH_SPRINGS and damping_ratio > 0.0:
         speed = front_speed(tau0, damping_ratio, release)
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2:
             return _nearly_free(speed, springs, damping_ratio if release == "total" else 0.0)
     ratio = np.array([float(damping_ratio)])
-    low, least = _least_prestress(ratio[0], springs, release)
+    low, least = _least_prestress(ratio[0], springs, release) if springs <= 1e30 else (0.0, 1.0)
     if tau0 <= least:
-        raise _no_front(tau0, least, gamma, dx, damping_ratio)
+        raise ValueError(
+            f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
+            f" dx = {dx:g}, damping_ratio = {damping_ratio:g}"
+        )
     if damping_ratio == 0.0:
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
         return float(np.sqrt(springs) / (2.0 * tau0 * np.arcsin(argument)))
@@ -155,11 +153,10 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     beta : damping, > 0
 
     Raises ValueError: outside these ranges, or where the front would not outrun the waves.
-
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y below the real axis,
     beta v Y^3 = (v^2 - 1) Y^2 + gamma, and the rule reads Y/(Y + 1/(beta v)) = tau.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_domains(tau0=tau0)
     check_number("gamma", gamma, at_least=0.0)
     check_number("beta", beta, above=0.0)
     springs = (np.sqrt(float(gamma)) * beta * (1.0 - tau0) / tau0) ** 2
@@ -199,12 +196,85 @@ def _nearly_free(speed: float, springs: float, damping: float) -> float:
     return speed * (1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0))
 
 
-def _no_front(tau0: float, least: float, gamma: float, dx: float, ratio: float) -> ValueError:
-    return ValueError(
-        f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
-        f" dx = {dx:g}, damping_ratio = {ratio:g}"
+def log_excess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
+    """ln(v - 1) for 1-d arrays, b > 0."""
+    # Neighbours in the order of the speed share a contour.
+    guess = first_guess(tau, ratio, release)
+    order = np.argsort(guess)
+    out = np.empty(tau.size)
+    for start in range(0, tau.size, CHUNK):
+        part = order[start : start + CHUNK]
+
+        def levels(x: np.ndarray, alive: np.ndarray, part: np.ndarray = part) -> np.ndarray:
+            return log_prestress(np.exp(x), ratio[part][alive], 0.0, release)
+
+        out[part] = root(levels, tau[part], np.full(part.size, SLOWEST), guess[part])
+    return out
+
+
+def slowest(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:
+    """1/v of fronts with v >> b: -ln tau = b/v + 1/(2 v^2) ("total") or 1/(2 v^2) ("elastic"), up to 1/v^3."""
+    level = -np.log(tau)
+    damping = np.asarray(ratio) if release == "total" else 0.0
+    return 2.0 * level / np.maximum(damping + np.sqrt(damping**2 + 2.0 * level), 1e-300)
+
+
+def in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
+    starts = range(0, excess.size, CHUNK)
+    return np.concatenate(
+        [log_prestress(excess[i : i + CHUNK], ratio[i : i + CHUNK], 0.0, release) for i in starts]
     )
 
 
-def _ratios(damping_ratio) -> np.ndarray:
-    return as_numbers("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
+    """ln(v - 1) from the limits b = 0, and b = 1 ("total") or b -> infinity ("elastic"), and from strong damping."""
+    rest = 1.0 - tau
+    undamped = np.log(tau) * 2.0 - np.log(rest * (1.0 + tau) + np.sqrt(rest * (1.0 + tau)))
+    if release == "elastic":
+        damped = np.log(tau) - np.log(rest + np.sqrt(rest))
+        return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
+    weight = np.minimum(ratio, 1.0)
+    return (1.0 - weight) * undamped + weight * (np.log(tau / rest) + np.log(np.maximum(ratio, 1.0)))
+
+
+def root(
+    levels: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    tau: np.ndarray,
+    low: np.ndarray,
+    guess: np.ndarray,
+) -> np.ndarray:
+    """x = ln(v - 1) where the pre-stress is tau, by secants in ln(tau/(1 - tau)), which is nearly linear in x.
+
+    Monotone in x, hence bracketed: a secant that leaves the bracket is replaced by its middle.
+    """
+    low, high = low.copy(), np.full(tau.size, FASTEST)
+    target = np.log(tau) - np.log1p(-tau)
+
+    def mismatch(x: np.ndarray, alive: np.ndarray) -> np.ndarray:
+        level = levels(x, alive)
+        # Beyond the floating range below 1 the stress is faster than any target.
+        return level - np.log(np.maximum(-np.expm1(level), 1e-17)) - target[alive]
+
+    alive = np.arange(tau.size)
+    x = np.clip(guess, low + 0.1, high - 1.0)
+    before, value_before = x.copy(), mismatch(x, alive)
+    x = np.clip(x - np.clip(value_before, -2.0, 2.0), low, high)
+    for _ in range(200):
+        value = mismatch(x[alive], alive)
+        high[alive] = np.where(value > 0.0, np.minimum(high[alive], x[alive]), high[alive])
+        low[alive] = np.where(value < 0.0, np.maximum(low[alive], x[alive]), low[alive])
+        change = value - value_before[alive]
+        flat = change == 0.0
+        step = np.where(flat, 0.0, -value * (x[alive] - before[alive]) / np.where(flat, 1.0, change))
+        following = x[alive] + step
+        outside = (following <= low[alive]) | (following >= high[alive])
+        # A secant's error is the product of the last two, up to a factor of order 1.
+        last = np.abs(x[alive] - before[alive])
+        tiny = np.abs(step) * np.minimum(last, 1.0) <= 1e-15 * (1.0 + np.abs(x[alive]))
+        following = np.where(outside & ~tiny, 0.5 * (low[alive] + high[alive]), following)
+        before[alive], value_before[alive], x[alive] = x[alive], value, following
+        narrow = high[alive] - low[alive] <= 1e-13 * (1.0 + np.abs(x[alive]))
+        alive = alive[~(tiny | narrow | (value == 0.0))]
+        if alive.size == 0:
+            return x
+    raise ArithmeticError(f"the front speed did not converge at tau0 = {tau[alive[0]]!r}")

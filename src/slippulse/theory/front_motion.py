@@ -8,9 +8,8 @@ until the release, and no block behind it comes to rest before the next is relea
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import lru_cache
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +22,7 @@ SUBSTEPS = 16
 BLOCKS = 100
 
 
-@dataclass(frozen=True)
-class SteadyFront:
+class SteadyFront(NamedTuple):
     """A front at one speed, in lattice units: lengths in dx, slip in dx^2, velocity in dx.
 
     Attributes
@@ -66,8 +64,7 @@ def steady_front(
     release : "total" or "elastic"
     blocks : kept behind the front, 10 to 500; many more than b v/(v^2 - 1), the layer through which damping looks ahead
 
-    Raises ValueError: outside these ranges, naming the key and the value.
-
+    Raises ValueError: outside these ranges.
     Source: module docstring.
     """
     check_number("speed", speed, above=1.0, at_most=1e100)
@@ -75,16 +72,10 @@ def steady_front(
     check_number("springs", springs, at_least=0.0, at_most=100.0)
     check_choice("release", release, RELEASES)
     check_number("blocks", blocks, whole=True, at_least=10, at_most=500)
-    return _steady_front(float(speed), float(damping_ratio), float(springs), release, int(blocks))
-
-
-@lru_cache(maxsize=64)
-def _steady_front(
-    speed: float, damping_ratio: float, springs: float, release: str, count: int
-) -> SteadyFront:
     # Slow to load, and needed here only.
     from scipy.linalg import expm
 
+    count = int(blocks)
     # Block 0 has just been released; the one ahead of it is stuck, and behind the last slip has no curvature.
     bend = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
     bend[-1, -3:] = bend[-2, -3:]
@@ -127,18 +118,16 @@ def admissibility_table(speeds, ratios, springs, release: str = "total") -> list
     speeds, ratios, springs : values of v, beta/dx and gamma dx^2, as in `steady_front`; arrays or lists
     release : "total" or "elastic"
 
-    Raises ValueError: outside their ranges, naming the key and the value.
+    Raises ValueError: outside their ranges.
     """
-    axes = (as_numbers(name, values).ravel().tolist() for name, values in
-            (("springs", springs), ("ratios", ratios), ("speeds", speeds)))  # fmt: skip
     rows = []
-    for g, b, v in product(*axes):
+    for g, b, v in product(
+        as_numbers("springs", springs).flat,
+        as_numbers("ratios", ratios).flat,
+        as_numbers("speeds", speeds).flat,
+    ):
         front = steady_front(v, b, g, release)
-        rows.append(
-            {
-                "speed": v, "damping_ratio": b, "springs": g, "release": release, "prestress": front.prestress,
-                "stress_ahead": float(front.ahead[:-1].max()), "rest": front.first_rest,
-                "admissible": front.admissible,
-            }
-        )  # fmt: skip
+        row = {"speed": v, "damping_ratio": b, "springs": g, "release": release, "prestress": front.prestress}
+        row |= {"stress_ahead": float(front.ahead[:-1].max()), "rest": front.first_rest}
+        rows.append(row | {"admissible": front.admissible})
     return rows

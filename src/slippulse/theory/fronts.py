@@ -72,11 +72,8 @@ class FrontLaw:
         """The longest panel: the leaf springs' phase changes by LONGEST along it."""
         if self.gamma == 0.0:
             return LONGEST_WITHOUT_SPRINGS / self.refinement
-        proper = (
-            float(np.sqrt(1.0 - self.slowness(np.array(np.clip(level, 0.0, 1.0))) ** 2))
-            if level > 0.0
-            else 1.0
-        )
+        rate = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
+        proper = float(np.sqrt(1.0 - rate**2)) if level > 0.0 else 1.0
         return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / np.sqrt(self.gamma) / self.refinement
 
     def rightwards(
@@ -107,23 +104,16 @@ class FrontLaw:
         if (end - start) * self.refinement > MOST_PANELS * longest:
             raise self._too_many(level, start, end)
         rough = np.concatenate([[start], inner, [end]])
-        edges = np.unique(
-            np.concatenate(
-                [
-                    np.linspace(a, b, int(np.ceil((b - a) / longest)) * self.refinement + 1)
-                    for a, b in pairwise(rough)
-                ]
-            )
-        )
+        count = self.refinement * np.ceil(np.diff(rough) / longest).astype(int)
+        parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
+        edges = np.unique(np.concatenate(parts))
         edges[0], edges[-1] = start, end
         while True:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
             tau = analytic(self.prestress, level, x)
             rate = self.slowness(tau)
-            tails = np.maximum(
-                np.abs(rate @ TO_SERIES[-2:].T).max(axis=1), np.abs(tau @ TO_SERIES[-2:].T).max(axis=1)
-            )
+            tails = np.abs(np.stack([rate, tau]) @ TO_SERIES[-2:].T).max(axis=(0, 2))
             size = 2.0 * half[:, 0]
             split = (tails * size > RESOLVED) & (size > NARROWEST)
             if not split.any():
@@ -133,16 +123,8 @@ class FrontLaw:
             edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
         starts = time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (rate @ WEIGHTS))])
         within = (half * rate) @ CUMULATIVE.T
-        return [
-            Panel(
-                x[k],
-                starts[k] + within[k],
-                tau[k] * half[k],
-                (edges[k], edges[k + 1]),
-                (starts[k], starts[k + 1]),
-            )
-            for k in range(len(x))
-        ]
+        columns = x, starts[:-1, None] + within, tau * half, pairwise(edges), pairwise(starts)
+        return [Panel(*row) for row in zip(*columns, strict=True)]
 
     def _too_many(self, level: float, start: float, end: float) -> ValueError:
         return ValueError(

@@ -48,17 +48,7 @@ class Edge(NamedTuple):
 
 
 class Part:
-    """A connected part of the rupture with what is computed from its curve.
-
-    Parameters
-    ----------
-    curve : of the fronts
-    gamma : elasticity ratio, or 0
-    until : time up to which stick times are wanted
-    marks : positions where the curve has kinks
-    refinement : how many times as many positions and times are looked at
-    one_side : whether x >= 0 tells all
-    """
+    """A connected part of the rupture, behind a curve with kinks at marks, until a time; one_side: x >= 0 tells all."""
 
     def __init__(
         self, curve: Curve, gamma: float, until: float, marks: Iterable[float] = (), refinement: int = 1,

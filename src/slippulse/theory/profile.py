@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,21 +18,13 @@ SAMPLES = 32
 ROUNDING = 1e-15
 
 
-@dataclass(frozen=True)
-class Piece:
-    """An interval on which the pre-stress is smooth and does not change its sign.
-
-    Attributes
-    ----------
-    left, right : its ends; infinite for the outermost
-    level : side level on it
-    supersonic : whether tau >= 0, so that a front outruns the waves
-    """
+class Piece(NamedTuple):
+    """An interval on which the pre-stress is smooth and does not change its sign."""
 
     left: float
     right: float
-    level: float
-    supersonic: bool
+    level: float  # of its side
+    supersonic: bool  # tau >= 0, so that a front outruns the waves
 
 
 def analytic(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
@@ -117,11 +109,9 @@ def _between_jumps(prestress: Prestress) -> list[tuple[float, float, float]]:
     """Intervals of one side level: left, right, level."""
     jumps = sorted({0.0, *(position for position, _ in prestress.steps)})
     inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
-    levels = prestress.level(np.array(inside))
-    return [
-        (left, right, float(level))
-        for (left, right), level in zip(pairwise([-np.inf, *jumps, np.inf]), levels, strict=True)
-    ]
+    levels = prestress.level(np.array(inside)).tolist()
+    ends = [-np.inf, *jumps, np.inf]
+    return list(zip(ends[:-1], ends[1:], levels, strict=True))
 
 
 def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
@@ -130,8 +120,7 @@ def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
     x = np.concatenate([centre + width * fine for centre, width in _gaussians(prestress)])
     # Far outside everything a side has its last level.
     far = [float(x.min()) - 1.0, float(x.max()) + 1.0]
-    ends = [
-        left if np.isfinite(left) else min(far[0], right - 1.0),
-        right if np.isfinite(right) else max(far[1], left + 1.0),
-    ]
+    ends = [left, right]
+    ends[0] = left if np.isfinite(left) else min(far[0], right - 1.0)
+    ends[1] = right if np.isfinite(right) else max(far[1], left + 1.0)
     return np.unique(np.concatenate([x[(x > left) & (x < right)], ends]))

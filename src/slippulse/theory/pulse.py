@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_number
+from ..model.checks import as_numbers, check_domains, check_number
 from .front_law import front_speed_undamped
 
 
@@ -71,27 +71,33 @@ def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> Steady
     beta : damping, >= 0
     speed : front speed, > 1 (see `front_speed`)
 
-    Raises ValueError: outside the domain, naming the value and the range.
-
-    Source: beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of roots; the
-    real root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. beta = 0 gives appendix C of the
-    paper before its last step, with any speed.
+    Raises ValueError: outside the domain.
+    Source: beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of roots; the real
+    root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. beta = 0 gives appendix C of the paper
+    before its last step, with any speed.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
-    check_number("gamma", gamma, above=0.0)
+    check_domains(tau0=tau0, gamma=gamma)
     check_number("beta", beta, at_least=0.0)
     check_number("speed", speed, above=1.0)
+    given = float(tau0), float(gamma), float(beta), float(speed)
     try:
-        return _pulse(float(tau0), float(gamma), float(beta), float(speed))
+        pulse = SteadyPulse(*given, *_shape(*given))
     except (ArithmeticError, ValueError):
+        pulse = None
+    # Floats of Python overflow without a word.
+    if pulse is None or not all(
+        0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)
+    ):
         raise ValueError(
             f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}; allowed: numbers whose pulse can be"
             " computed"
-        ) from None
+        )
+    return pulse
 
 
 @np.errstate(over="raise", invalid="raise", divide="raise")
-def _pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
+def _shape(tau0: float, gamma: float, beta: float, speed: float) -> tuple[float, ...]:
+    """Width, slip, peak velocity, stress drop, growth and wavenumber."""
     stiffness = (speed - 1.0) * (speed + 1.0)
     if beta == 0.0:
         p, q = 0.0, float(np.sqrt(gamma / stiffness))
@@ -103,21 +109,7 @@ def _pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
     slip = tau0 / gamma * (1.0 + np.exp(-p * width))
     modulus = np.hypot(p, q)
     peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
-    # Floats of Python overflow without a word.
-    if not (0.0 < width < math.inf and 0.0 < slip < math.inf and 0.0 < peak < math.inf):
-        raise ArithmeticError
-    return SteadyPulse(
-        tau0=float(tau0),
-        gamma=float(gamma),
-        beta=float(beta),
-        speed=float(speed),
-        width=float(width),
-        slip=float(slip),
-        peak_velocity=float(peak),
-        stress_drop=float(gamma * slip),
-        growth=p,
-        wavenumber=q,
-    )
+    return float(width), float(slip), float(peak), float(gamma * slip), p, q
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
@@ -128,9 +120,8 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     tau0 : pre-stress, in (0, 1)
     gamma : elasticity ratio, > 0
 
-    Raises ValueError: outside the domain, naming the value and the range.
-
+    Raises ValueError: outside the domain.
     Source: section III A and appendix C of the paper.
     """
-    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_domains(tau0=tau0)
     return steady_pulse(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))

@@ -37,13 +37,8 @@ class Limit:
     reason: str
 
 
-@dataclass(frozen=True)
-class FrontEnd:
+class FrontEnd(Limit):
     """Where a front is when it stops, or at the end of the time asked for."""
-
-    x: float
-    time: float
-    reason: str
 
 
 class Rupture:
@@ -66,7 +61,6 @@ class Rupture:
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
     20000 panels. Of every method: if a position or a time is not a finite number (where arrays are taken, an array of
     them).
-
     Source: derived for this project; verified against the lattice, which tends to it at first order in dx.
     """
 
@@ -82,15 +76,9 @@ class Rupture:
         until = self.duration * (1.0 + BEYOND)
         self.stretches, self._unknown = spread(self.law, until)
         kinks = [0.0, *(piece.right for piece in self.law.pieces if np.isfinite(piece.right))]
+        rest = self.refinement, prestress.symmetric
         self._parts = [
-            Part(
-                stretch.curve(),
-                self.gamma,
-                until,
-                [*kinks, *stretch.joins],
-                self.refinement,
-                prestress.symmetric,
-            )
+            Part(stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], *rest)
             for stretch in self.stretches
         ]
 
@@ -107,13 +95,11 @@ class Rupture:
     def _front_end(self, part: Part, stretch: Stretch, side: float) -> FrontEnd:
         (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
         if reason != "duration" and time <= self.duration * (1.0 + SAME):
-            return FrontEnd(
-                float(x), float(min(time, self.duration)), "stops" if reason == "dead" else reason
-            )
+            reason = "stops" if reason == "dead" else reason
+            return FrontEnd(float(x), float(min(time, self.duration)), reason)
         edges = part.curve.edges[part.curve.edge_times <= self.duration]
-        return FrontEnd(
-            part.front_at(self.duration, edges[-1 if side > 0.0 else 0], side), self.duration, "duration"
-        )
+        x = part.front_at(self.duration, edges[-1 if side > 0.0 else 0], side)
+        return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
         """T(x): when the first front reaches x; NaN where none does until ``duration``."""
@@ -142,7 +128,7 @@ class Rupture:
 
     def _stick(self, x: np.ndarray) -> np.ndarray:
         """Stick times, NaN where not until a little beyond the end, whatever the horizon."""
-        positions, back = np.unique(self._side(x), return_inverse=True)
+        positions, back = np.unique(np.abs(x) if self.prestress.symmetric else x, return_inverse=True)
         out = np.full(positions.shape, np.nan)
         for part in self._parts:
             on = part.curve.covers(positions)
@@ -164,10 +150,8 @@ class Rupture:
     def first_stick(self) -> tuple[float, float] | None:
         """Time and position of the first sticking; None where nothing sticks until ``duration``."""
         found = [first for part in self._parts if (first := part.first_stick())]
-        times = [float(self._until_end(np.array(x), np.array(time))) for time, x in found]
-        return min(
-            ((time, x) for time, (_, x) in zip(times, found, strict=True) if np.isfinite(time)), default=None
-        )
+        known = [(float(self._until_end(np.array(x), np.array(time))), x) for time, x in found]
+        return min((first for first in known if np.isfinite(first[0])), default=None)
 
     @property
     def transition_time(self) -> float:
@@ -201,9 +185,8 @@ class Rupture:
             return float(np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)) - time
 
         trailing = front if late(front) <= 0.0 else root_between(late, x, front, xtol=1e-11)
-        return (
-            np.nan if self._beyond_horizon(np.array([trailing, front]), time).any() else abs(front - trailing)
-        )
+        beyond = self._beyond_horizon(np.array([trailing, front]), time).any()
+        return np.nan if beyond else abs(front - trailing)
 
     @cached_property
     def largest_velocity(self) -> float:
@@ -241,7 +224,7 @@ class Rupture:
         if np.any(time > self.duration * (1.0 + SAME)):
             raise ValueError(f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}")
         time = np.minimum(time, self.duration)
-        positions, column = np.unique(self._side(x), return_inverse=True)
+        positions, column = np.unique(np.abs(x) if self.prestress.symmetric else x, return_inverse=True)
         column = column.reshape(x.shape)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._parts:
@@ -263,12 +246,9 @@ class Rupture:
                     last[ended] = part.field(name, positions[ended], stick[ended])
                     out[name][stuck] = last[column[stuck]]
         if "strain" in out and self.prestress.symmetric:
-            out["strain"] = np.where(x < 0.0, -out["strain"], out["strain"])
+            out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         late = self._beyond_horizon(x, time)
         return {name: np.where(late, np.nan, values) for name, values in out.items()}
-
-    def _side(self, x: np.ndarray) -> np.ndarray:
-        return np.abs(x) if self.prestress.symmetric else x
 
     # Where it ends: at the duration, and beyond a horizon
 

@@ -17,9 +17,8 @@ from numpy.polynomial import legendre
 
 from ..model.prestress import Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
-from .kernel import riemann
 from .profile import analytic
-from .riemann import partial_weights
+from .riemann import partial_weights, riemann
 
 RESOLVED = 1e-11
 # The shortest fraction of a panel of entries.
@@ -31,7 +30,7 @@ LOOK = 1e-11
 
 
 class Advance(NamedTuple):
-    """The next panel of a slow front, and why it is the last one: see `advance`."""
+    """The next panel of a slow front, and why it is the last one."""
 
     panel: Panel | None
     stop: str | None
@@ -159,12 +158,9 @@ class _Chunk:
 
     def guess(self, k: int, start: float, entries: np.ndarray) -> np.ndarray:
         """Positions that go on as they would without leaf springs."""
-        panel, s = np.array([k]), np.array([start])
-        first, source, slope = (
-            float(self.curve.at("x", panel, s)[0]),
-            float(self.curve.at("source", panel, s)[0]),
-            float(self.curve.slope("x", panel, s)[0]),
-        )
+        at = np.array([k]), np.array([start])
+        first, source = (float(self.curve.at(name, *at)[0]) for name in ("x", "source"))
+        slope = float(self.curve.slope("x", *at)[0])
         at_entry, here = source / slope, float(self.tau(np.array(self.x0)))
         pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
         return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)

@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 
 from ..model.checks import check_choice, check_number
 from ..model.scene import RELEASES
-from .speed_solver import in_chunks, slowest
+from .front_law import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
 COUNT = 14

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import Curve, Panel
+from .curve import Curve, Panel, seen
 from .fronts import FrontLaw
 from .profile import nucleations
 from .slow_front import advance
@@ -19,27 +20,23 @@ UNKNOWN = {
 }
 
 
+SIDES = (-1.0, 1.0)
+
+
+@dataclass
 class Stretch:
-    """A connected part of the rupture and its two fronts, side -1 (left) and +1 (right).
+    """A connected part of the rupture and its two fronts, side -1 (left) and +1 (right)."""
 
-    Attributes
-    ----------
-    panels : from left to right
-    ends : position and time of the outermost known point, by side
-    stopped : why a front goes no further, by side: "dead" (it stops for good), "duration", "unknown" (what decides on
-        it comes from beyond this stretch), or None while it goes on
-    restarts : by side, where a front that was slow outran the waves again
-    joins : where fronts from different nucleation points met
-    limits : how far, seen going right, a front may go before it meets another nucleation point
-    """
-
-    def __init__(self, left: float, right: float) -> None:
-        self.panels: list[Panel] = []
-        self.ends = {-1.0: (left, 0.0), 1.0: (right, 0.0)}
-        self.stopped: dict[float, str | None] = {-1.0: None, 1.0: None}
-        self.restarts: dict[float, list[float]] = {-1.0: [], 1.0: []}
-        self.joins: list[float] = []
-        self.limits = {-1.0: np.inf, 1.0: np.inf}
+    # Position and time of the outermost known point, by side.
+    ends: dict[float, tuple[float, float]]
+    # How far, seen going right, a front may go before it meets another nucleation point.
+    limits: dict[float, float]
+    panels: list[Panel] = field(default_factory=list)
+    # Why a front goes no further: "dead" (it stops for good), "duration", "met", a key of UNKNOWN, or None.
+    stopped: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
+    # Where a front that was slow outran the waves again, and where fronts from different nucleation points met.
+    restarts: dict[float, list[float]] = field(default_factory=lambda: {-1.0: [], 1.0: []})
+    joins: list[float] = field(default_factory=list)
 
     def curve(self) -> Curve:
         """Its panels, as one curve."""
@@ -47,16 +44,13 @@ class Stretch:
 
     def add(self, side: float, panels: list[Panel], x: float, time: float) -> None:
         """Append panels made by a front seen going right, which ends at x and time so seen."""
-        if side < 0.0:
-            self.panels = [panel.mirrored() for panel in panels[::-1]] + self.panels
-        else:
-            self.panels = self.panels + panels
+        self.panels = seen(seen(self.panels, side) + panels, side)
         self.ends[side] = (side * x, time)
 
     def cut(self, side: float, x: float) -> None:
         """Take away what lies beyond x."""
         kept = []
-        for panel in self.panels if side > 0.0 else [panel.mirrored() for panel in self.panels[::-1]]:
+        for panel in seen(self.panels, side):
             left, right = panel.x_ends
             if right <= side * x:
                 kept.append(panel)
@@ -65,7 +59,7 @@ class Stretch:
                 if s > -1.0:
                     kept.append(panel.until(s, side * x))
         time = kept[-1].time_ends[1] if kept else 0.0
-        self.panels = kept if side > 0.0 else [panel.mirrored() for panel in kept[::-1]]
+        self.panels = seen(kept, side)
         self.ends[side] = (x, time)
         self.restarts[side] = [r for r in self.restarts[side] if side * r < side * x]
 
@@ -79,34 +73,26 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
     if not starts:
         raise ValueError("prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere")
     laws = {1.0: law, -1.0: law.mirrored()}
+    befores, afters = [-np.inf, *(right for _, right in starts)], [*(left for left, _ in starts[1:]), np.inf]
     stretches = []
-    for left, right in starts:
-        stretch = Stretch(left, right)
+    for (left, right), before, after in zip(starts, befores, afters, strict=False):
+        stretch = Stretch({-1.0: (left, 0.0), 1.0: (right, 0.0)}, {-1.0: -before, 1.0: after})
         if left < right:
-            panels, *_ = law.rightwards(left, 0.0, right, np.inf)
-            stretch.add(1.0, panels, right, 0.0)
-        stretches.append(stretch)
-    for stretch, (_, right), (left, _) in zip(
-        stretches, [(0.0, -np.inf), *starts], [*starts[1:], (np.inf, 0.0)], strict=False
-    ):
-        stretch.limits = {-1.0: -right, 1.0: left}
-        for side in (-1.0, 1.0):
+            stretch.add(1.0, law.rightwards(left, 0.0, right, np.inf)[0], right, 0.0)
+        for side in SIDES:
             _run(laws[side], stretch, side, until)
+        stretches.append(stretch)
     stretches = _joined(stretches)
     # The slow fronts, the earliest first: each follows from what the others did before.
     while True:
-        going = [
-            (s.ends[side][1], n, side)
-            for n, s in enumerate(stretches)
-            for side in (-1.0, 1.0)
-            if s.stopped[side] is None
-        ]
+        fronts = [(s.ends[side][1], n, side) for n, s in enumerate(stretches) for side in SIDES]
+        going = [front for front in fronts if stretches[front[1]].stopped[front[2]] is None]
         if not going:
             break
         _, n, side = min(going)
         _step(laws[side], stretches[n], side, until)
         stretches = _joined(stretches)
-    stops = [(s.ends[side], str(s.stopped[side])) for s in stretches for side in (-1.0, 1.0)]
+    stops = [(s.ends[side], str(s.stopped[side])) for s in stretches for side in SIDES]
     unknown = [(*end, UNKNOWN[reason]) for end, reason in stops if reason in UNKNOWN]
     return stretches, unknown + _overrun(stretches)
 
@@ -179,17 +165,17 @@ def _joined(stretches: list[Stretch]) -> list[Stretch]:
             out.append(right)
             continue
         x = root_between(lead, low, high, xtol=1e-14)
-        slow = abs(float(np.diff(first.arrival(np.array([x - 1e-6, x])))[0])) > 1e-6
-        slow = slow or abs(float(np.diff(second.arrival(np.array([x, x + 1e-6])))[0])) > 1e-6
+        rises = np.diff([first.arrival(np.array([x - 1e-6, x])), second.arrival(np.array([x, x + 1e-6]))])
+        slow = bool(np.any(np.abs(rises) > 1e-6))
         left.cut(1.0, x)
         right.cut(-1.0, x)
-        both = Stretch(left.ends[-1.0][0], right.ends[1.0][0])
-        both.panels = left.panels + right.panels
-        both.ends = {-1.0: left.ends[-1.0], 1.0: right.ends[1.0]}
-        both.stopped = {-1.0: left.stopped[-1.0], 1.0: right.stopped[1.0]}
-        both.joins = [*left.joins, x, *right.joins]
-        for side in (-1.0, 1.0):
-            both.restarts[side] = left.restarts[side] + right.restarts[side] + ([x] if slow else [])
-        both.limits = {-1.0: left.limits[-1.0], 1.0: right.limits[1.0]}
-        out[-1] = both
+        restart = [x] if slow else []
+        out[-1] = Stretch(
+            ends={-1.0: left.ends[-1.0], 1.0: right.ends[1.0]},
+            limits={-1.0: left.limits[-1.0], 1.0: right.limits[1.0]},
+            panels=left.panels + right.panels,
+            stopped={-1.0: left.stopped[-1.0], 1.0: right.stopped[1.0]},
+            restarts={side: left.restarts[side] + right.restarts[side] + restart for side in SIDES},
+            joins=[*left.joins, x, *right.joins],
+        )
     return out

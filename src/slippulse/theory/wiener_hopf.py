@@ -46,19 +46,15 @@ def log_prestress(
 ) -> np.ndarray:
     """ln tau_0 of steady fronts at speeds v = 1 + excess.
 
-    Parameters
-    ----------
-    excess : 1-d array, v - 1 in wave speeds; > 0, or >= 0 with springs; v >= sqrt(4 + springs)/pi
-    ratio : array of the same size, b = beta/dx >= 0
-    springs : g = gamma dx^2, >= 0
-    release : "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0
-
-    Source: module docstring. Both conditions hold with springs as without: ahead of the front a block has not
-    slipped, so its leaf spring pulls at nothing.
+    excess and ratio are 1-d; excess > 0, or >= 0 with springs g = gamma dx^2, and v >= sqrt(4 + g)/pi. The release is
+    "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0; both hold with springs as without: ahead of the
+    front a block has not slipped, so its leaf spring pulls at nothing.
     """
-    column = excess[:, None]
-    z, weight, bent, curved = nodes(float(np.min(_scale(excess, ratio, springs))))
-    f, origin = log_factor(z, bent, curved, column, ratio[:, None], springs)
+    # Below this size no zero or branch point comes near 0, where the contour starts.
+    nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
+    scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
+    z, weight, bent, curved = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)))
+    f, origin = log_factor(z, bent, curved, excess[:, None], ratio[:, None], springs)
     out = (0.5 - ANGLE / np.pi) * origin + (f @ (weight / z)).imag / np.pi
     if springs == 0.0:
         out += np.log(excess / (1.0 + excess))
@@ -122,14 +118,9 @@ def roots(iw: np.ndarray, ratio: np.ndarray, springs: float) -> tuple[np.ndarray
     return 0.5 * np.sqrt(iw - side) * np.sqrt(iw + side), r
 
 
-def nodes(scale: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The right half of the contour for integrands that are smooth below |z| = scale: z, weights dz, e^{iz} - 1 and
-    e^{iz} - 1 - iz."""
-    return _nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)))
-
-
 @lru_cache(maxsize=32)
-def _nodes(panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def nodes(panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The right half of the contour, its ray in so many panels: z, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
@@ -144,12 +135,6 @@ def _nodes(panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     half = 0.5 * np.diff(edges)[:, None]
     return (edges[:-1, None] + half * (1.0 + NODES)).ravel(), (half * WEIGHTS).ravel()
-
-
-def _scale(excess, ratio, springs: float):
-    """A size below which no zero or branch point comes near 0, where the contour starts."""
-    nearest = np.sqrt(springs) if springs > 0.0 else np.minimum(excess, np.inf)
-    return np.minimum(nearest, 1.0) / ((1.0 + ratio) * (1.0 + excess))
 
 
 # artanh h - h = h^3 P(h^2) for |h| < 0.1, and e^x - 1 - x = x^2 P(x) for |x| < 0.5.
