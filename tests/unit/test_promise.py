@@ -10,7 +10,7 @@ import pytest
 
 import slippulse as sp
 from slippulse.figures.shared.numbers import scene_numbers
-from slippulse.measure.promise import COVERED, NOT_COVERED, covers, judged, summary
+from slippulse.measure.promise import COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.predict.measured import measured_table
@@ -29,33 +29,49 @@ CRACK = {
 }  # fmt: skip
 
 
+# What is not promised under either boundary, by the beginning of its name, and why.
+NOT_COVERED = {
+    "front_intercept": "a small difference of large numbers",
+    "front_speed_error": "an error itself",
+    "late_front_speed": "two samples of a front, a spacing of samples apart",
+    "pulse": "a position with the lag of the whole path; under a stress boundary no pulse has a width of its own",
+    "trailing_edge": "a position at a stated time",
+    ("slip_time", "slip_length"): "its slope vanishes where slip hardly reaches the stated value",
+    ("slip_variation", "lattice_noise", "profile_change", "energy_change", "strain_left", "centre"): "near 0",
+    "sliding_at_once": "a count of blocks",
+    "largest_velocity": "near 0 if a change; under a displacement boundary a pulse may still be forming",
+    "first_stick": "under a stress boundary blocks that stick first may be anywhere",
+    "last_release": "the arrest never comes in the continuum",
+    "transition_longest_wait": "a wait between two blocks, which shrinks with the spacing",
+    "balance_distance": "computed from the pre-stress, no simulation",
+    "beyond": "a parameter",
+}
+
+
 @pytest.mark.parametrize(
-    ("run", "quantity", "covered"),
+    ("run", "changed", "quantity", "covered"),
     [
-        (PULSE, "front_speed_right", True),
-        (PULSE, "pulse_width", True),
-        (PULSE, "transition_time", True),
-        (PULSE, "pulse_acceleration", False),
-        (PULSE | {"run_flags": "unresolved_pulse"}, "front_speed_right", False),
-        (PULSE | {"pulse_state": "unsteady"}, "pulse_width", False),
-        (PULSE | {"pulse_width": math.nan}, "pulse_width", False),
-        (PULSE | {"left": -0.1}, "front_speed_left", False),
-        (PULSE | {"left": -0.1}, "front_speed_right", True),
-        (PULSE | {"beyond": 0.01}, "front_speed_right", False),
-        (CRACK, "transition_time", True),
-        (CRACK, "largest_velocity", True),
-        (CRACK, "front_speed_right", False),
-        (CRACK | {"transition_state": "stalled"}, "transition_time", False),
-        (CRACK | {"damping_ratio": 0.0}, "transition_time", False),
-        (CRACK | {"damping_ratio": 0.0}, "largest_velocity", True),
-        (CRACK | {"right": 0.3, "beyond": 0.3}, "largest_velocity", False),
+        (PULSE, {}, "front_speed_right", True),
+        (PULSE, {}, "pulse_width", True),
+        (PULSE, {}, "transition_time", True),
+        (PULSE, {}, "pulse_acceleration", False),
+        (PULSE, {"run_flags": "unresolved_pulse"}, "front_speed_right", False),
+        (PULSE, {"pulse_state": "unsteady"}, "pulse_width", False),
+        (PULSE, {"pulse_width": math.nan}, "pulse_width", False),
+        (PULSE, {"left": -0.1}, "front_speed_left", False),
+        (PULSE, {"left": -0.1}, "front_speed_right", True),
+        (PULSE, {"beyond": 0.01}, "front_speed_right", False),
+        (CRACK, {}, "transition_time", True),
+        (CRACK, {}, "largest_velocity", True),
+        (CRACK, {}, "front_speed_right", False),
+        (CRACK, {"transition_state": "stalled"}, "transition_time", False),
+        (CRACK, {"damping_ratio": 0.0}, "transition_time", False),
+        (CRACK, {"damping_ratio": 0.0}, "largest_velocity", True),
+        (CRACK, {"right": 0.3, "beyond": 0.3}, "largest_velocity", False),
     ],
 )
-def test_what_is_covered(run, quantity, covered):
-    assert covers(run, quantity, SHARE) is covered
-
-
-def test_a_share_nearer_the_end_is_not_covered():
+def test_what_is_covered(run, changed, quantity, covered):
+    assert covers(run | changed, quantity, SHARE) is covered
     assert not covers(CRACK, "transition_time", 0.99)
 
 
@@ -78,19 +94,21 @@ def tables(project):
     return out
 
 
-def test_every_measured_number_is_covered_or_has_a_reason(tables):
-    reasons = tuple(NOT_COVERED)
+@pytest.fixture(scope="module")
+def study(tables) -> pd.DataFrame:
+    return grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
+
+
+def test_every_measured_number_is_covered_or_has_a_reason(study):
+    reasons = tuple(np.hstack([*NOT_COVERED]))
     for boundary, covered in COVERED.items():
-        study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
-        study = study[study["boundary"] == boundary]
-        measured = set(study.loc[study["value"].notna(), "quantity"])
+        rows = study[study["boundary"] == boundary]
+        measured = set(rows.loc[rows["value"].notna(), "quantity"])
         assert set(covered) <= measured
-        for name in measured - set(covered):
-            assert name.startswith(reasons), name
+        assert [name for name in measured - set(covered) if not name.startswith(reasons)] == []
 
 
-def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables):
-    study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
+def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study):
     generous, strict = (judged(study, tables[0], promise, SHARE) for promise in (10.0, 1e-9))
     assert set(generous["kept"]) == {"true", ""} and set(strict["kept"]) == {"false", ""}
     pd.testing.assert_series_equal(generous["kept"] == "true", strict["kept"] == "false")
@@ -102,7 +120,10 @@ def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables):
     middle = float(relative.median())
     between = judged(study, tables[0], middle, SHARE)["kept"][relative.index]
     assert list(between == "true") == list(relative <= middle)
-    assert {"true", "false"} == set(between)
+    # A spacing of its own promises nothing.
+    own = judged(study, tables[0], math.nan, SHARE)
+    assert set(own["kept"]) == {""} and own["promised"].isna().all()
+    assert summary(own, math.nan) == "its spacing is its own and promises nothing"
 
 
 def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):
@@ -113,14 +134,7 @@ def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):
     assert "missed by 0 (front_speed_right inf)" in summary(study, 10.0)
 
 
-def test_a_spacing_of_its_own_promises_nothing(tables):
-    study = judged(grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS), tables[0], math.nan, SHARE)
-    assert set(study["kept"]) == {""} and study["promised"].isna().all()
-    assert summary(study, math.nan) == "its spacing is its own and promises nothing"
-
-
-def test_the_numbers_of_a_scene_carry_the_verdict(tables):
-    study = grid_tables(tuple(tables), (2.0, 4.0), PARAMETERS)
+def test_the_numbers_of_a_scene_carry_the_verdict(tables, study):
     plain, with_promise = (
         scene_numbers(tables[0].iloc[0], part[part["point"] == 0])
         for part in (study, judged(study, tables[0], 10.0, SHARE))

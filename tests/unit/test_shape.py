@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from slippulse.measure.pulses import LeadingPulse
-from slippulse.measure.shape import FAR, far_field, half_width, lattice_noise, sliding_at_once
+from slippulse.measure.shape import far_field, half_width, lattice_noise, sliding_at_once
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 
@@ -47,14 +47,11 @@ def test_waves_of_the_lattice_count_and_an_even_pulse_has_none():
 def test_blocks_that_slide_at_once():
     x = np.arange(-6.0, 7.0)
     release = np.abs(x)
-    # Each slides for 1.5; the last two to the right are still sliding.
-    stick = np.where(x > 4.0, np.nan, release + 1.5)
+    # Each slides for 1.5; the last three to the right are still sliding.
+    stick = np.where(x > 3.0, np.nan, release + 1.5)
     run = xr.Dataset(
         {"release_time": ("x", release), "stick_time": ("x", stick)}, {"x": x}, {"end_time": 6.5}
     )
-    assert sliding_at_once(run, "left") == 2.0
-    stick = np.where(x > 3.0, np.nan, stick)
-    run["stick_time"] = "x", stick
     assert sliding_at_once(run) == 3.0
 
 
@@ -76,29 +73,25 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
     )  # fmt: skip
 
 
-def test_a_pulse_that_keeps_its_shape_changes_nothing():
-    found = far_field(moving(1.0))
-    assert (
-        found["profile_change"] < 1e-3 and abs(found["energy_change"]) < 1e-3 and found["strain_left"] < 1e-3
-    )
-
-
 @pytest.mark.parametrize(
-    ("run", "quantity", "value"),
+    ("run", "expected"),
     [
-        (moving(1.0, growth=0.01), "energy_change", (1.3 / 1.2) ** 2 - 1.0),
-        (moving(1.0, growth=0.01), "profile_change", 0.1 / 1.2),
-        (moving(1.0, left=0.1), "strain_left", 0.1 / 1.1),
+        # One that keeps its shape changes nothing.
+        (moving(1.0), {"profile_change": 0.0, "energy_change": 0.0, "strain_left": 0.0}),
+        (
+            moving(1.0, growth=0.01),
+            {"energy_change": (1.3 / 1.2) ** 2 - 1.0, "profile_change": 0.1 / 1.2},
+        ),
+        (moving(1.0, left=0.1), {"strain_left": 0.1 / 1.1}),
+        # Nothing is said of a pulse that never comes far.
+        (moving(0.0), {"profile_change": np.nan}),
     ],
 )
-def test_what_changes_is_measured(run, quantity, value):
-    assert far_field(run)[quantity] == pytest.approx(value, rel=0.03)
+def test_what_changes_is_measured(run, expected):
+    found = far_field(run)
+    for quantity, value in expected.items():
+        assert found[quantity] == pytest.approx(value, rel=0.03, abs=1e-3, nan_ok=True)
 
 
 def test_a_slower_pulse_does_not_keep_its_profile_at_the_wave_speed():
     assert far_field(moving(0.95))["profile_change"] > 0.2
-
-
-def test_nothing_is_said_of_a_pulse_that_never_comes_far():
-    assert np.isnan(far_field(moving(0.0))["profile_change"])
-    assert FAR > 4.0

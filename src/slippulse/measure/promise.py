@@ -18,32 +18,6 @@ COVERED = {
         "front_speed_left", "front_speed_right", "transition_time", "transition_length", "largest_velocity",
     ),
 }  # fmt: skip
-# Those that it does not, by the beginning of their name, and why.
-NOT_COVERED = {
-    "front_intercept": "a small difference of large numbers",
-    "front_speed_error": "an error itself",
-    "late_front_speed": "two samples of a front, a spacing of samples apart",
-    "pulse": "under a stress boundary no pulse has a width of its own; its peak is largest_velocity",
-    "pulse_front": "a position at the end, with the lag of the whole path",
-    "pulse_acceleration": "the undamped lattice rings behind the front",
-    "trailing_edge": "a position at a stated time",
-    "slip_time": "its slope vanishes where slip hardly reaches the stated value",
-    "slip_length": "its slope vanishes where slip hardly reaches the stated value",
-    "slip_variation": "near 0",
-    "lattice_noise": "near 0",
-    "sliding_at_once": "a count of blocks",
-    "profile_change": "near 0",
-    "energy_change": "near 0",
-    "strain_left": "near 0",
-    "largest_velocity": "under a displacement boundary a pulse may still be forming; of a steady one it is the peak",
-    "largest_velocity_change": "near 0",
-    "centre_velocity_share": "near 0",
-    "first_stick": "under a stress boundary blocks that stick first may be anywhere",
-    "last_release": "the arrest never comes in the continuum",
-    "transition_longest_wait": "a wait between two blocks, which shrinks with the spacing",
-    "balance_distance": "computed from the pre-stress, no simulation",
-    "beyond": "a parameter",
-}
 # Below this pre-stress ahead a front hardly outruns the waves and lags by an order of 2/3 to 1 in the spacing.
 LOWEST_LEVEL = 0.05
 # With less damping the ringing of the lattice decides how long the left front stands still.
@@ -94,10 +68,7 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction
 
     A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept its promise.
     """
-    runs = measured.assign(
-        run_flags=measured["run_flags"].astype(object).where(measured["run_flags"].notna(), "")
-    )
-    rows = runs.to_dict("records")
+    rows = measured.assign(run_flags=measured["run_flags"].astype(object).fillna("")).to_dict("records")
     covered = [
         math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction)
         for row in study.itertuples()

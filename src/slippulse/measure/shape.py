@@ -15,12 +15,10 @@ FAR = 6.0
 NAN = float("nan")
 
 
-def half_width(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> float:
-    """Breadth of the slip velocity at half its peak, on one side; NaN where it does not fall to half on both sides."""
-    fields = comoving(run, pulse, side)
+def half_width(run: xr.Dataset, pulse: LeadingPulse) -> float:
+    """Breadth of the slip velocity at half its peak, on the right; NaN where it does not fall to half on both sides."""
+    fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
-    if velocity.size < 3:
-        return NAN
     top, half = int(np.argmax(velocity)), 0.5 * float(np.max(velocity))
     below = velocity < half
     behind, ahead = np.flatnonzero(below[:top]), np.flatnonzero(below[top:])
@@ -45,11 +43,10 @@ def lattice_noise(run: xr.Dataset) -> float:
     return float(np.sum(short**2) / np.sum(moving**2))
 
 
-def sliding_at_once(run: xr.Dataset, side: str = "right") -> float:
-    """Largest number of blocks on one side that slide at once, over the second half of a run."""
+def sliding_at_once(run: xr.Dataset) -> float:
+    """Largest number of blocks on the right that slide at once, over the second half of a run."""
     start = 0.5 * run.attrs["end_time"]
-    sign = 1.0 if side == "right" else -1.0
-    chosen = (sign * run["x"].values > 0.0) & np.isfinite(run["release_time"].values)
+    chosen = (run["x"].values > 0.0) & np.isfinite(run["release_time"].values)
     release, stick = run["release_time"].values[chosen], run["stick_time"].values[chosen]
     # The number rises at a release only, so that it is largest right after one, or at the start. NaN is sorted last.
     times = np.append(start, release[release > start])

@@ -24,23 +24,22 @@ def transition_displacement(run: xr.Dataset) -> dict[str, float]:
     reaches it.
     """
     time = run.attrs["first_stick_time"]
-    length = NAN
-    if np.isfinite(time):
-        length = float(position_at(run, time, "right") + position_at(run, time, "left"))
     out = {
         "transition_time": time,
-        "transition_length": length,
+        "transition_length": between_fronts(run, time),
         "first_stick_position": run.attrs["first_stick_position"],
     }
     for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
-        out[f"slip_time_{name}"] = reached
-        out[f"slip_length_{name}"] = (
-            float(position_at(run, reached, "right") + position_at(run, reached, "left"))
-            if np.isfinite(reached)
-            else NAN
-        )
+        out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
     return out
+
+
+def between_fronts(run: xr.Dataset, time: float) -> float:
+    """Distance between both fronts at a time; NaN for NaN."""
+    return (
+        float(position_at(run, time, "right") + position_at(run, time, "left")) if np.isfinite(time) else NAN
+    )
 
 
 def slip_time(run: xr.Dataset, slip: float) -> float:
@@ -71,21 +70,16 @@ def transition_stress(run: xr.Dataset, fraction: float) -> dict[str, float | str
     times, distances = path(run, "left")
     arrest = float(np.max(times)) if times.size else NAN
     waited = longest_wait(run, fraction * distance, "left") / time
+    state = "not reached" if np.isnan(waited) else "stalled" if waited > STALL else "resolved"
     return {
         "transition_time": time,
         "transition_longest_wait": waited,
-        "transition_state": "not reached"
-        if np.isnan(waited)
-        else "stalled"
-        if waited > STALL
-        else "resolved",
+        "transition_state": state,
         "transition_length": fraction * distance + float(position_at(run, time, "right"))
         if np.isfinite(time)
         else NAN,
         "balance_distance": distance,
         "last_release_time": arrest,
         "last_release_distance": float(distances[-1]) if distances.size else NAN,
-        "last_release_length": (
-            float(distances[-1] + position_at(run, arrest, "right")) if distances.size else NAN
-        ),
+        "last_release_length": between_fronts(run, arrest),
     }

@@ -50,13 +50,13 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def pulse_state(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> str:
+def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
     """Whether the leading pulse is the steady one, so that the numbers of steady pulses apply to it.
 
     Parameters
     ----------
     run : one run with fronts and fields
-    pulse : its leading pulse on ``side``
+    pulse : its leading pulse
 
     Returns
     -------
@@ -68,9 +68,8 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> st
     """
     if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
-    _, distance = path(run, side)
-    sign = 1.0 if side == "right" else -1.0
-    tau = float(run["prestress"].values[np.argmin(np.abs(sign * run["x"].values - distance[-1]))])
+    _, distance = path(run)
+    tau = float(run["prestress"].values[np.argmin(np.abs(run["x"].values - distance[-1]))])
     if not 0.0 < tau < 1.0:
         return "none"
     if pulse.speed <= 1.0:
@@ -82,7 +81,7 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse, side: str = "right") -> st
         return "thick_front"
     allowed = CHANGE * steady.width + layer + WIDTH_BLOCKS * dx
     # A pulse too young to have left slip behind is judged by its width alone.
-    varied = slip_variation(run, pulse, side)
+    varied = slip_variation(run, pulse)
     changes = abs(pulse.width - steady.width) > allowed or varied > CHANGE
     return "unsteady" if changes else "steady"
 
