@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import lru_cache
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..model.prestress import Prestress
 from ..model.scene import scene_of
 from ..theory.rupture import Rupture
 
@@ -22,12 +20,7 @@ LAYER = 0.4
 def exact_rupture(run: xr.Dataset | Mapping) -> Rupture:
     """The exact solution of a run's scene, as `scene_of` takes it."""
     scene = scene_of(run)
-    return _rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
-
-
-@lru_cache(maxsize=64)
-def _rupture(prestress: Prestress, gamma: float, ratio: float, release: str, duration: float) -> Rupture:
-    return Rupture(prestress, gamma, ratio, release, duration)
+    return Rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
 
 
 def compared_positions(rupture: Rupture) -> np.ndarray:
@@ -39,51 +32,42 @@ def compared_positions(rupture: Rupture) -> np.ndarray:
 
 
 def differences(run: xr.Dataset, rupture: Rupture) -> pd.DataFrame:
-    """How far a run is from the exact solution, in the mean.
+    """How far a run is from the exact solution of its scene, in the mean.
 
     Parameters
     ----------
     run : with fronts, fields and samples
-    rupture : the exact solution of its scene
+    rupture : the exact solution
 
     Returns
     -------
     DataFrame of quantity (release, stick, slip, velocity), difference (mean of |run - exact| over the mean of |exact|)
     and places (how many points); a quantity that the scene does not have is left out
     """
+    x, blocks, duration = compared_positions(rupture), run["x"].values, rupture.duration
+    stick = rupture.stick_time(x)
+    exact = {
+        "release": rupture.release_time(x),
+        "stick": np.where(stick > duration - LAYER, np.nan, stick),
+        "slip": rupture.slip(x, duration),
+    }
+    names = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
+    pairs = {name: (np.interp(x, blocks, run[names[name]].values), exact[name]) for name in names}
     rows = []
-    for quantity, found, exact in (*_edges(run, rupture), _velocity(run, rupture)):
-        known = np.isfinite(found) & np.isfinite(exact)
-        if known.any():
-            found, exact = found[known], exact[known]
-            mean = float(np.mean(np.abs(found - exact)) / np.mean(np.abs(exact)))
-            rows.append({"quantity": quantity, "difference": mean, "places": int(known.sum())})
+    for quantity, (found, known) in (pairs | {"velocity": _velocity(run, rupture, x[[0, -1]])}).items():
+        both = np.isfinite(found) & np.isfinite(known)
+        if both.any():
+            mean = float(np.mean(np.abs(found[both] - known[both])) / np.mean(np.abs(known[both])))
+            rows.append({"quantity": quantity, "difference": mean, "places": int(both.sum())})
     return pd.DataFrame(rows)
 
 
-def _edges(run: xr.Dataset, rupture: Rupture) -> list[tuple[str, np.ndarray, np.ndarray]]:
-    """Release, stick and slip at the end, at fixed positions."""
-    x = compared_positions(rupture)
-    blocks, duration = run["x"].values, rupture.duration
-    exact = rupture.stick_time(x)
-    exact[exact > duration - LAYER] = np.nan
-    return [
-        ("release", np.interp(x, blocks, run["release_time"].values), rupture.release_time(x)),
-        ("stick", np.interp(x, blocks, run["stick_time"].values), exact),
-        ("slip", np.interp(x, blocks, run["slip"].values), rupture.slip(x, duration)),
-    ]
-
-
-def _velocity(run: xr.Dataset, rupture: Rupture) -> tuple[str, np.ndarray, np.ndarray]:
+def _velocity(run: xr.Dataset, rupture: Rupture, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Slip velocity at the sampled points that slide, away from both edges."""
     x, times = run["sample_position"].values, run["sample_time"].values
-    inside = np.flatnonzero((x >= compared_positions(rupture)[0]) & (x <= compared_positions(rupture)[-1]))
+    inside = np.flatnonzero((x >= ends[0]) & (x <= ends[1]))
     x = x[inside]
     release, stick = rupture.release_time(x), rupture.stick_time(x)
     stick = np.where(np.isfinite(stick), stick, np.inf)
-    sliding = (times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER)
-    found = np.where(sliding, run["sample_velocity"].values[:, inside], np.nan)
-    row, column = np.nonzero(sliding)
-    exact = np.full(found.shape, np.nan)
-    exact[row, column] = rupture.slip_velocity(x[column], times[row])
-    return "velocity", found.ravel(), exact.ravel()
+    row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
+    return run["sample_velocity"].values[row, inside[column]], rupture.slip_velocity(x[column], times[row])

@@ -23,17 +23,15 @@ def final_regime(
     -------
     one of REGIMES; UNDECIDED where the exact solution does not say
 
-    With leaf springs a front into a negative level stops at a finite depth (`slow_front`), one into a positive level
-    outruns the waves for good, the nucleation point sticks (`trailing`), and a pulse is steady once it has forgotten
-    its past, which takes a finite distance. Into a level 0 a pulse gets narrower like 1/t and dies away slowly; of a
-    level 0 with no negative one opposite nothing is said.
+    With leaf springs a front into a negative level stops, one into a positive level outruns the waves for good, the
+    nucleation point sticks (`trailing`), and a pulse forgets its past in a finite distance. Into a level 0 it gets
+    narrower like 1/t and dies away; of a level 0 with no negative one opposite nothing is said.
 
     Without them du/dt at a point is half the integral of tau between the two entry points of its characteristics. With
     both levels >= 0 it never falls: a crack. With both < 0 the integral over all that slipped vanishes at a finite
-    size: arrest. With a negative level -n on one side and p >= 0 on the other the front into -n follows Int tau = 0
-    (module `arrest`), so that x = (p/n) e behind the other front at e. For large times du/dt at the nucleation point,
-    over its largest value, is then r/(1 + 1/v + 2 r), r = p/n, with the front speed v into p: a crack where that is
-    ``still`` or more, a growing pulse where it is less, and a steady pulse for p = 0.
+    size: arrest. With -n on one side and p >= 0 on the other the front into -n follows Int tau = 0 (`arrest`), so that
+    x = (p/n) e behind the other front at e. For large times du/dt at the nucleation point, over its largest value, is
+    then r/(1 + 1/v + 2 r), r = p/n, with the front speed v into p.
 
     Source: sections 5 and 6 of the theory of this project (`theory.rupture`), which the tests follow to these ends.
     """
@@ -58,15 +56,6 @@ def final_regime(
 
 
 def growth_beyond(level: float) -> str:
-    """What a pulse of a stress boundary does in a level: the velocity on its characteristics grows by half of Int tau.
-
-    Parameters
-    ----------
-    level : of the pre-stress that it runs into
-
-    Returns
-    -------
-    "pulse, one-way, growing", "... steady" or "... decaying"
-    """
+    """Regime of a pulse of a stress boundary in a level: the velocity on its characteristics grows by half Int tau."""
     change = "growing" if level > 0.0 else "decaying" if level < 0.0 else "steady"
     return f"pulse, one-way, {change}"

@@ -56,7 +56,6 @@ def predictions(scenes: Sequence[Scene], fraction: float, still: float) -> pd.Da
 
 
 def _level(scene: Scene, side: str) -> float:
-    """Far from nucleation."""
     return float(scene.prestress.level(np.asarray(SIDES[side])))
 
 
@@ -106,13 +105,12 @@ def _pulse(scene: Scene, speed: float) -> dict[str, float]:
         paper = _known(lambda: paper_pulse(level, scene.gamma))
         if speed > 1.0:
             exact = _known(lambda: steady_pulse(level, scene.gamma, scene.beta, speed))
-    return _sizes("paper", paper) | _sizes("exact", exact)
-
-
-def _sizes(kind: str, pulse: SteadyPulse | None) -> dict[str, float]:
-    sizes = (pulse.width, pulse.slip, pulse.peak_velocity, _acceleration(pulse)) if pulse else (NAN,) * 4
-    names = ("width", "slip", "peak_velocity", "acceleration")
-    return {f"{kind}_pulse_{name}": size for name, size in zip(names, sizes, strict=True)}
+    out = {}
+    for kind, pulse in (("paper", paper), ("exact", exact)):
+        for name in ("width", "slip", "peak_velocity"):
+            out[f"{kind}_pulse_{name}"] = getattr(pulse, name) if pulse else NAN
+        out[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
+    return out
 
 
 def _acceleration(pulse: SteadyPulse) -> float:
