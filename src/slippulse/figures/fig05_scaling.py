@@ -45,7 +45,7 @@ def plot(table: pd.DataFrame) -> Figure:
         above.set_xlabel("predicted $L$, $T$")
         narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
         narrow = narrow[narrow["left"].isin(chosen(runs["left"], 3))]
-        prestress_inset(above, (0.62, 0.16, 0.36, 0.26), narrow, list(colours(narrow, "left")), 6.0)
+        prestress_inset(above, (0.14, 0.68, 0.3, 0.2), narrow, list(colours(narrow, "left")), 6.0)
         below.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
         other = OTHER[boundary][0]
         some = runs[runs[other].isin(chosen(runs[other], 3))]

@@ -28,8 +28,9 @@ SHOWN, BEYOND = 18, 2
 BLOCK, HEIGHT, PLATE = 0.5, 0.44, 1.12
 # Largest drawn displacement as a fraction of a spacing, and shortest spring as a fraction of its length.
 FARTHEST, SHORTEST = 0.85, 0.35
-# Inches of a spacing's height, and of the strip with the pre-stress.
-UNIT, STRIP = 0.36, 0.42
+# Inches of the width, which is narrow for the text to be read in one column, of a spacing's height, and of the strip
+# with the pre-stress.
+WIDTH, UNIT, STRIP = 5.4, 0.34, 0.42
 # Light, middle and dark, so that grey tells them apart too.
 COLOURS = {"at rest": "#e2e8ee", "sliding": ORANGE, "stuck after sliding": "#00402f"}
 TITLES = {
@@ -108,7 +109,7 @@ def plot(table: pd.DataFrame) -> Figure:
     counts = table.groupby("panel")["row"].nunique()
     heights = [UNIT * (PITCH[name] * counts[name] + 0.12) for name in PITCH]
     ratios = [height for rows in heights for height in (STRIP, rows)]
-    figure = new_figure(PAGE, sum(ratios) + 1.75)
+    figure = new_figure(WIDTH, sum(ratios) + 1.75)
     grid = figure.add_gridspec(4, 1, height_ratios=ratios)
     for index, (name, letter) in enumerate(zip(PITCH, "ab", strict=True)):
         rows = table[table["panel"] == name]
