@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .shared.sketch import arrow, double_arrow, label
-from .style import BLACK, BLUE, COLUMN, ORANGE, Look, new_figure, panel_letter
+from .style import BLACK, BLUE, COLUMN, ORANGE, Look, new_panels
 
 NEEDS = {"data": ()}
 
@@ -39,31 +39,26 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Source: section II and appendix A of the paper.
     """
-    rows = [
-        ("stress", 0.0, 1.0),
-        ("stress", 1.0, 1.0),
-        ("displacement", 0.0, 1.0),
-        ("displacement", 1.0, 0.0),
-    ]
-    found = pd.DataFrame(rows, columns=["panel", *LENGTHS[:2]]).assign(strip_width=settings["strip_width"])
+    panels = ["stress", "stress", "displacement", "displacement"]
+    found = pd.DataFrame({"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]})
     found["displacement"] *= DISPLACEMENT
+    found["strip_width"] = settings["strip_width"]
     found[LENGTHS] *= settings["thickness"]
     return found
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """Two panels, one a boundary condition."""
-    figure = new_figure(COLUMN, 3.4)
+    figure, panels = new_panels(COLUMN, 3.4, 2, 1)
     # Drawn in thicknesses.
     table = table.assign(**(table[LENGTHS] / table["y"].max()))
-    for axes, panel, letter in zip(figure.subplots(2, 1), TITLES, "ab", strict=True):
+    for axes, panel in zip(panels, TITLES, strict=True):
         draw_layer(axes, table["strip_width"].iloc[0])
         (draw_stress if panel == "stress" else draw_held_top)(axes)
         rows = table[table["panel"] == panel]
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
         axes.plot(REST + rows["displacement"], rows["y"], color=BLUE, linewidth=1.5, gid="displacement")
         axes.set_title(TITLES[panel], fontsize=9)
-        panel_letter(axes, letter)
         axes.set(xlim=(-0.65, LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()
     return figure

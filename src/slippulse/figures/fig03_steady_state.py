@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.pulses import SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
-from .style import COLUMN, legend_below, new_figure, panel_letter
+from .style import COLUMN, legend_below, new_panels
 
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
@@ -28,17 +28,14 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Left: displacement boundary, on axes where undamped pulses are one. Right: stress boundary."""
-    figure = new_figure(COLUMN, 3.2)
-    panels = figure.subplots(1, 2)
+    figure, panels = new_panels(COLUMN, 3.2, 1, 2)
     left, right = (table[table["panel"] == name] for name in ("displacement", "stress"))
-    for axes, rows, title, widths, letter in zip(
-        panels, (left, right), (r"$\Gamma = 1$", r"$\Gamma = 0$"), (6.0, 5.0), "ab", strict=True
-    ):
+    titles = (r"$\Gamma = 1$", r"$\Gamma = 0$")
+    for axes, rows, title, widths in zip(panels, (left, right), titles, (6.0, 5.0), strict=True):
         draw_pulses(axes, rows, "slip_velocity")
         draw_prestress(axes, rows, widths)
         axes.set_title(title, fontsize=9)
         axes.set_ylim(-0.05, 1.75)
-        panel_letter(axes, letter)
     panels[0].set_ylabel("slip velocity / largest")
     panels[0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {left['gamma'].max():g}$)", fontsize=8)
     panels[1].set_xlabel(r"$\chi/W$")

@@ -104,13 +104,7 @@ def draw_transition(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> None:
     # A run that is too short for its transition has none to draw.
     if np.isfinite(roles["measured"]["time"]).all():
         draw_arrows(axes, roles["measured"].set_index("series"), roles["front"]["position"].min())
-    look = {
-        "linestyle": "none",
-        "markeredgewidth": 0.8,
-        "markeredgecolor": BLACK,
-        "markersize": 4.5,
-        "zorder": 5.0,
-    }
+    look = {"markeredgewidth": 0.8, "markeredgecolor": BLACK, "markersize": 4.5, "zorder": 5.0}
     paper = roles["paper"]
     axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **look)
     if "last_release" in roles:

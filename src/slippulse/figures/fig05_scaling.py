@@ -17,7 +17,7 @@ from .shared.scaling import (
     draw_ratio,
     transition_rows,
 )
-from .style import BLACK, COLUMN, GREY, entry, legend_below, new_figure, panel_letter, prestress_inset
+from .style import BLACK, COLUMN, GREY, entry, legend_below, new_panels, prestress_inset
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
@@ -34,11 +34,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """A column a boundary: the collapse, and below it measured over predicted against the level."""
-    figure = new_figure(COLUMN, 5.0)
-    grid = figure.subplots(2, 2, height_ratios=(1.2, 1.0))
-    for (above, below), (boundary, title), letters in zip(
-        grid.T, BOUNDARIES.items(), ("ac", "bd"), strict=True
-    ):
+    figure, panels = new_panels(COLUMN, 5.0, 2, 2, height_ratios=(1.2, 1.0))
+    for above, below, (boundary, title) in zip(panels, panels[2:], BOUNDARIES.items(), strict=False):
         runs = table[table["boundary"] == boundary]
         draw_collapse(above, runs)
         above.set_title(title, fontsize=9)
@@ -55,15 +52,11 @@ def plot(table: pd.DataFrame) -> Figure:
         bars = {"location": "bottom", "aspect": 25, "pad": 0.02}
         colour_bar(figure, (above, below), boundary, "left", **bars)
         colour_bar(figure, (above, below), boundary, other, **bars)
-        for axes, letter in zip((above, below), letters, strict=True):
-            panel_letter(axes, letter)
-    grid[0, 0].set_ylabel("measured $L$, $T$")
-    grid[1, 0].set_ylabel("measured over predicted")
+    panels[0].set_ylabel("measured $L$, $T$")
+    panels[2].set_ylabel("measured over predicted")
     marks = [("length", "o"), ("time", "^"), ("literal definition", "x")]
     handles = [entry(label, marker=marker, color=GREY) for label, marker in marks]
-    handles += [
-        entry(label, color=GREY, linewidth=0.8, linestyle=style)
-        for label, style in (("exact length", "-"), ("exact time", "--"))
-    ]
+    for label, style in (("exact length", "-"), ("exact time", "--")):
+        handles.append(entry(label, color=GREY, linewidth=0.8, linestyle=style))
     legend_below(figure, [*handles, entry("equality", color=BLACK, linewidth=0.8)], 3)
     return figure

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .shared.sketch import arrow, double_arrow, label
-from .style import BLACK, BLUE, COLUMN, CYCLE, GREY, ORANGE, new_figure, panel_letter
+from .style import BLACK, BLUE, COLUMN, CYCLE, GREY, ORANGE, new_panels
 
 NEEDS = {"studies": ["damage_zone"]}
 
@@ -20,21 +20,15 @@ MUTED = "0.25"
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The study of the same name: displacements of the sketch (roles before, after) and stress drops (role curve).
-
-    Source: section IV C 2 of the paper.
-    """
+    """The study of the same name: displacements of the sketch (roles before, after) and stress drops (role curve)."""
     return tables["damage_zone"]
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """Above: the sketch. Below: stress drop against G/G_r."""
-    figure = new_figure(COLUMN, 4.6)
-    above, below = figure.subplots(2, 1, height_ratios=[1.15, 1.0])
+    figure, (above, below) = new_panels(COLUMN, 4.6, 2, 1, height_ratios=[1.15, 1.0])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])
     draw_stress_drop(below, table[table["role"] == "curve"])
-    panel_letter(above, "a")
-    panel_letter(below, "b")
     return figure
 
 

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.pulses import FIELDS, SIMULATION, draw_pulses, handles, pulse_rows
-from .style import PAGE, legend_below, new_figure, panel_letter
+from .style import PAGE, legend_below, new_panels
 
 NEEDS = {
     "data": ["steady_displacement"],
@@ -26,12 +26,10 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Slip, slip velocity and acceleration in units of the paper's pulse."""
-    figure = new_figure(PAGE, 3.0)
-    panels = figure.subplots(1, 3)
-    for axes, (field, label), letter in zip(panels, FIELDS.items(), "abc", strict=True):
+    figure, panels = new_panels(PAGE, 3.0, 1, 3)
+    for axes, (field, label) in zip(panels, FIELDS.items(), strict=True):
         draw_pulses(axes, table, field)
         axes.set(xlabel=r"$\chi$ / paper's width", ylabel=f"{label} / paper's largest")
-        panel_letter(axes, letter)
     # The undamped lattice rings beyond the theory at the front.
     panels[2].set_ylim(-1.5, 1.5)
     panels[1].set_title(rf"$\Gamma = 1$, $\gamma = {table['gamma'].max():g}$", fontsize=9)

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.pulses import FIELDS, SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
-from .style import PAGE, legend_below, new_figure, panel_letter
+from .style import PAGE, legend_below, new_panels
 
 NEEDS = {
     "data": ["steady_stress"],
@@ -26,12 +26,10 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Slip with the pre-stress as inset, slip velocity, acceleration near the front."""
-    figure = new_figure(PAGE, 3.0)
-    panels = figure.subplots(1, 3)
-    for axes, (field, label), letter in zip(panels, FIELDS.items(), "abc", strict=True):
+    figure, panels = new_panels(PAGE, 3.0, 1, 3)
+    for axes, (field, label) in zip(panels, FIELDS.items(), strict=True):
         draw_pulses(axes, table, field)
         axes.set(xlabel=r"$\chi/W$", ylabel=f"{label} / scale")
-        panel_letter(axes, letter)
     panels[0].set_ylim(-0.04, 1.6)
     draw_prestress(panels[0], table, 5.0)
     panels[1].set_title(rf"$\Gamma = 0$, $b = {table['damping_ratio'].max():g}$", fontsize=9)

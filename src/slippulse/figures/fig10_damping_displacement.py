@@ -8,7 +8,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.scaling import damping_figure, transition_rows
-from .style import PAGE, new_figure
 
 NEEDS = {"measured": ["damping_displacement"], "predicted": ["damping_displacement"]}
 
@@ -20,6 +19,4 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Measured over predicted against the damping ratio: L_trans left, T_trans right."""
-    figure = new_figure(PAGE, 2.8)
-    damping_figure(figure, table)
-    return figure
+    return damping_figure(table)

@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.numbers import main_numbers, with_symbols
-from .style import CYCLE, GREY, PAGE, legend_below, new_figure, panel_letter
+from .style import CYCLE, GREY, PAGE, Look, legend_below, new_panels
 
 # What may vary in a sweep, with its symbol.
 AXES = {
@@ -37,8 +37,7 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
     varying: list[str] = []
     for name in AXES:
         # A level that follows another one is no axis of its own.
-        follows = any((runs[name] == runs[other]).all() for other in varying)
-        if runs[name].nunique() > 1 and not follows:
+        if runs[name].nunique() > 1 and not any((runs[name] == runs[other]).all() for other in varying):
             varying.append(name)
     varying.sort(key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
     axis, *others = varying or ["left"]
@@ -55,9 +54,8 @@ def plot(table: pd.DataFrame) -> Figure:
     """One panel a quantity; markers are runs (open: flagged), lines exact theory."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
     quantities = list(dict.fromkeys(table["quantity"]))[:PANELS]
-    figure = new_figure(PAGE, 4.2)
-    grid = figure.subplots(ROWS, PANELS // ROWS).ravel()
-    for axes, letter, quantity in zip(grid, "abcdef", quantities, strict=False):
+    figure, grid = new_panels(PAGE, 4.2, ROWS, PANELS // ROWS)
+    for axes, quantity in zip(grid, quantities, strict=False):
         rows = table[table["quantity"] == quantity]
         groups = rows.groupby("series", sort=False)
         colours = CYCLE if 1 < groups.ngroups <= len(CYCLE) else [GREY] * groups.ngroups
@@ -65,12 +63,13 @@ def plot(table: pd.DataFrame) -> Figure:
             group = group.sort_values("x")
             flagged = group["run_flags"].notna()
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-            for some, face, label in ((group[~flagged], colour, series), (group[flagged], "none", "")):
-                axes.plot(
-                    some["x"], some["value"], "o", color=colour, markerfacecolor=face, label=label or None
-                )
+            for some, face, label in (
+                (group[~flagged], colour, series or None),
+                (group[flagged], "none", None),
+            ):
+                look: Look = {"color": colour, "markerfacecolor": face, "label": label}
+                axes.plot(some["x"], some["value"], "o", **look)
         axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))
-        panel_letter(axes, letter)
     for axes in grid[len(quantities) :]:
         axes.set_visible(False)
     handles, _ = grid[0].get_legend_handles_labels()

@@ -137,15 +137,7 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> Non
 def prestress_inset(
     axes: Axes, box: tuple[float, float, float, float], runs: pd.DataFrame, colours: Sequence, widths: float
 ) -> None:
-    """Profiles of pre-stress in a corner of a panel.
-
-    Parameters
-    ----------
-    axes : the panel
-    box : left, bottom, width, height as fractions of it
-    runs : left, right and width of each, with a colour
-    widths : how far they are drawn, in those of the widest Gaussian
-    """
+    """Profiles of pre-stress of some runs in a box of a panel, over some widths of the widest Gaussian."""
     inset = axes.inset_axes(box)
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
     for (_, run), colour in zip(runs.iterrows(), colours, strict=True):

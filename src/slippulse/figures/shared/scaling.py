@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..style import BLACK, GREY, Look, colour_scale, entry, legend_below, panel_letter
+from ..style import BLACK, GREY, PAGE, Look, colour_scale, entry, few_ticks, legend_below, new_panels
 
 SYMBOLS = {"length": r"L_\mathrm{trans}", "time": r"T_\mathrm{trans}"}
 # The paper's definitions read literally, which are measured beside those used here.
@@ -25,13 +25,7 @@ MARKERS = "os^Dv<>pP*hX"
 
 
 def transition_rows(runs: pd.DataFrame, boundary: str) -> pd.DataFrame:
-    """One row a run: parameters, and length and time as measured, by the paper, exact, and by the literal definition.
-
-    Parameters
-    ----------
-    runs : measured and predicted numbers of a sweep, one row a run
-    boundary : "displacement" or "stress"
-    """
+    """One row a run: parameters, length and time as measured, by the paper, exact, and by the literal definition."""
     kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
     found = runs[kept].copy()
     for quantity in SYMBOLS:
@@ -57,16 +51,7 @@ def colours(runs: pd.DataFrame, column: str) -> np.ndarray:
 def draw_ratio(
     axes: Axes, runs: pd.DataFrame, quantity: str, across: str, colour: str, marker: str, line: str = "-"
 ) -> None:
-    """Measured over predicted, and exact theory over predicted.
-
-    Parameters
-    ----------
-    axes : where to draw
-    runs : rows of `transition_rows`
-    quantity : "length" or "time"
-    across, colour : columns of the horizontal axis and of the colours
-    marker, line : of the runs, open and grey if flagged, and of exact theory
-    """
+    """Length or time over the predicted one across a column: exact theory as lines, runs as markers."""
     for _, group in runs.groupby(colour):
         group = group.sort_values(across)
         exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
@@ -108,23 +93,22 @@ def colour_bar(figure: Figure, axes: Iterable[Axes], boundary: str, column: str,
     figure.colorbar(colour_scale(quantity), ax=list(axes), **options).set_label(label)
 
 
-def damping_figure(figure: Figure, runs: pd.DataFrame) -> None:
+def damping_figure(runs: pd.DataFrame) -> Figure:
     """Figures 10 and 11: L_trans and T_trans over the paper's predictions against the damping ratio."""
     boundary = runs["boundary"].iloc[0]
     other, symbol = OTHER[boundary]
     values = np.sort(runs[other].unique())
-    panels = figure.subplots(1, 2)
-    for axes, quantity, letter in zip(panels, SYMBOLS, "ab", strict=True):
+    figure, panels = new_panels(PAGE, 2.8, 1, 2)
+    for axes, quantity in zip(panels, SYMBOLS, strict=True):
         axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
         for marker, value in zip(MARKERS, values, strict=False):
             draw_ratio(axes, runs[runs[other] == value], quantity, "damping_ratio", "left", marker)
         ratios = np.sort(runs["damping_ratio"].unique())
         axes.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
-        axes.set_xticks(ratios, [f"{ratio:g}" for ratio in ratios])
+        few_ticks(axes.xaxis, ratios)
         axes.set_xlim(-0.3 * ratios[1], 1.5 * ratios[-1])
         axes.minorticks_off()
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"measured over predicted ${SYMBOLS[quantity]}$")
-        panel_letter(axes, letter)
     panels[0].set_title(rf"$\Gamma = {int(boundary == 'displacement')}$", fontsize=9)
     colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
     handles = [
@@ -133,3 +117,4 @@ def damping_figure(figure: Figure, runs: pd.DataFrame) -> None:
     ]
     handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     legend_below(figure, handles, len(handles))
+    return figure
