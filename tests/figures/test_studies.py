@@ -6,6 +6,11 @@ import numpy as np
 import pytest
 import tolerances as tol
 
+from slippulse.claims.inference import inference, likely
+from slippulse.model.prestress import Prestress
+from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
+from slippulse.theory.rupture import Rupture
+
 
 def off(rows, value, exact):
     """Relative distances of one column from another."""
@@ -115,3 +120,154 @@ def test_the_exact_pulse_is_steady_beyond_its_memory_and_not_before_and_the_latt
         lattice = table[(table["role"] == "lattice") & (table["level"] == level)].sort_values("x")
         distance = lattice["slip"] / np.interp(lattice["x"], rows["x"], rows["slip"]) - 1.0
         assert distance.abs().max() < 0.1 and abs(distance.iloc[-1]) < 0.05
+
+
+def test_lattices_tend_to_the_exact_depth(draw):
+    table = draw("study_barriers").table
+    runs = table[table["part"] == "depth"]
+    assert len(runs.groupby(["tau0", "barrier"])) >= 12
+    orders = []
+    for (*_, ratio), line in runs.groupby(["tau0", "barrier", "gamma", "damping_ratio"]):
+        line = line.sort_values("dx")
+        assert len(line) == 3
+        off = np.abs(line["measured"] / line["exact"] - 1.0).to_numpy()
+        assert off[0] < 0.03 and off[0] < off[-1]
+        if ratio > 0.0:
+            assert (np.diff(off) > 0.0).all()
+            orders.append(np.polyfit(np.log(line["dx"]), np.log(off), 1)[0])
+    # Depths are whole blocks.
+    assert 0.85 < np.median(orders) < 1.15
+
+
+def test_a_barrier_is_passed_if_and_only_if_it_is_shorter(study):
+    rows = study("barriers")
+    rows = rows[rows["part"] == "passing"]
+    assert (rows["length"] < 1.0).sum() == (rows["length"] > 1.0).sum() >= 24
+    assert ((rows["measured"] == 1.0) == (rows["length"] < 1.0)).all()
+
+
+def test_the_fine_map_is_the_exact_depth(draw):
+    table = draw("study_barriers").table
+    fine = table[table["part"] == "fine"].iloc[::397]
+    for _, row in fine.iterrows():
+        exact = barrier_depth(row["tau0"], row["barrier"], 1.0, row["damping_ratio"])
+        assert row["exact"] == pytest.approx(exact, rel=5e-3)
+
+
+def test_depth_falls_with_the_barrier_and_the_estimate_is_short_of_it_at_low_levels(draw):
+    table = draw("study_barriers").table
+    curves = table[table["part"] == "curve"]
+    for (tau0, _), line in curves.groupby(["tau0", "damping_ratio"]):
+        line = line.sort_values("barrier")
+        assert (np.diff(line["exact"]) > 0.0).all()
+        estimate = [barrier_depth_estimate(*row) for row in line[["tau0", "barrier", "gamma"]].to_numpy()]
+        assert line["paper"].to_numpy() == pytest.approx(estimate, rel=1e-3)
+        if tau0 < 0.3:
+            assert (line["paper"] < 0.5 * line["exact"]).all()
+
+
+def test_every_quantity_converges_at_first_order(draw):
+    table = draw("study_exact_solution").table
+    lines = table[table["role"] == "difference"].groupby(["scene", "quantity"])
+    assert len(lines) == 11, "nothing sticks without leaf springs"
+    for _, line in lines:
+        line = line.sort_values("dx")
+        assert 0.9 < np.polyfit(np.log(line["dx"]), np.log(line["difference"]), 1)[0] < 1.1
+        assert (np.diff(line["difference"]) > 0.0).all()
+        assert line["difference"].iloc[0] < 0.005
+        assert line["places"].min() >= 20
+
+
+def test_marks_lie_on_the_exact_curves_and_the_trailing_edge_follows_the_front(draw):
+    table = draw("study_exact_solution").table
+    for _, rows in table[table["role"].isin(["exact", "lattice"])].groupby("scene"):
+        exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
+        assert (exact["release"].notna() & (exact["slip"] >= 0.0)).all(), (
+            "the construction does not end early"
+        )
+        known = exact.dropna(subset="stick")
+        assert len(known) > 100 and (known["stick"] > known["release"]).all()
+        for quantity in ("release", "stick", "slip"):
+            line, marks = exact.dropna(subset=quantity), lattice.dropna(subset=quantity)
+            marks = marks[marks["position"].between(line["position"].min(), line["position"].max())]
+            off = np.abs(marks[quantity] - np.interp(marks["position"], line["position"], line[quantity]))
+            assert off.median() < 0.03 * line[quantity].max()
+
+
+def test_both_halves_of_the_map_agree(draw):
+    table = draw("study_exact_solution").table
+    halves = [
+        table[table["role"] == f"map_{source}"]
+        .assign(position=lambda rows: rows["position"].abs().round(6))
+        .pivot(index="time", columns="position", values="slip_velocity")
+        for source in ("exact", "lattice")
+    ]
+    exact, lattice = halves[0].fillna(0.0).align(halves[1].fillna(0.0), fill_value=0.0)
+    assert (exact - lattice).abs().to_numpy().mean() < 0.02 * exact.to_numpy().max()
+
+
+def test_uniform_prestress_leaves_the_papers_estimate_from_above(study):
+    rows = study("gaussian_transition")
+    uniform = rows[rows["gamma"].isna()].set_index("left")["over_paper"]
+    assert uniform[[0.1, 0.4, 0.9]].to_numpy() == pytest.approx([1.219, 1.206, 1.112], abs=1e-3)
+    assert (np.diff(uniform) < 0.0).all()
+    peaks = rows.dropna(subset="gamma")
+    assert (peaks["over_paper"].to_numpy() < uniform[peaks["left"]].to_numpy()).all(), (
+        "the peak brings the transition forward"
+    )
+
+
+def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
+    found = np.array(
+        [
+            [
+                (-end.x, rupture.transition_time, rupture.transition_length)
+                for right in (0.1, 0.5, 0.9)
+                for rupture in [Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)]
+                for end in [rupture.front_ends[0][0]]
+                if end.reason == "stops" and not rupture.limit
+            ]
+            for left in (-1.0, -0.3, -0.1)
+        ]
+    )
+    assert found.shape == (3, 3, 3) and np.isfinite(found).all()
+    assert (np.diff(found, axis=0) > 0.0).all()
+    assert (np.diff(found[:, :, 1:], axis=1) > 0.0).all()
+
+
+def test_the_lattice_of_the_space_time_figure_lies_on_the_exact_edges(draw):
+    rows = draw("fig04_space_time").table
+    rows = rows[rows["panel"] == "displacement"]
+    assert not (rows["role"] == "limit").any()
+    for lattice, exact in (("front", "exact_front"), ("trailing", "exact_trailing")):
+        line = rows[rows["role"] == exact].sort_values("position")
+        found = rows[rows["role"] == lattice].dropna(subset="time")
+        found = found[found["position"].between(line["position"].min(), line["position"].max())]
+        off = found["time"] - np.interp(found["position"], line["position"], line["time"])
+        assert len(found) > 100 and np.abs(off).max() < 0.12
+
+
+def test_numbers_are_the_same_from_the_figures_own_table(draw):
+    drawn = draw("study_published_figure")
+    again, study = inference(drawn.table), inference(drawn.measured["published_figure"])
+    assert again == study
+    for release in ("total", "elastic"):
+        rows = drawn.table[(drawn.table["part"] == "best") & (drawn.table["release"] == release)]
+        assert (rows["pull"] ** 2).sum() == pytest.approx(study[release]["chi2"])
+        assert rows.set_index("reading")["pull"].to_dict() == pytest.approx(study[release]["pulls"])
+
+
+def test_regions_are_drawn_around_the_best_fits_and_curves_as_far_as_accepted(draw):
+    drawn = draw("study_published_figure")
+    axes = drawn.figure.axes
+    for panel, name in zip(axes[1:3], ("tau0", "gamma"), strict=True):
+        for release in ("total", "elastic"):
+            found = inference(drawn.table)[release]
+            patches = {patch.get_gid(): patch for patch in panel.collections}
+            outer, inner = (patches[f"{release} {level}"].get_paths()[0].vertices for level in (0.95, 0.68))
+            low, high = found["regions"][0.95][name]
+            # A joint region of two parameters is wider than that of one.
+            assert outer[:, 1].min() < low and outer[:, 1].max() > high
+            assert np.ptp(inner[:, 0]) < np.ptp(outer[:, 0])
+            assert inner[:, 0].min() < found["damping_ratio"] < inner[:, 0].max()
+    assert max(line.get_ydata().max() for line in axes[0].lines if line.get_gid()) <= likely(0.95, 7)
