@@ -12,7 +12,7 @@ import tolerances as tol
 import slippulse as sp
 from benchmarks import __main__ as command
 from benchmarks import measure, stencils
-from slippulse.data.records import write_record
+from slippulse.data.records import Origin, write_record
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
 
@@ -50,16 +50,8 @@ def test_the_two_stage_stencil_is_symplectic_euler():
 
 def test_plain_numpy_is_the_textbook_scheme():
     """Against the compiled one, on the same lattice: a crack that turns into two pulses."""
-    scene = sp.Scene(
-        "displacement",
-        sp.Prestress(0.5, 0.5),
-        8.0,
-        0.1,
-        gamma=0.65,
-        beta=0.01,
-        scheme="fixed_step",
-        max_step=0.25,
-    )
+    lattice = {"gamma": 0.65, "beta": 0.01, "scheme": "fixed_step", "max_step": 0.25}
+    scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 8.0, 0.1, **lattice)
     run = sp.simulate(scene)
     x = 0.1 * np.arange(-150, 151)
     slip = stencils.numpy_steps(scene.prestress(x), 320, 0.025, 0.1, 0.65, 0.01)
@@ -77,25 +69,16 @@ def test_the_kernel_is_timed_with_everything_included():
 
 def test_records_are_read_by_step(tmp_path):
     results = tmp_path / "results"
-    for name, step, seconds, memory in (
-        ("a", "simulate", 2.5, 150),
-        ("b", "simulate", 1.5, 90),
-        ("c", "measure", 1.0, 80),
-    ):
-        (results / f"{name}.csv").parent.mkdir(exist_ok=True)
-        (results / f"{name}.csv").write_text(name)
+    assert measure.pipeline(results) == {}
+    results.mkdir()
+    jobs = (("simulate", 2.5, 150), ("simulate", 1.5, 90), ("measure", 1.0, 80))
+    for number, (step, seconds, memory) in enumerate(jobs):
+        (results / f"{number}.csv").touch()
         used = {"seconds": seconds, "processor_seconds": seconds, "memory_MB": memory}
-        write_record(step, {}, {"made": f"{results}/{name}.csv"}, {}, used)
-    found = measure.pipeline(results)
-    assert found == {
-        "job_seconds": 5.0,
-        "largest_memory_MB": 150,
-        "by_step": {"simulate": 4.0, "measure": 1.0},
-    }
-
-
-def test_without_records_there_is_nothing_to_say(tmp_path):
-    assert measure.pipeline(tmp_path) == {}
+        origin = Origin(f"{number}.csv", step, "", "", frozenset())
+        write_record(origin, {"made": f"{results}/{number}.csv"}, used)
+    by_step = {"simulate": 4.0, "measure": 1.0}
+    assert measure.pipeline(results) == {"job_seconds": 5.0, "largest_memory_MB": 150, "by_step": by_step}
 
 
 @pytest.mark.slow

@@ -43,6 +43,7 @@ class Outline(HTMLParser):
         self.open: list[str] = []
         self.feed(text)
         assert self.open == []
+        self.ids = [attributes["id"] for _, attributes in self.tags if "id" in attributes]
 
     def handle_starttag(self, tag, attributes):
         assert len(attributes) == len(dict(attributes))
@@ -113,8 +114,7 @@ def check_accessible(text: str) -> Outline:
         assert len(outline.all(tag)) == 1
     levels = [int(tag[1]) for tag, _ in outline.tags if re.fullmatch("h[1-6]", tag)]
     assert levels[0] == 1 and all(after - before <= 1 for before, after in pairwise(levels))
-    identifiers = [attributes["id"] for _, attributes in outline.tags if "id" in attributes]
-    assert len(identifiers) == len(set(identifiers))
+    assert len(outline.ids) == len(set(outline.ids))
     assert all(image["alt"].strip() for image in outline.all("img"))
     assert outline.all("a")[0] == {"class": "skip", "href": "#content"}
     labels = [attributes.get("aria-label") for attributes in outline.all("nav")]
@@ -129,7 +129,9 @@ def check_accessible(text: str) -> Outline:
     return outline
 
 
-def test_it_can_be_read_without_eyes_or_mouse(page):
+def test_pages_can_be_read_without_eyes_or_mouse(page):
+    scenes = check_accessible(scenes_page({"one": "A <scene>", "two": "Another"}))
+    assert [image["src"] for image in scenes.all("img")] == ["one.png", "two.png"]
     outline = check_accessible(page)
     assert len(outline.all("table")) >= 5
     assert [image["alt"] for image in outline.all("img")] == ["A line <up>"] * 3
@@ -138,19 +140,15 @@ def test_it_can_be_read_without_eyes_or_mouse(page):
 
 def test_links_lead_somewhere_and_only_the_paper_is_outside(page, results):
     outline = Outline(page)
-    identifiers = {attributes["id"] for _, attributes in outline.tags if "id" in attributes}
     targets = [a["href"] for a in outline.all("a")] + [image["src"] for image in outline.all("img")]
     assert len(targets) > 20
     outside = [target for target in targets if re.match(r"[a-z]+:|/", target)]
     assert outside == ["https://doi.org/10.1103/PhysRevE.103.052802"]
     claims = Outline((results / "claims.html").read_text(encoding="utf-8"))
-    anchors = {attributes["id"] for _, attributes in claims.tags if "id" in attributes}
     for target in set(targets) - set(outside):
         path, _, anchor = target.partition("#")
-        if path:
-            assert (results / path).exists(), target
-        if anchor:
-            assert anchor in (anchors if path == "claims.html" else identifiers), target
+        assert (results / path).exists(), target
+        assert not anchor or anchor in (claims if path == "claims.html" else outline).ids, target
 
 
 def test_it_says_what_was_found_and_from_what(page):
@@ -177,12 +175,6 @@ def test_the_ledger_has_a_page_with_failures_first():
     assert "1.25010(10)" in text and "not measured" in text
     assert "\\gamma" not in re.sub("<annotation.*?</annotation>", "", text)
     assert '<a href="figures/fig01_one.png">figure 1, one</a>' in text
-
-
-def test_the_list_of_scenes_is_a_page_too():
-    outline = check_accessible(scenes_page({"one": "A <scene>", "two": "Another"}))
-    assert [image["src"] for image in outline.all("img")] == ["one.png", "two.png"]
-    assert outline.all("img")[0]["alt"].startswith("A <scene>")
 
 
 def test_a_text_that_quotes_what_is_not_there_is_refused(results):

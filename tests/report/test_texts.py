@@ -27,11 +27,6 @@ def source(manuscript) -> str:
 
 
 @pytest.fixture(scope="module")
-def errata(manuscript) -> list[dict]:
-    return read_errata(manuscript / "errata.yaml")
-
-
-@pytest.fixture(scope="module")
 def captions(manuscript) -> dict[str, Caption]:
     return read_captions(manuscript / "captions.yaml")
 
@@ -46,9 +41,9 @@ def entries(manuscript) -> dict[str, dict]:
     return read(manuscript / "claims.yaml")
 
 
-def test_every_claim_that_is_mentioned_is_in_the_ledger(source, errata, manuscript, entries):
+def test_every_claim_that_is_mentioned_is_in_the_ledger(source, manuscript, entries):
     names = mentioned(source)
-    for entry in errata:
+    for entry in read_errata(manuscript / "errata.yaml"):
         # What shows it may be algebra too.
         names |= mentioned(" ".join(entry.values()))
         names |= set(re.findall(r"`(\w+)`", entry["shown"])) - set(entries["algebra"])
@@ -94,7 +89,8 @@ def test_every_claim_is_whole_and_has_a_shipped_verdict(manuscript, entries, cap
     assert set(read(manuscript / "shipped_verdicts.yaml")) == set(entries["claims"])
 
 
-def test_every_erratum_is_shown(errata, source):
+def test_every_erratum_is_shown(manuscript, source):
+    errata = read_errata(manuscript / "errata.yaml")
     assert len(errata) >= 15
     headings = set(re.findall(r"^#+ (.+?)(?: \{.*)?$", source, re.M))
     for entry in errata:
@@ -158,20 +154,11 @@ def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_
 
 
 def test_the_parameters_of_a_simulation_in_words(shipped):
-    config = {
-        "simulations": {
-            "one": {"boundary": "displacement", "left": [0.3], "right": "same", "gamma": [1e-3, 0.1, 0.2, 1.0]},
-            "two": {
-                "boundary": "stress",
-                "profiles": [
-                    {"left": -1.0, "right": 0.0, "width": 1.0}, {"left": -0.5, "right": 0.0, "width": 2.0},
-                ],
-                "beyond": {"position": 5.0, "levels": [0.1, 0.3]},
-                "damping_ratio": [0.0, 0.1, 0.3],
-            },
-        },
-        "model": {"damping_ratio": 0.1},
-    }  # fmt: skip
+    one = {"boundary": "displacement", "left": [0.3], "right": "same", "gamma": [1e-3, 0.1, 0.2, 1.0]}
+    profiles = [{"left": -1.0, "right": 0.0, "width": 1.0}, {"left": -0.5, "right": 0.0, "width": 2.0}]
+    two = {"boundary": "stress", "profiles": profiles, "damping_ratio": [0.0, 0.1, 0.3]}
+    two |= {"beyond": {"position": 5.0, "levels": [0.1, 0.3]}}
+    config = {"simulations": {"one": one, "two": two}, "model": {"damping_ratio": 0.1}}
     assert parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
     assert parameters(config, "two") == (
         r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
@@ -200,11 +187,8 @@ def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_che
 
 def test_the_table_of_stick_times():
     values = {"release_time": (0.0, None), "stick_time": (3.93122803, None), "final_slip": (1.94166, 0.0)}
-    rows = [
-        {"quantity": name, "x": x, "value": value}
-        for name, pair in values.items()
-        for x, value in zip((0.0, 9.0), pair, strict=True)
-    ]
-    found = sticking(pd.DataFrame(rows)).splitlines()[2:]
+    table = pd.DataFrame(values, index=pd.Index([0.0, 9.0], name="x")).rename_axis(columns="quantity")
+    table = table.stack(future_stack=True).rename("value").reset_index()
+    found = sticking(table).splitlines()[2:]
     assert found == ["| 0 | 0 | 3.9312 | 1.9417 |", "| 9 | not measured | not measured | 0 |"]
-    assert sticking(pd.DataFrame(rows).assign(value=float("nan"))) == ""
+    assert sticking(table.assign(value=float("nan"))) == ""

@@ -16,6 +16,7 @@ RUN = {
     "boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65, "damping_ratio": 0.1,
     "duration": 10.0, "release": "total",
 }  # fmt: skip
+TABLE, STUDY = "measurements/sweep.csv", "uncertainties/sweep.csv"
 CONFIG = {"preset": "paper", "model": {"release": "total"}}
 
 
@@ -38,94 +39,68 @@ def tree(
     return folder
 
 
-@pytest.mark.parametrize(
-    ("other", "code", "said"),
-    [
-        ({}, 0, "1 of 1 numbers agree"),
-        ({"speed": 1.015}, 0, "1 of 1 numbers agree"),
-        ({"speed": 1.03}, 1, "point 0, speed: 1 against 1.03; allowed: a difference of 0.02"),
-        # The measured numbers are compared, whatever an older study has.
-        ({"speed": 1.03, "studied": 1.0}, 1, "point 0, speed: 1 against 1.03"),
-        ({"run": {"left": -2.0}}, 1, "sweep.csv: other runs"),
-        ({"run": {"gamma": 0.3}}, 1, "sweep.csv: other runs"),
-        ({"verdict": "not reproduced"}, 1, "speed: verdict 'reproduced' against 'not reproduced'"),
-        (
-            {"config": CONFIG | {"model": {"release": "elastic"}}},
-            1,
-            "model.release: 'total' against 'elastic'",
-        ),
-        ({"config": CONFIG | {"preset": "draft"}}, 0, "1 of 1 numbers agree"),
-    ],
-)
-def test_two_trees_are_compared_within_their_uncertainties(tmp_path, capsys, other, code, said):
-    here, there = tree(tmp_path / "here"), tree(tmp_path / "there", **other)
-    assert main([str(here), str(there)]) == code
-    assert said in capsys.readouterr().out
-
-
-def test_another_gamma_below_an_old_grid_study_is_another_run(tmp_path, capsys):
-    """As after a run of a single figure with another gamma: the study of uncertainties is the old one."""
-    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
-    pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}]).to_csv(here / "measurements/sweep.csv", index=False)
-    assert main([str(here), str(there)]) == 1
-    said = capsys.readouterr().out
-    assert "0 of 0 numbers agree" in said and "sweep.csv: other runs" in said
-
-
-def test_a_table_in_one_tree_only_is_said(tmp_path, capsys):
-    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
-    shutil.copy(here / "measurements/sweep.csv", here / "measurements/own.csv")
-    assert main([str(here), str(there)]) == 1
-    assert "own.csv: in one tree only" in capsys.readouterr().out
-
-
-def test_a_tree_without_provenance_is_not_taken_for_one_of_the_same_configuration(tmp_path, capsys):
-    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
-    (there / "provenance.json").unlink()
-    assert main([str(here), str(there)]) == 1
-    assert "configurations not compared" in capsys.readouterr().out
-
-
-def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
-    here = tree(tmp_path / "here", uncertainty=float("nan"))
-    there = tree(tmp_path / "there", speed=2.0, uncertainty=float("nan"), dx=0.02)
-    result = compare(here, there)
-    assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, [])
+NAN = math.nan
+ELASTIC, DRAFT = CONFIG | {"model": {"release": "elastic"}}, CONFIG | {"preset": "draft"}
 
 
 @pytest.mark.parametrize(
     ("one", "two", "said"),
     [
-        ({"uncertainty": math.nan}, {"speed": 1.5, "uncertainty": math.nan}, "speed: 1 against 1.5"),
-        ({}, {"speed": math.nan, "studied": 1.0}, "speed: 1 against nan"),
+        # The measured numbers are compared, whatever an older study has.
+        ({}, {"speed": 1.03, "studied": 1.0}, "point 0, speed: 1 against 1.03"),
+        ({}, {"speed": 1.03}, "point 0, speed: 1 against 1.03; allowed: a difference of 0.02"),
+        ({}, {"run": {"left": -2.0}}, "sweep.csv: other runs"),
+        ({}, {"run": {"gamma": 0.3}}, "sweep.csv: other runs"),
+        ({}, {"verdict": "not reproduced"}, "speed: verdict 'reproduced' against 'not reproduced'"),
+        ({}, {"config": ELASTIC}, "model.release: 'total' against 'elastic'"),
+        # On one lattice everything agrees.
+        ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: 1 against 1.5"),
+        ({}, {"speed": NAN, "studied": 1.0}, "speed: 1 against nan"),
         ({"pulse_state": "steady"}, {"pulse_state": "unsteady"}, "pulse_state: 'steady' against 'unsteady'"),
         ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
         ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
         ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
     ],
-    ids=["no uncertainty", "an empty number", "text", "empty text", "a whole number", "a column less"],
 )
-def test_runs_on_one_lattice_agree_in_everything(tmp_path, capsys, one, two, said):
-    here, there = tree(tmp_path / "here", **one), tree(tmp_path / "there", **two)
+def test_what_differs_is_said(tmp_path, capsys, one, two, said):
+    assert main([str(tree(tmp_path / "here", **one)), str(tree(tmp_path / "there", **two))]) == 1
+    assert said in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("other", [{}, {"speed": 1.015}, {"config": DRAFT}])
+def test_numbers_agree_within_both_uncertainties_at_any_preset(tmp_path, capsys, other):
+    assert main([str(tree(tmp_path / "here")), str(tree(tmp_path / "there", **other))]) == 0
+    assert "1 of 1 numbers agree" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        # As after a run of a single figure with another gamma: the study of uncertainties is the old one.
+        (
+            lambda tree: pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}]).to_csv(tree / TABLE, index=False),
+            "0 of 0 numbers agree",
+        ),
+        (lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"), "own.csv: in one tree only"),
+        (lambda tree: (tree / "provenance.json").unlink(), "configurations not compared"),
+        (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
+        (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
+    ],
+)
+def test_what_is_missing_in_one_tree_is_said(tmp_path, capsys, change, said):
+    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
+    change(here)
     assert main([str(here), str(there)]) == 1
     assert said in capsys.readouterr().out
 
 
-def test_a_study_in_one_tree_only_is_said(tmp_path, capsys):
-    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
-    (there / "uncertainties/sweep.csv").unlink()
-    assert main([str(here), str(there)]) == 1
-    assert "sweep.csv: uncertainties in one tree only" in capsys.readouterr().out
+def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
+    here = tree(tmp_path / "here", uncertainty=NAN)
+    there = tree(tmp_path / "there", speed=2.0, uncertainty=NAN, dx=0.02)
+    result = compare(here, there)
+    assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, [])
 
 
-def test_a_tree_without_numbers_is_refused(tmp_path, capsys):
-    here = tree(tmp_path / "here")
-    shutil.rmtree(here / "measurements")
-    assert main([str(here), str(here)]) == 1
-    assert "allowed: a finished tree of results" in capsys.readouterr().out
-
-
-TABLE, STUDY = "measurements/sweep.csv", "uncertainties/sweep.csv"
 ODD = {
     "other columns": (TABLE, "a,b\n1,2\n", "no column boundary"),
     "other columns in a study": (STUDY, "a,b\n1,2\n", "no column point"),

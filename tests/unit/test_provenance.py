@@ -44,11 +44,7 @@ def test_the_digest_sees_content_and_names_and_no_order(tmp_path):
 
 def test_sources_are_the_library_and_the_workflow(project):
     names = {str(path.relative_to(project)) for path in source_files(project)}
-    assert {
-        "Snakefile",
-        "src/slippulse/model/scene.py",
-        "workflow/rules/common.smk",
-    } <= names
+    assert {"Snakefile", "src/slippulse/model/scene.py", "workflow/rules/common.smk"} <= names
     assert not any("__pycache__" in name or name.startswith("tests") for name in names)
 
 
@@ -57,11 +53,8 @@ def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
     results.mkdir()
     for name, seconds in (("a.csv", 1.25), ("b.csv", 0.5)):
         (results / name).write_text(name)
-        write_record(
-            Origin(name, "simulate", "", "", frozenset()),
-            {"made": f"{results}/{name}"},
-            {"seconds": seconds},
-        )
+        origin = Origin(name, "simulate", "", "", frozenset())
+        write_record(origin, {"made": f"{results}/{name}"}, {"seconds": seconds})
     assert job_times(results) == {"simulate": 1.75}
     facts = provenance(project, config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]

@@ -12,15 +12,13 @@ from slippulse.data.points import point
 from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
 from slippulse.predict.measured import measured_table
 
-DISPLACEMENT = {
+STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}
+DISPLACEMENT = STRESS | {
     "boundary": "displacement",
     "gamma": 0.65,
     "beta": 1e-3,
     "prestress": sp.Prestress(0.5, 0.5),
-    "duration": 5.0,
-    "dx": 0.01,
 }
-STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}
 
 
 @pytest.mark.parametrize(
@@ -31,13 +29,11 @@ STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration"
         (STRESS, {"gamma": 0.65}, "gamma", "0.65", "0 or left out under boundary 'stress'"),
         (STRESS, {"gamma": float("nan")}, "gamma", "nan", "0 or left out"),
         (DISPLACEMENT, {"gamma": 0.0}, "gamma", "0.0", "> 0"),
-        (DISPLACEMENT, {"gamma": -0.1}, "gamma", "-0.1", "> 0"),
         (DISPLACEMENT, {"gamma": "0.65"}, "gamma", "'0.65'", "a finite number"),
         (DISPLACEMENT, {"gamma": float("inf")}, "gamma", "inf", "a finite number"),
         (DISPLACEMENT, {"beta": -1e-3}, "beta", "-0.001", ">= 0"),
         (DISPLACEMENT, {"beta": "1e-3"}, "beta", "'1e-3'", "a finite number"),
         (DISPLACEMENT, {"dx": 0.0}, "dx", "0.0", "> 0"),
-        (DISPLACEMENT, {"dx": -0.01}, "dx", "-0.01", "> 0"),
         (DISPLACEMENT, {"dx": 1.5}, "prestress.width", "1.0", ">= dx = 1.5"),
         (DISPLACEMENT, {"duration": 0.0}, "duration", "0.0", "> 0"),
         (DISPLACEMENT, {"duration": float("inf")}, "duration", "inf", "a finite number"),
@@ -62,24 +58,10 @@ def test_a_refusal_names_the_key_the_value_and_what_is_allowed(base, changes, ke
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"order": 4.0},
-        {"resolved_blocks": 1.5},
-        {"half_lattice": "no"},
-    ],
-    ids=["order", "resolved_blocks", "half_lattice"],
-)
+@pytest.mark.parametrize("changes", [{"order": 4.0}, {"resolved_blocks": 1.5}, {"half_lattice": "no"}])
 def test_values_of_the_wrong_type_are_refused(changes):
     with pytest.raises(ValueError, match=next(iter(changes))):
         sp.Scene(**DISPLACEMENT | changes)
-
-
-def test_a_scene_does_not_change():
-    scene = sp.Scene(**DISPLACEMENT)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        scene.beta = 0.0
 
 
 def test_derived_numbers():
@@ -89,17 +71,6 @@ def test_derived_numbers():
     assert scene.symmetric
     assert not dataclasses.replace(scene, half_lattice=False).symmetric
     assert not sp.Scene(**STRESS).symmetric
-
-
-def test_every_parameter_is_an_attribute_of_the_data():
-    scene = sp.Scene(**DISPLACEMENT | {"duration": 0.1})
-    attributes = sp.simulate(scene).attrs
-    for field in dataclasses.fields(scene):
-        if field.name in ("prestress", "half_lattice"):
-            continue
-        assert attributes[field.name] == getattr(scene, field.name), field.name
-    for name in ("left", "right", "width", "peak"):
-        assert attributes[name] == getattr(scene.prestress, name), name
 
 
 UNEVEN = sp.Prestress(0.25, 0.6, 2.0, 1.05, steps=((4.0, 0.4),), bumps=((-3.0, -0.3, 0.5),))
@@ -134,14 +105,8 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
 @pytest.mark.parametrize("kind", [np.float32, int])
 def test_parameters_are_computed_with_in_double_precision(kind):
     """Whatever their type: a float32 spacing squared in float32 would change the answer in the seventh digit."""
-    values = {
-        "boundary": "displacement",
-        "duration": kind(7),
-        "dx": kind(1),
-        "gamma": kind(1),
-        "beta": kind(0),
-    }
-    scene = sp.Scene(**values, prestress=sp.Prestress(kind(0), kind(0), kind(2), kind(1)))
+    values = {"duration": kind(7), "dx": kind(1), "gamma": kind(1), "beta": kind(0)}
+    scene = sp.Scene("displacement", **values, prestress=sp.Prestress(kind(0), kind(0), kind(2), kind(1)))
     for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
         assert type(getattr(scene, name)) is float
     for name in ("left", "right", "width", "peak"):
