@@ -11,10 +11,8 @@ import tolerances as tol
 from PIL import Image
 
 from slippulse.configuration.expand import expand
-from slippulse.configuration.resolve import resolve
-from slippulse.configuration.scenes import scene_simulation
-from slippulse.configuration.schema import Model
-from slippulse.configuration.simulations import NamedScene
+from slippulse.configuration.resolve import resolve, scene_simulation
+from slippulse.configuration.schema import Model, NamedScene
 from slippulse.data.points import point
 from slippulse.data.store import load_table, save_table
 from slippulse.figures import own_sweep

@@ -12,8 +12,7 @@ from slippulse.configuration.bound import HOW_TO_GO_ON, bound_of_sweep
 from slippulse.configuration.expand import expand
 from slippulse.configuration.overlay import LARGEST_FILE, main, read_overlay
 from slippulse.configuration.read import read_config
-from slippulse.configuration.resolve import accuracy_of, resolve
-from slippulse.configuration.scenes import all_simulations
+from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.model.checks import ConfigError
 
 # Enough of the shipped simulations for every case, so that a refusal of scenes is quick.

@@ -11,8 +11,7 @@ from slippulse.configuration.bound import bound_of_sweep
 from slippulse.configuration.expand import run_count
 from slippulse.configuration.overlay import read_overlay
 from slippulse.configuration.read import read_config
-from slippulse.configuration.resolve import accuracy_of, resolve
-from slippulse.configuration.scenes import all_simulations
+from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.data.alterations import changes
 from slippulse.model.checks import ConfigError
 from slippulse.steps.job import Jobs, end_with

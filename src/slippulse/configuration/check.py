@@ -13,8 +13,7 @@ from ..theory.pulse import steady_pulse
 from .accuracy import promised
 from .bound import corners
 from .expand import expand, run_count
-from .resolve import accuracy_of, resolve
-from .scenes import all_simulations
+from .resolve import accuracy_of, all_simulations, resolve
 from .schema import Configuration
 
 # Below this fraction of resolved_blocks in every run a sweep says nothing about the continuum.

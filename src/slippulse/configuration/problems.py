@@ -10,8 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..model.checks import nearest, short_repr
-from .keys import NAME_WORDS
-from .schema import Configuration
+from .schema import NAME_WORDS, Configuration
 
 # Lines of a refusal; a reader mends a few at a time.
 LINES = 20

@@ -1,13 +1,16 @@
-"""What a rule passes to its job: a simulation with everything that its data depend on, as builtins."""
+"""What a rule passes to its job: a simulation, or a scene by name, with everything that its data depend on."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
+from ..theory.front_law import LARGEST_RATIO, front_speed
 from .accuracy import ORDER, STEP
-from .schema import Configuration, Model
-from .simulations import Simulation
+from .schema import Configuration, Model, NamedScene, Profile, Simulation
+
+# Samples of a map and of an animation.
+TIMES, POSITIONS = 241, 801
 
 
 def accuracy_of(config: Configuration) -> dict[str, Any]:
@@ -36,3 +39,39 @@ def resolve(
         "accuracy": {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy},
         "coarser": coarser,
     }
+
+
+def all_simulations(config: Configuration) -> dict[str, Simulation]:
+    """Simulations by name, the scenes among them."""
+    scenes = {name: scene_simulation(scene, config.model) for name, scene in config.scenes.items()}
+    return {**config.simulations, **scenes}
+
+
+def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
+    """A scene as a simulation of one run that records everything.
+
+    Parameters
+    ----------
+    scene : an entry of ``scenes``
+    model : the entry ``model`` of the configuration, for what the scene leaves out
+    """
+    given = scene.plain()
+    given["profiles"] = [{key: given.pop(key) for key in Profile.model_fields}]
+    given |= {key: [given[key]] for key in ("gamma", "damping_ratio", "beta", "dx") if key in given}
+    given["duration"] = {"time": given["duration"]}
+    given["record"] = ["fronts", "fields", "samples"]
+    given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": _reach(scene, model)}
+    del given["title"]
+    return Simulation.model_validate(given)
+
+
+def _reach(scene: NamedScene, model: Model) -> float:
+    """Where the fronts may be at the end: farther than any, by theory where there is one."""
+    level = min(max(scene.left, scene.right, *(level for _, level in scene.steps)), 1.0 - 1e-6)
+    ratio = min(model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio, LARGEST_RATIO)
+    speed = 1.0
+    if level > 0.0:
+        # 1/(1 - tau) is the speed of the rule "total" at beta/dx = 1.
+        speed = float(front_speed(level, ratio, "total")) if scene.beta is None else 1.0 / (1.0 - level)
+    far = max((abs(centre) + 4.0 * width for centre, _, width in scene.bumps), default=0.0)
+    return float(f"{far + speed * scene.duration + 3.0 * scene.width:.4g}")
