@@ -79,8 +79,8 @@ CASES = {
         "figures: {fig07_damage_zone: {stiffness_ratios: {from: 2.0}}}",
         ["stiffness_ratios.to: 1.0", "> from = 2"],
     ),
-    "accuracy above a tenth": ("accuracy: 0.5", ["accuracy: 0.5", "from 1e-4 to 0.1"]),
-    "accuracy too small to reach": ("accuracy: 1.0e-7", ["accuracy: 1e-07", "from 1e-4 to 0.1"]),
+    "accuracy above a tenth": ("accuracy: 0.5", ["accuracy: 0.5", "from 0.0001 to 0.1"]),
+    "accuracy too small to reach": ("accuracy: 1.0e-7", ["accuracy: 1e-07", "from 0.0001 to 0.1"]),
     "misspelt null": (STEADY + "{gama: null}}", ["steady_displacement.gama: null", "did you mean 'gamma'"]),
     "null for a name that is not there": (
         "simulations: {steady_displacment: null}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,18 +52,15 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
         dx = _spacing(simulation, run, place)
         beta = value if kind == "beta" else value * dx
         scene = Scene(
-            boundary=simulation["boundary"],
             prestress=run.profile,
             duration=_duration(simulation["duration"], run.profile, run.gamma),
             dx=dx,
             gamma=run.gamma,
             beta=beta,
             release=run.release,
-            scheme=simulation["scheme"],
             max_step=_step(simulation, run.gamma * dx**2, beta / dx),
             order=simulation["accuracy"]["order"],
-            friction_ratio=simulation["friction_ratio"],
-            resolved_blocks=simulation["resolved_blocks"],
+            **{key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")},
         )
         scenes.append(scene)
         samples.append(_samples(simulation.get("samples"), scene))
@@ -73,10 +70,10 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
 def runs(simulation: Mapping) -> Iterator[Run]:
     """The runs of a resolved simulation or of a chunk of it, one after the other."""
     axes, profile_of = _axes(simulation), cache(partial(_profile, simulation))
-    count = run_count(simulation)
-    chunk = simulation.get("chunk")
-    for run in runs_of(chunk[0], chunk[1], count) if chunk else range(count):
-        release, *shape, gamma, dx, damping = _entries(axes, run)
+    count, chunk = run_count(simulation), simulation.get("chunk")
+    for run in runs_of(*chunk, count) if chunk else range(count):
+        places = np.unravel_index(run, [len(axis) for axis in axes])
+        release, *shape, gamma, dx, damping = (axis[int(at)] for axis, at in zip(axes, places, strict=True))
         yield Run(release, profile_of(*shape), gamma, dx, damping)
 
 
@@ -88,9 +85,8 @@ def run_count(simulation: Mapping) -> int:
 def _axes(simulation: Mapping) -> list[Sequence]:
     """The lists whose product the runs are."""
     release, rule = simulation["release"], simulation.get("beyond")
-    if "profiles" in simulation:
-        shapes: list[Sequence] = [range(len(simulation["profiles"]))]
-    else:
+    shapes: list[Sequence] = [range(len(simulation.get("profiles", ())))]
+    if "profiles" not in simulation:
         right = simulation["right"]
         # One step a level, at the position from which the level holds.
         steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
@@ -105,15 +101,6 @@ def _axes(simulation: Mapping) -> list[Sequence]:
     ]
 
 
-def _entries(axes: Sequence[Sequence], run: int) -> list[Any]:
-    """One entry of each list: those of a run of their product, without the runs before it."""
-    entries = []
-    for axis in reversed(axes):
-        run, place = divmod(run, len(axis))
-        entries.append(axis[place])
-    return entries[::-1]
-
-
 def _profile(simulation: Mapping, *shape) -> Prestress:
     if "profiles" in simulation:
         return Prestress(**simulation["profiles"][shape[0]])
@@ -123,16 +110,14 @@ def _profile(simulation: Mapping, *shape) -> Prestress:
 
 def _spacing(simulation: Mapping, run: Run, place: int) -> float:
     """Of twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label."""
-    rule, coarser = simulation["spacing"], simulation["coarser"]
-    if "spacings" in simulation:
-        return float(f"{coarser * simulation['spacings'][place]:.12g}")
-    if run.dx is not None:
-        return float(f"{coarser * run.dx:.12g}")
+    rule = simulation["spacing"]
     if "fixed" in rule:
         return float(rule["fixed"])
-    scale = coarser * rule["scale"] * run.profile.width ** rule["width_power"]
-    scale *= run.gamma ** rule["gamma_power"]
-    return float(f"{simulation['accuracy']['dx'] * scale:.12g}")
+    dx = simulation["spacings"][place] if "spacings" in simulation else run.dx
+    if dx is None:
+        dx = simulation["accuracy"]["dx"] * rule["scale"]
+        dx *= run.profile.width ** rule["width_power"] * run.gamma ** rule["gamma_power"]
+    return float(f"{simulation['coarser'] * dx:.12g}")
 
 
 def _step(simulation: Mapping, gamma_dx2: float, ratio: float) -> float:
@@ -147,10 +132,10 @@ def _step(simulation: Mapping, gamma_dx2: float, ratio: float) -> float:
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
     ((unit, value),) = rule.items()
     if unit == "half_periods":
-        return float(value * math.pi / math.sqrt(gamma))
+        value = value * math.pi / math.sqrt(gamma)
     if unit == "balance_distances":
         try:
-            return float(value * abs(prestress_balance_position(profile)))
+            value *= abs(prestress_balance_position(profile))
         except ValueError as error:
             # In the words of the configuration, whose keys are levels or profiles.
             reason = str(error).removeprefix("prestress.")

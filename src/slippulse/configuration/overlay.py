@@ -15,17 +15,13 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.composer import Composer
 from ruamel.yaml.constructor import DuplicateKeyError
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.error import YAMLError
 from ruamel.yaml.events import AliasEvent, ScalarEvent
 
 from ..model.checks import ConfigError, short_repr
 
 # The shipped configuration has some 20 kB; a larger file is not a list of what differs from it.
 LARGEST_FILE = 1_000_000
-
-
-class _NotPlain(MarkedYAMLError):
-    """What YAML can say and a configuration may not."""
 
 
 class _PlainComposer(Composer):
@@ -41,7 +37,7 @@ class _PlainComposer(Composer):
         elif isinstance(event, ScalarEvent) and event.implicit[0] and not event.value and parent is not None:
             found = "no value; allowed: a value, or null, which removes the key"
         if found:
-            raise _NotPlain(problem=found, problem_mark=event.start_mark)
+            raise ConfigError(f"line {event.start_mark.line + 1}: {found}")
         return super().compose_node(parent, index)
 
 
@@ -60,42 +56,27 @@ def read_overlay(path: str | Path) -> dict[str, Any]:
     path = Path(path)
     try:
         if path.exists() and not path.is_file():
-            raise ConfigError(f"{path}: not a regular file; allowed: a readable YAML file")
+            raise ConfigError("not a regular file; allowed: a readable YAML file")
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
         if len(data) > LARGEST_FILE:
             raise ConfigError(
-                f"{path}: more than {LARGEST_FILE} bytes; allowed: what differs from config/config.yaml"
+                f"more than {LARGEST_FILE} bytes; allowed: what differs from config/config.yaml"
             )
         overlay = _load(data.decode("utf-8-sig"))
-    except OSError as error:
-        raise ConfigError(f"{path}: {error.strerror or error}; allowed: a readable YAML file") from None
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: not text (byte {error.start}); allowed: YAML in UTF-8") from None
-    except (YAMLError, TypeError, RecursionError) as error:
+        if not isinstance(overlay, dict) or "__use_yte__" in overlay:
+            found = "a template" if isinstance(overlay, dict) else short_repr(overlay)
+            raise ConfigError(f"{found}; allowed: a mapping of keys, as in config/config.yaml")
+        return _with_names(overlay)
+    except (OSError, ValueError, YAMLError, TypeError, RecursionError) as error:
         raise ConfigError(f"{path}: {_reason(error)}") from None
-    if not isinstance(overlay, dict) or "__use_yte__" in overlay:
-        found = "a template" if isinstance(overlay, dict) else short_repr(overlay)
-        raise ConfigError(f"{path}: {found}; allowed: a mapping of keys, as in config/config.yaml")
-    return _with_names(overlay)
 
 
 def read_scalar(text: str, key: str) -> object:
-    """What text of the command line stands for, as a plain scalar of a file.
-
-    Parameters
-    ----------
-    text : as it was given
-    key : of which it is the value
-
-    Raises
-    ------
-    ConfigError
-        Where it is none.
-    """
+    """What the text of a key on the command line stands for, as a scalar of a file; ConfigError where it is none."""
     try:
         value = _load(text)
-    except YAMLError:
+    except (YAMLError, ConfigError):
         raise ConfigError(f"{key}: {short_repr(text)}; allowed: a plain value") from None
     return text if isinstance(value, Mapping | list) else value
 
@@ -115,16 +96,20 @@ def _with_names(value: Any) -> Any:
 
 def _reason(error: Exception) -> str:
     """One line: what was found and what is allowed."""
+    if isinstance(error, ConfigError):
+        return str(error)
+    if isinstance(error, OSError):
+        return f"{error.strerror or error}; allowed: a readable YAML file"
+    if isinstance(error, UnicodeDecodeError):
+        return f"not text (byte {error.start}); allowed: YAML in UTF-8"
+    if isinstance(error, RecursionError):
+        return "nested too deeply; allowed: keys and values as in config/config.yaml"
     problem = " ".join(str(getattr(error, "problem", None) or error).split())
     mark = getattr(error, "problem_mark", None)
-    where = f"line {mark.line + 1}" if mark else "nested too deeply"
-    if isinstance(error, _NotPlain):
-        return f"{where}: {problem}"
+    where = f"line {mark.line + 1}: " if mark else ""
     if isinstance(error, DuplicateKeyError):
-        return f"{where}: {problem.partition(' with value')[0]}; allowed: each key once"
-    if isinstance(error, RecursionError):
-        return f"{where}; allowed: keys and values as in config/config.yaml"
-    return f"not YAML ({where}: {problem[:120]}); allowed: keys and values as in config/config.yaml"
+        return f"{where}{problem.partition(' with value')[0]}; allowed: each key once"
+    return f"not YAML ({where}{problem[:120]}); allowed: keys and values as in config/config.yaml"
 
 
 def main(paths: Sequence[str]) -> int:
@@ -132,12 +117,12 @@ def main(paths: Sequence[str]) -> int:
     if not paths:
         sys.stderr.write("usage: python -m slippulse.configuration.overlay FILE...\n")
         return 2
-    for path in paths:
-        try:
+    try:
+        for path in paths:
             read_overlay(path)
-        except ConfigError as error:
-            sys.stderr.write(f"The configuration is refused:\n{error}\n")
-            return 1
+    except ConfigError as error:
+        sys.stderr.write(f"The configuration is refused:\n{error}\n")
+        return 1
     return 0
 
 

@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic.json_schema import GenerateJsonSchema
 
 from ..model.checks import nearest, short_repr
 from .schema import NAME_WORDS, Configuration
@@ -23,23 +24,16 @@ def format_problems(problems: Sequence[str]) -> str:
     return "\n".join([*problems[:LINES], *rest])
 
 
+class _Untitled(GenerateJsonSchema):
+    def field_title_should_be_set(self, schema: Any) -> bool:
+        """Of no key, since a title would be its name again."""
+        return False
+
+
 @cache
 def json_schema() -> dict[str, Any]:
     """The JSON Schema of the configuration."""
-    return _without_titles(Configuration.model_json_schema())
-
-
-def _without_titles(value: Any, of_properties: bool = False) -> Any:
-    """A schema without the titles that pydantic adds."""
-    if isinstance(value, list):
-        return [_without_titles(entry) for entry in value]
-    if not isinstance(value, dict):
-        return value
-    return {
-        key: _without_titles(entry, key in ("properties", "$defs"))
-        for key, entry in value.items()
-        if of_properties or key != "title"
-    }
+    return Configuration.model_json_schema(schema_generator=_Untitled)
 
 
 def refused(error: ValidationError, config: Mapping) -> list[str]:
@@ -80,20 +74,17 @@ def _line(problem: Mapping, config: Mapping) -> str:
 
 def _walk(place: Sequence[str | int], config: Any) -> tuple[int, dict[str, Any], Any]:
     """Depth, schema and value at a place, as far as there is one schema for it."""
-    node: dict[str, Any] = json_schema()
-    value: Any = config
+    node, value = resolved(json_schema()), config
     for depth, part in enumerate(place):
-        node = resolved(node)
         named = [*node.get("patternProperties", {}).values(), node.get("additionalProperties")]
         inside = (
             node.get("items") if isinstance(part, int) else node.get("properties", {}).get(part, named[0])
         )
-        if not isinstance(inside, dict) or not isinstance(value, Mapping | list) or part == "[key]":
+        there = isinstance(value, list) or (isinstance(value, Mapping) and part in value)
+        if not isinstance(inside, dict) or not there or part == "[key]":
             return depth, node, value
-        if isinstance(value, Mapping) and part not in value:
-            return depth, node, value
-        node, value = inside, value[part]  # type: ignore[index]
-    return len(place), resolved(node), value
+        node, value = resolved(inside), value[part]
+    return len(place), node, value
 
 
 def resolved(node: dict[str, Any]) -> dict[str, Any]:
@@ -129,9 +120,7 @@ def words(node: dict[str, Any]) -> str:
 
 def _plain(bound: float) -> str:
     """A bound as it is written."""
-    if 0.01 <= abs(bound) < 1e6 or bound == 0.0:
-        return f"{bound:g}"
-    return f"{bound:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    return f"{bound:g}".replace("e-0", "e-").replace("e+0", "e")
 
 
 def dotted(place: Sequence[str | int]) -> str:
