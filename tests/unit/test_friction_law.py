@@ -128,20 +128,6 @@ def test_a_neighbour_is_released_when_its_own_stress_reaches_one(release, beta):
     assert left == right
 
 
-def test_the_damping_force_releases_sooner_and_by_its_own_size():
-    """At each release under "total" the elastic stress misses 1 by exactly the damping force."""
-    total, elastic = (
-        float(sp.simulate(lone_block(0.3, 1.2, beta=0.4, release=release))["release_time"].sel(x=1.0))
-        for release in RELEASES
-    )
-    assert total < elastic - 0.05
-    at_release = sp.simulate(lone_block(0.3, total, beta=0.4))
-    at = int(np.flatnonzero(at_release["x"].values == 1.0)[0])
-    drag = total_stress(at_release)[at] - elastic_stress(at_release)[at]
-    assert drag > 0.05
-    assert elastic_stress(at_release)[at] == pytest.approx(1.0 - drag, abs=tol.OSCILLATOR)
-
-
 def test_without_damping_the_release_rules_are_one():
     one, two = (sp.simulate(under_stress(-0.5, 0.0, 6.0, 0.1, release=release)) for release in RELEASES)
     assert one.equals(two)
