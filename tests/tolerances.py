@@ -8,8 +8,6 @@ from __future__ import annotations
 STENCIL = 1e-13
 # Compiled code contracts a*b + c to one rounding, the interpreter does not; the steps multiply it.
 JIT = 1e-11
-# Tables are written with nine significant digits.
-CSV_DIGITS = 1e-8
 # Profiles and integrals in closed form against adaptive quadrature asked for 1e-12.
 QUADRATURE = 1e-10
 # The same formula twice, each to rounding in about a hundred operations; a limit at a ratio of 1e-9.
@@ -88,8 +86,6 @@ PULSE_SLIP = 1e-3
 PUBLISHED_FRONT_SPEED = 0.01
 PUBLISHED_INTERCEPT = 0.05
 PUBLISHED_TRAILING = 0.015
-# Exact transition times by two quadratures, panels against adaptive.
-TRANSITION_QUADRATURE = 1e-9
 # Tabulated transition times and lengths, known to four or five digits.
 TRANSITION_TABLE = 1e-4
 SHARE_TABLE = 1e-4
@@ -109,8 +105,6 @@ PULSE_EQUATION = 1e-5
 TABLE_DIGITS = 1e-6
 # Damped simulations at dx = 0.02 with leaf springs, whose correction of order gamma dx^2/tau_0^2 the theory leaves out.
 DAMPED_SPEED = 1e-3
-# Blocks and springs integrated by another method to 1e-11: what is left is the step of the scheme under test.
-REFERENCE = 2e-5
 # Extrapolation of T_trans and L_trans from three spacings to the exact theory.
 TRANSITION = 5e-4
 # Share times and peak under a stress boundary at dx = 0.01.
@@ -147,8 +141,6 @@ SCENE_SHARE = 1.5e-2
 DRAFT_SPEED, DRAFT_SLIP = 2e-3, 6e-3
 # Strong damping under the total rule, at b = 1600: the next term of an expansion in 1/sqrt(b).
 STRONG_DAMPING_ORDER, STRONG_DAMPING_LIMIT = 0.03, 3e-3
-# The exact slip velocity over space and time at dx = 0.01: first order in dx over the Gaussian's width.
-VELOCITY_MAP = 1e-2
 # A promised accuracy is its own tolerance; this much of it at least is used by the worst number of all scenes, or the
 # lattice is paid for in vain. The spacing may take 0.7 of it.
 PROMISE_USED = 0.5
