@@ -1,4 +1,4 @@
-"""A scene costs what slides in it, and nothing else: work a sliding block, bytes a block, and how the work grows."""
+"""A scene costs what slides in it, and nothing else: work and bytes a block, how both grow, where rows begin."""
 
 from __future__ import annotations
 
@@ -62,3 +62,16 @@ def test_a_block_takes_few_bytes_and_an_order_eight_more():
 
     assert bytes_a_block(4) < 200.0
     assert bytes_a_block(8) - bytes_a_block(4) == pytest.approx(4 * 8.0, rel=tol.WORK)
+
+
+@pytest.mark.parametrize("right", [0.5, 0.4], ids=["half lattice", "whole lattice"])
+def test_rows_begin_at_different_places_of_their_pages(right):
+    """In a page of 4096 bytes the beginnings of any two are three lines of the cache apart, or more."""
+    lattice = Lattice(Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8), None, 0.0)
+    for _ in range(6):
+        size = lattice.size
+        places = np.sort([row.ctypes.data % 4096 for row in (*lattice.motion.w, *lattice.motion[1:])])
+        assert np.diff(places, append=places[0] + 4096).min() >= 3 * 64
+        assert np.abs(lattice.motion.tau[-lattice.first_block] - 1.0) < 1e-12
+        lattice._grow()
+        assert 2 * size <= lattice.size < 3 * size + 512
