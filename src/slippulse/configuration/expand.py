@@ -71,7 +71,7 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     """The runs of a resolved simulation or of a chunk of it, one after the other."""
     axes, profile_of = _axes(simulation), cache(partial(_profile, simulation))
     count, chunk = run_count(simulation), simulation.get("chunk")
-    for run in runs_of(*chunk, count) if chunk else range(count):
+    for run in runs_of(chunk[0], chunk[1], count) if chunk else range(count):
         places = np.unravel_index(run, [len(axis) for axis in axes])
         release, *shape, gamma, dx, damping = (axis[int(at)] for axis, at in zip(axes, places, strict=True))
         yield Run(release, profile_of(*shape), gamma, dx, damping)
