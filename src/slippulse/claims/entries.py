@@ -36,25 +36,6 @@ def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
     return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 
-def problems(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> list[str]:
-    """One line for each sentence that is neither tested nor excused, each claim without a sentence, each wrong name."""
-    ids = Counter(sentence["id"] for sentence in sentences)
-    lines = [f"{id}: twice" for id, count in ids.items() if count > 1]
-    for sentence in sentences:
-        why = str(sentence.get("why_none", ""))
-        if bool(claims_of(entries, sentence)) == bool(why):
-            lines.append(f"{sentence['id']}: allowed: a claim, or why there is none")
-        repeated = why.removeprefix("repeats ")
-        if why and why not in WHY_NONE and repeated not in ids:
-            lines.append(f"{sentence['id']}: {why!r}; allowed: {', '.join(WHY_NONE)}, repeats ID")
-        if len(sentence["paraphrase"].split()) > 25:
-            lines.append(f"{sentence['id']}: paraphrase of more than 25 words")
-    for id, entry in entries.items():
-        lines += [f"{id}: {name}: no such sentence" for name in entry["sentences"] if name not in ids]
-        lines += [] if entry["sentences"] else [f"{id}: tests no sentence"]
-    return lines
-
-
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
     """How many sentences there are, how many are tested, and how many are not for each reason."""
     why = [str(sentence.get("why_none", "tested")) for sentence in sentences]
@@ -64,10 +45,8 @@ def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
 
 def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
     """Per claim the sections, appendices and figures whose sentences it tests."""
-    found = {}
-    for id, entry in entries.items():
-        tested = [
-            sentence["place"].split(",")[0] for sentence in sentences if sentence["id"] in entry["sentences"]
-        ]
-        found[id] = "; ".join(dict.fromkeys(tested))
-    return found
+    found: dict[str, dict[str, None]] = {id: {} for id in entries}
+    for sentence in sentences:
+        for id in claims_of(entries, sentence):
+            found[id][sentence["place"].split(",")[0]] = None
+    return {id: "; ".join(places) for id, places in found.items()}

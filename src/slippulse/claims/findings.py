@@ -48,8 +48,8 @@ def damped_pulse(evidence: Evidence, ratio: float) -> dict[str, float]:
     off = (table["damping_ratio"] - ratio).abs()
     table = table[off == off.min()]
     out = {"damping_ratio": float(table["damping_ratio"].iloc[0])}
-    for quantity in ("front_speed_right", "pulse_peak_velocity", "pulse_width", "pulse_slip"):
-        name = quantity.removesuffix("_velocity").removeprefix("pulse_").replace("front_speed_right", "speed")
+    quantities = ("front_speed_right", "pulse_peak_velocity", "pulse_width", "pulse_slip")
+    for name, quantity in zip(("speed", "peak", "width", "slip"), quantities, strict=True):
         for who in ("paper", "exact"):
             out[f"{name}_{who}"] = float(np.max(deviations(table, quantity, f"{who}_{quantity}")))
     return out

@@ -16,19 +16,10 @@ CONFIDENCE = (0.68, 0.95)
 
 
 def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
-    """What was read off for one simulation: rows reading, quantity, drawn, reading_error.
-
-    Parameters
-    ----------
-    published : `published` of the configuration
-    simulation : name
-    """
+    """What was read off for one simulation, of `published`: rows reading, quantity, drawn, reading_error."""
     rows = [
-        {
-            "reading": name,
-            "drawn": entry["value"],
-            **{key: entry[key] for key in ("quantity", "reading_error")},
-        }
+        {"reading": name, "drawn": entry["value"]}
+        | {key: entry[key] for key in ("quantity", "reading_error")}
         for name, entry in published.items()
         if entry["simulation"] == simulation
     ]
@@ -36,11 +27,7 @@ def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
 
 
 def curve(profile: pd.DataFrame) -> pd.DataFrame:
-    """Best trials of one release rule over the damping ratio, between those that were fitted.
-
-    Parameters
-    ----------
-    profile : rows of part "profile" of one release rule
+    """Best trials of one release rule over the damping ratio, from its rows of part "profile".
 
     Returns
     -------
@@ -131,11 +118,10 @@ def _regions(line: pd.DataFrame, level: float) -> dict[str, tuple[float, float]]
     """Regions of each parameter, the others being what fits best; NaN for an end that was not reached."""
     room = likely(level) - (line["chi2"] - line["chi2"].min())
     inside = line[room >= 0.0]
-    reach = np.sqrt(room[room >= 0.0])
     ratios = inside["damping_ratio"].iloc[[0, -1]]
     low, high = ratios.where(~ratios.index.isin([line.index[0], line.index[-1]]))
     out = {"damping_ratio": (float(low), float(high))}
     for name in ("tau0", "gamma"):
-        half = reach * inside[f"{name}_error"]
+        half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
         out[name] = float((inside[name] - half).min()), float((inside[name] + half).max())
     return out
