@@ -9,13 +9,6 @@ from slippulse.measure.pulses import leading_pulse
 from slippulse.predict.measured import pulse_state
 
 
-def state(level: float, duration: float, **values) -> str:
-    """State of the right pulse after a time; dx = 0.05 and gamma = 0.65 unless said."""
-    values = {"boundary": "displacement", "gamma": 0.65, "dx": 0.05, "beta": 0.005, "max_step": 0.5} | values
-    run = sp.simulate(sp.Scene(prestress=sp.Prestress(level, level), duration=duration, **values))
-    return pulse_state(run, leading_pulse(run, 0.3))
-
-
 @pytest.mark.parametrize(
     ("level", "duration", "values", "expected"),
     [
@@ -34,8 +27,8 @@ def state(level: float, duration: float, **values) -> str:
     ],
 )
 def test_what_a_pulse_is_called(level, duration, values, expected):
-    assert state(level, duration, **values) == expected
-
-
-def test_the_formula_without_leaf_springs_has_a_faster_front():
+    values = {"boundary": "displacement", "gamma": 0.65, "dx": 0.05, "beta": 0.005, "max_step": 0.5} | values
+    run = sp.simulate(sp.Scene(prestress=sp.Prestress(level, level), duration=duration, **values))
+    assert pulse_state(run, leading_pulse(run, 0.3)) == expected
+    # The formula without leaf springs has a faster front under the elastic rule.
     assert sp.theory.front_speed(0.3, 10.0, "elastic") > 1.1
