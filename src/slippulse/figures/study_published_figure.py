@@ -62,14 +62,13 @@ def plot(table: pd.DataFrame) -> Figure:
     _draw_region(axes["b"], table, "tau0", r"pre-stress $\tau_0$")
     _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\gamma$")
     _draw_pulls(axes["d"], table[table["part"] == "best"])
-    for name in "abcd":
-        panel_letter(axes[name], name)
+    for name, panel in axes.items():
+        panel_letter(panel, name)
     return figure
 
 
-def _curves(table: pd.DataFrame) -> list[tuple[str, pd.DataFrame]]:
-    rows = table[table["part"] == "curve"]
-    return [(release, rows[rows["release"] == release]) for release in LOOKS]
+def _of(table: pd.DataFrame, part: str, release: str) -> pd.DataFrame:
+    return table[(table["part"] == part) & (table["release"] == release)]
 
 
 def _ratio_axis(axes: Axes) -> None:
@@ -82,13 +81,12 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
     best = table[table["part"] == "best"]
     dof = best["reading"].nunique() - 3
     accepted = likely(LEVELS[1], dof)
-    for release, line in _curves(table):
-        colour, marker, label = LOOKS[release]
+    for release, (colour, marker, label) in LOOKS.items():
+        line, found = _of(table, "curve", release), _of(table, "best", release).iloc[0]
         shown = line[line["chi2"] <= accepted]
         axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
         inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
         axes.fill_between(inside["damping_ratio"], inside["chi2"], color=colour, alpha=0.18, linewidth=0.0)
-        found = best[best["release"] == release].iloc[0]
         label = rf"{label}: $\chi^2 = {found['chi2']:.1f}$"
         axes.plot(found["damping_ratio"], found["chi2"], marker, color=colour, label=label)
     top = 1.75 * accepted
@@ -106,8 +104,8 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
 
 def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None:
     """The region of the damping ratio and another parameter, the third being what fits best."""
-    for release, line in _curves(table):
-        colour, marker, _ = LOOKS[release]
+    for release, (colour, marker, _) in LOOKS.items():
+        line, best = _of(table, "curve", release), _of(table, "best", release).iloc[0]
         for level, alpha in zip(LEVELS[::-1], (0.22, 0.45), strict=True):
             room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
             inside = line[room >= 0.0]
@@ -116,7 +114,6 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             axes.fill_between(
                 inside["damping_ratio"], *ends, color=colour, alpha=alpha, linewidth=0.0, gid=gid
             )
-        best = table[(table["part"] == "best") & (table["release"] == release)].iloc[0]
         look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
         axes.plot(best["damping_ratio"], best[name], marker, **look)
     ours = table[table["part"] == "ours"].iloc[0]

@@ -62,12 +62,11 @@ def _lattice_edges(run: xr.Dataset) -> pd.DataFrame:
 def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     """The lattice's samples right of the middle and the exact solution left of it, where they slide."""
     x, times = run["sample_position"].values, run["sample_time"].values
+    left, right = x[x < 1e-9], x[x > -1e-9]
+    exact = rupture.map(times, left, ("slip_velocity",))["slip_velocity"]
+    lattice = run["sample_velocity"].sel(sample_position=right).values
     parts = []
-    for source, half in (("exact", x[x < 1e-9]), ("lattice", x[x > -1e-9])):
-        if source == "exact":
-            velocity = rupture.map(times, half, ("slip_velocity",))["slip_velocity"]
-        else:
-            velocity = run["sample_velocity"].sel(sample_position=half).values
+    for source, half, velocity in (("exact", left, exact), ("lattice", right, lattice)):
         time, position = np.meshgrid(times, half, indexing="ij")
         values = {"time": time.ravel(), "position": position.ravel(), "slip_velocity": velocity.ravel()}
         rows = pd.DataFrame(values).round({"slip_velocity": 5, "position": 9})

@@ -64,8 +64,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 def _refined(runs: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
     """Scenes on refined lattices, with what is held fixed (b = beta/dx or beta) and its value."""
     ratio, *betas = (runs[name] for name in NEEDS["sweeps"][2:])
-    beta = pd.concat([each.assign(held="beta", fixed=each["beta"]) for each in betas])
-    both = pd.concat([ratio.assign(held="b", fixed=ratio["damping_ratio"]), beta])
+    held = [ratio.assign(held="b", fixed=ratio["damping_ratio"])]
+    both = pd.concat([*held, *(each.assign(held="beta", fixed=each["beta"]) for each in betas)])
     return both[(both["left"] == REFINED_LEVEL) & (both["beta"] <= LARGEST_BETA)]
 
 
