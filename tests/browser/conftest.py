@@ -65,11 +65,7 @@ def violations():
         )
         options = {"runOnly": {"type": "tag", "values": LEVELS}, "resultTypes": ["violations"]}
         found = axe.run(page, options=options).response["violations"]
-        problems = [
-            f"{entry['id']}: {entry['help']}: {node['html'][:200]}"
-            for entry in found
-            for node in entry["nodes"]
-        ]
+        problems = [f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]]
         return problems + [f"wider than the page by {wide}"] * (wide > 0)
 
     return find
