@@ -58,11 +58,8 @@ def pulse_claims(evidence: Evidence) -> list[Claim]:
         moderate_speed, steady_for_any_prestress, unique, settle, damping_reduces_oscillations,
         wave_equation, zero_net_stress_change, not_unique, set_by_prestress,
     )  # fmt: skip
-    return [
-        *found.values(),
-        *(equation(evidence, id) for id in EQUATIONS),
-        *(judge(evidence) for judge in others),
-    ]
+    equations = [equation(evidence, id) for id in EQUATIONS]
+    return [*found.values(), *equations, *(judge(evidence) for judge in others)]
 
 
 def equation(evidence: Evidence, id: str) -> Claim:
@@ -122,18 +119,11 @@ def apart(table: pd.DataFrame, sizes: Sequence[str], allowed: float, sure: bool)
     """
     out: list[bool | None] = []
     for one, other in combinations(table.to_dict("records"), 2):
-        found = [
-            (
-                abs(one[size] / other[size] - 1.0),
-                (one[f"uncertainty_{size}"] + other[f"uncertainty_{size}"]) / abs(other[size]),
-            )
-            for size in sizes
-        ]
-        if any(difference - blur > allowed for difference, blur in found):
-            out.append(True)
-        else:
-            none = all(difference + sure * blur <= allowed for difference, blur in found)
-            out.append(False if none else None)
+        differences = np.array([abs(one[size] / other[size] - 1.0) for size in sizes])
+        both = [one[f"uncertainty_{size}"] + other[f"uncertainty_{size}"] for size in sizes]
+        blur = np.array(both) / np.abs([other[size] for size in sizes])
+        equal = False if np.all(differences + sure * blur <= allowed) else None
+        out.append(True if np.any(differences - blur > allowed) else equal)
     return out
 
 

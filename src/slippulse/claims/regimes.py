@@ -125,11 +125,8 @@ def burridge_knopoff(evidence: Evidence) -> Claim:
         "with leaf springs": int((two_way <= BLOCKS).sum()),
         "without": int(spike["regime"].str.startswith("pulse, one-way").sum()),
     }
-    further = {
-        "chains that make two pulses": len(two_way),
-        "fewest blocks at once": two_way.min(),
-        "most": two_way.max(),
-    }
+    fewest, most = two_way.min(), two_way.max()
+    further = {"chains that make two pulses": len(two_way), "fewest blocks at once": fewest, "most": most}
     return shown(evidence, "burridge_knopoff_pulses", held, **further)
 
 

@@ -89,13 +89,9 @@ def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim
     *verdicts, last = (claim["verdict"] for claim in claims.values())
     verdict = rules.at_fractions(verdicts, last)
     said = ", ".join(f"{where} {claim['verdict']}" for where, claim in claims.items())
-    return [*claims.values()][1] | {
-        "verdict": verdict,
-        "why": ""
-        if verdict == "reproduced"
-        else f"It depends on where the transition is taken to end: {said}.",
-        "further": {f"median ratio {where}": claim.get("measured") for where, claim in claims.items()},
-    }
+    why = "" if verdict == "reproduced" else f"It depends on where the transition is taken to end: {said}."
+    further = {f"median ratio {where}": claim.get("measured") for where, claim in claims.items()}
+    return [*claims.values()][1] | {"verdict": verdict, "why": why, "further": further}
 
 
 def speeds_near_one(evidence: Evidence) -> Claim:
@@ -135,14 +131,9 @@ def arrest_position(evidence: Evidence) -> Claim:
     claim = evidence.approximate("front_arrest_position", tables, *what, "left", "width")
     gap = evidence.studied(tables, lambda t: float((t[what[1]] - t[what[0]]).abs().median()))
     ratio = ratios(tables[0], *what)
-    return claim | {
-        "further": {
-            "median gap in H": gap.value,
-            "smallest ratio": float(np.nanmin(ratio)),
-            "largest ratio": float(np.nanmax(ratio)),
-        },
-        "verdict": rules.worst([claim["verdict"], rules.within(gap.value, gap.uncertainty, GAP)]),
-    }
+    further = {"smallest ratio": float(np.nanmin(ratio)), "largest ratio": float(np.nanmax(ratio))}
+    verdict = rules.worst([claim["verdict"], rules.within(gap.value, gap.uncertainty, GAP)])
+    return claim | {"verdict": verdict, "further": {"median gap in H": gap.value} | further}
 
 
 def diverges(evidence: Evidence) -> Claim:

@@ -98,15 +98,11 @@ def grid_tables(
     for index, point in enumerate(finest[list(keys)].to_dict("records")):
         for name, values in studied.items():
             study = grid_study(values[index].tolist(), factors)
-            rows.append(
-                {"point": index}
-                | point
-                | {
-                    "quantity": name,
-                    "value": study.value,
-                    "extrapolated": study.extrapolated,
-                    "observed_order": study.order,
-                    "uncertainty": study.uncertainty,
-                }
-            )
+            numbers = {
+                "value": study.value,
+                "extrapolated": study.extrapolated,
+                "observed_order": study.order,
+            }
+            numbers["uncertainty"] = study.uncertainty
+            rows.append({"point": index} | point | {"quantity": name} | numbers)
     return pd.DataFrame(rows)

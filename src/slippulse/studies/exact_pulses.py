@@ -44,10 +44,6 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=["simulation", "run", "quantity", "difference", "change"])
 
 
-def _undamped(scene: Scene) -> bool:
-    return scene.beta == 0.0
-
-
 def _symmetric_pulse(scene: Scene) -> bool:
     return scene.beta == 0.0 and 0.0 < scene.prestress.left == scene.prestress.right
 
@@ -105,6 +101,6 @@ QUANTITIES: dict[str, dict[str, tuple[Callable[[Scene, int], float], Callable[[S
         "pulse_width": (pulse_width, _symmetric_pulse),
         "pulse_acceleration": (pulse_acceleration, _symmetric_pulse),
     },
-    "stress_pulses": {"profile_change": (profile_change, _undamped)},
+    "stress_pulses": {"profile_change": (profile_change, lambda scene: scene.beta == 0.0)},
     "space_time_displacement": {"strain_term": (strain_term, lambda scene: scene.gamma > 0.0)},
 }
