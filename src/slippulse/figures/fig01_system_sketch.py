@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .shared.sketch import arrow, double_arrow, label
+from .shared.sketch import BOTH, arrow, label
 from .style import BLACK, BLUE, COLUMN, ORANGE, Look, new_panels
 
 NEEDS = {"data": ()}
@@ -78,7 +78,7 @@ def draw_layer(axes: Axes, strip: float) -> None:
     label(axes, 0.7, 0.1, "$f_f$", va="bottom")
     law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
     label(axes, 0.5 * LENGTH, -RIGID - 0.08, law, va="top")
-    double_arrow(axes, (LENGTH + 0.13, 0.0), (LENGTH + 0.13, 1.0), MUTED)
+    arrow(axes, (LENGTH + 0.13, 0.0), (LENGTH + 0.13, 1.0), MUTED, BOTH)
     for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
         label(axes, LENGTH + 0.23, y, text, MUTED, ha="left")
     arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .shared.sketch import arrow, double_arrow, label
+from .shared.sketch import BOTH, arrow, label
 from .style import BLACK, BLUE, COLUMN, CYCLE, GREY, ORANGE, new_panels
 
 NEEDS = {"studies": ["damage_zone"]}
@@ -47,8 +47,8 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     axes.fill_betweenx(after["y"], x_before, x_after, color=BLUE, alpha=0.18, linewidth=0.0)
     arrow(axes, (ORIGIN, -0.14), (ORIGIN + slip, -0.14), ORANGE)
     arrow(axes, (ORIGIN, top + 0.14), (ORIGIN + imposed, top + 0.14), BLACK)
-    double_arrow(axes, (WIDTH + 0.16, 0.0), (WIDTH + 0.16, 1.0), MUTED)
-    double_arrow(axes, (WIDTH + 0.16, 1.0), (WIDTH + 0.16, top), MUTED)
+    arrow(axes, (WIDTH + 0.16, 0.0), (WIDTH + 0.16, 1.0), MUTED, BOTH)
+    arrow(axes, (WIDTH + 0.16, 1.0), (WIDTH + 0.16, top), MUTED, BOTH)
     arrow(axes, (-0.12, 0.0), (-0.12, top + 0.35), MUTED)
     label(axes, 0.12, 0.5, "damage zone\n$G$", ha="left")
     label(axes, 0.12, 0.5 + 0.5 * top, "host rock\n$G_r > G$", ha="left")
