@@ -21,14 +21,7 @@ LONGEST = 2.0
 def claims_page(
     claims: Iterable[Mapping], altered: Sequence[Mapping] = (), findings: Sequence[Mapping] = ()
 ) -> str:
-    """The ledger as a page of its own.
-
-    Parameters
-    ----------
-    claims : as in claims.json
-    altered : what differs from the shipped configuration (`slippulse.data.alterations.changes`)
-    findings : as in findings.json
-    """
+    """The ledger and the findings, as in their JSON, with what differs from the shipped configuration."""
     return page(
         "claims.html",
         findings=findings,

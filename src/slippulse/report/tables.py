@@ -242,14 +242,7 @@ def edges(study: pd.DataFrame) -> str:
 
 
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
-    """What differs from the shipped run, as a quotation; empty if nothing does.
-
-    Parameters
-    ----------
-    altered : what differs from the shipped configuration (`slippulse.data.alterations.changes`)
-    ledger : of this run
-    verdicts : shipped verdict of each claim
-    """
+    """What differs from the shipped configuration and its verdicts, as a quotation; empty if nothing does."""
 
     def code(value: object) -> str:
         return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
