@@ -163,10 +163,7 @@ class Limits(NamedTuple):
 
 
 def make_motion(rows: int, size: int) -> Motion:
-    """Everything at rest: ``rows`` of w, and the other arrays behind them in one block of memory.
-
-    So all rows begin a known distance apart, see `lattice.PAGE`.
-    """
+    """Everything at rest, in one block of memory, so that all rows begin a known distance apart, see `lattice.PAGE`."""
     block = np.zeros((rows + 4, size))
     return Motion(block[:rows], *block[rows:])
 
@@ -179,13 +176,8 @@ def make_segments(size: int) -> Segments:
 
 def make_forecast(size: int, order: int) -> Forecast:
     """No events, on a lattice of ``size`` blocks."""
-    return Forecast(
-        np.full(size, np.inf),
-        np.zeros(size, dtype=np.int64),
-        np.zeros(size),
-        record(COUNT),
-        *np.zeros((2, order + 2)),
-    )
+    release, block, time = np.full(size, np.inf), np.zeros(size, dtype=np.int64), np.zeros(size)
+    return Forecast(release, block, time, record(COUNT), *np.zeros((2, order + 2)))
 
 
 def make_scratch(size: int, order: int) -> Scratch:

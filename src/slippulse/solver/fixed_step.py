@@ -89,14 +89,9 @@ def take_samples(recorder, motion, tally, end):
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
     """Advance by at most ``limits.steps`` steps, to ``limits.end_time`` at most.
 
-    Parameters
-    ----------
-    medium, motion, history, recorder, limits : of one run, see `arrays`; w has three rows: slip, velocity, force
-    sliding : whether each block slides, shape (N,)
+    w has three rows: slip, velocity, force. ``sliding`` tells whether each block slides.
 
-    Returns
-    -------
-    why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK
+    Returns why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK.
     """
     size, tally = motion.tau.shape[0], history.tally
     slip, velocity = motion.w[0], motion.w[1]

@@ -21,13 +21,8 @@ def stress_polynomial(out, medium, motion, block, top):
     w, offset, strain = motion.w, motion.offset, motion.strain
     ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
     slip = w[0, block] + offset[block]
-    out[0] = (
-        (strain[block] - strain[block - 1]) / medium.dx
-        + medium.per_dx2 * ahead
-        - medium.leaf * slip
-        + motion.tau[block]
-        - 1.0
-    )
+    elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.per_dx2 * ahead
+    out[0] = elastic - medium.leaf * slip + motion.tau[block] - 1.0
     scale, damping = 1.0, medium.damping if medium.total and medium.beta > 0.0 else 0.0
     for k in range(1, top + 1):
         neighbours = w[k, block - 1] + w[k, block + 1]

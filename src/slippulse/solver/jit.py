@@ -58,9 +58,7 @@ entry = numba.njit(cache=True, nogil=True, **FLAGS)
 def inner(*, inline: bool = False, reorder: bool = False):
     """Decorator of a function that kernels call. Called from Python, it is a function of Python.
 
-    Parameters
-    ----------
-    inline : put its machine code into that of its caller, rather than hand on groups of arrays at each call
-    reorder : let its sums vectorise
+    inline puts its machine code into that of its caller, rather than hand on groups of arrays at each call; reorder
+    lets its sums vectorise.
     """
     return register_jitable(forceinline=inline, **FLAGS | ({"fastmath": REORDER} if reorder else {}))

@@ -30,14 +30,7 @@ def _row_length(size: int) -> int:
 
 
 class Lattice:
-    """State of one run, in arrays with one ghost block at each end.
-
-    Parameters
-    ----------
-    scene : the scene
-    samples : where and when to record; nothing if None
-    beta : damping; the scene's, or with the other sign
-    """
+    """State of one run, in arrays with one ghost block at each end; beta is the scene's, or with the other sign."""
 
     def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
         self.scene, self.samples = scene, samples
@@ -49,29 +42,28 @@ class Lattice:
         # The block at array position 0; block 0 lies at x = 0.
         self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
         size = _row_length(FIRST_BLOCKS + 2 if self.mirror else 2 * FIRST_BLOCKS + 3)
-        while self._blocks_of_bumps() > size - arrays.ROOM:
+        # So that all that is released at t = 0 lies on it, far bumps included.
+        reach = max((abs(c) + 4.0 * w for c, _, w in scene.prestress.bumps), default=0.0)
+        blocks = (int(np.ceil(reach / scene.dx)) + arrays.ROOM) * (1 if self.mirror else 2)
+        while blocks > size - arrays.ROOM:
             left, right = self._extension(size)
             size += left + right
             self.first_block -= left
-        tau = self._prestress(size)
-        rows = scene.order + 2 if self.localised else 3
-        self.motion = arrays.make_motion(rows, size)
-        self.motion.tau[:] = tau
-        self.largest_force = float(np.max(np.abs(tau)))
-        self.sliding = tau >= 1.0
-        self.sliding[0] = self.sliding[-1] = False
-        self.segments = arrays.make_segments(size)
+        self.motion = arrays.make_motion(scene.order + 2 if self.localised else 3, 0)
+        self.segments = arrays.make_segments(0)
+        self.sliding = np.zeros(0, dtype=bool)
+        self.history = arrays.History(np.zeros(0), np.zeros(0), arrays.record(arrays.TALLY))
+        times = samples.times if samples else np.zeros(0)
+        recorded = np.zeros((2, times.size, samples.positions.size if samples else 0))
+        self.recorder = arrays.Recorder(times, np.zeros(0, dtype=np.int64), *recorded)
+        self._extend(0, size)
+        self.sliding[1:-1] = self.motion.tau[1:-1] >= 1.0
+        self.history.release_time[self.sliding] = 0.0
         edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
         n = self.segments.count.n = edges.size // 2
         self.segments.starts[:n], self.segments.ends[:n] = edges[0::2], edges[1::2]
-        tally = arrays.record(arrays.TALLY)
-        tally.first_stick_time = np.nan
-        tally.releases = self.sliding.sum()
-        self.history = arrays.History(np.where(self.sliding, 0.0, np.nan), np.full(size, np.nan), tally)
-        times = samples.times if samples else np.zeros(0)
-        recorded = np.zeros((2, times.size, samples.positions.size if samples else 0))
-        self.recorder = arrays.Recorder(times, self._sampled_blocks(size), *recorded)
-        self.scratch = arrays.make_scratch(size, scene.order)
+        self.tally.first_stick_time = np.nan
+        self.tally.releases = self.sliding.sum()
 
     @property
     def size(self) -> int:
@@ -93,18 +85,6 @@ class Lattice:
             elif isinstance(item, np.ndarray):
                 yield item
 
-    def _blocks_of_bumps(self) -> int:
-        """Blocks that the lattice needs, so that all that is released at t = 0 lies on it, far bumps included."""
-        reach = max((abs(c) + 4.0 * w for c, _, w in self.scene.prestress.bumps), default=0.0)
-        blocks = int(np.ceil(reach / self.scene.dx)) + arrays.ROOM
-        return blocks if self.mirror else 2 * blocks
-
-    def _prestress(self, size: int) -> np.ndarray:
-        tau = self.scene.prestress((np.arange(size) + self.first_block) * self.scene.dx)
-        if self.mirror:
-            tau[0] = tau[2]
-        return tau
-
     def _sampled_blocks(self, size: int) -> np.ndarray:
         """Array position of the block nearest to each sampled position; -1 outside the lattice."""
         if not self.samples:
@@ -122,38 +102,36 @@ class Lattice:
 
     def _grow(self) -> None:
         """Double the lattice or a little more, on both sides unless it is a mirrored half."""
-        pad = left, right = self._extension(self.size)
-        size = self.size + left + right
+        left, right = self._extension(self.size)
         self.first_block -= left
-        old, inside = self.motion, slice(left, left + self.size)
+        self._extend(left, right)
+
+    def _extend(self, left: int, right: int) -> None:
+        """Arrays with so many more blocks at rest on the left and on the right."""
+        old, inside, n = self.motion, slice(left, left + self.size), self.segments.count.n
+        size = left + self.size + right
         self.motion = arrays.make_motion(old.w.shape[0], size)
         self.motion.w[:, inside], self.motion.strain[inside] = old.w, old.strain
-        self.motion.tau[:] = self._prestress(size)
+        self.motion.tau[:] = self.scene.prestress((np.arange(size) + self.first_block) * self.scene.dx)
+        if self.mirror:
+            self.motion.tau[0] = self.motion.tau[2]
         self.largest_force = float(np.max(np.abs(self.motion.tau)))
-        self.sliding = np.pad(self.sliding, pad)
-        n = self.segments.count.n
+        self.sliding = np.pad(self.sliding, (left, right))
         grown = arrays.make_segments(size)
         grown.starts[:n], grown.ends[:n] = self.segments.starts[:n] + left, self.segments.ends[:n] + left
         grown.count.n = n
         self.segments = grown
-        self.history = arrays.History(
-            np.pad(self.history.release_time, pad, constant_values=np.nan),
-            np.pad(self.history.stick_time, pad, constant_values=np.nan),
-            self.tally,
-        )
+        known = self.history.release_time, self.history.stick_time
+        release, stick = (np.pad(times, (left, right), constant_values=np.nan) for times in known)
+        self.history = arrays.History(release, stick, self.tally)
         self.tally.first_stuck_block += left
         self.recorder = self.recorder._replace(blocks=self._sampled_blocks(size))
         self.scratch = arrays.make_scratch(size, self.scene.order)
 
     def _advance(self, steps: int) -> int:
         scene = self.scene
-        limits = arrays.Limits(
-            order=scene.order,
-            largest_step=scene.max_step * scene.dx,
-            end_time=scene.duration,
-            largest_force=self.largest_force,
-            steps=steps,
-        )
+        step = scene.max_step * scene.dx
+        limits = arrays.Limits(scene.order, step, scene.duration, self.largest_force, steps)
         state = (self.medium, self.motion)
         if self.localised:
             return taylor.advance(*state, self.segments, self.scratch, self.history, self.recorder, limits)
@@ -163,43 +141,30 @@ class Lattice:
         settings = f"dx = {self.scene.dx:g}, beta = {self.medium.beta:g}, max_step = {self.scene.max_step:g}"
         return UnstableRun(f"the run became unstable at t = {time:.6g}: {reason} ({settings})")
 
-    def _blocks_a_step(self) -> int:
-        """Blocks that a step updates: those that slide, or all."""
-        if not self.localised:
-            return self.size
-        n = self.segments.count.n
-        return max(int(np.sum(self.segments.ends[:n] - self.segments.starts[:n])), 1)
-
     def run(self, progress: Callable[[float], None] | None) -> int:
-        """Advance to the end of the scene.
+        """Advance to the end of the scene; progress is told the fraction of the duration done, several times a second.
 
-        Parameters
-        ----------
-        progress : called with the fraction of the duration done, several times a second
-
-        Returns
-        -------
-        why the kernel stopped: DONE or ALL_STUCK
+        Returns why the kernel stopped, DONE or ALL_STUCK.
 
         Raises UnstableRun: when slip velocity is not finite or beyond anything the pre-stress can drive, or time no
         longer advances.
         """
         while True:
             before = float(self.tally.time)
-            steps = int(min(max(CALL_WORK / self._blocks_a_step(), 10), self.call_steps))
+            n = self.segments.count.n
+            sliding = int(np.sum(self.segments.ends[:n] - self.segments.starts[:n]))
+            updated = max(sliding, 1) if self.localised else self.size
+            steps = int(min(max(CALL_WORK / updated, 10), self.call_steps))
             status = self._advance(steps)
             if status == arrays.GROW:
                 self._grow()
             elif status == arrays.UNSTABLE:
-                raise self._unstable(
-                    self.tally.time, "slip velocity is not finite or beyond anything the pre-stress can drive"
-                )
+                reason = "slip velocity is not finite or beyond anything the pre-stress can drive"
+                raise self._unstable(self.tally.time, reason)
             elif status != arrays.CONTINUE:
                 return status
             elif self.tally.time - before < steps * taylor.SIMULTANEOUS * self.scene.max_step * self.scene.dx:
-                raise self._unstable(
-                    before,
-                    "it no longer advances, blocks stick and are released over and over at one instant",
-                )
+                reason = "it no longer advances, blocks stick and are released over and over at one instant"
+                raise self._unstable(before, reason)
             if progress is not None:
                 progress(float(min(1.0, self.tally.time / self.scene.duration)))

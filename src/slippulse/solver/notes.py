@@ -30,30 +30,23 @@ def note_stick(history, block, time):
 
 
 @inner()
-def sample(motion, blocks, s, order, slip, velocity):
-    """Slip and slip velocity of the sampled blocks a time s after the step began."""
-    w = motion.w
-    for p in range(blocks.shape[0]):
-        i = blocks[p]
-        if i < 0:
-            continue
-        u, v = 0.0, 0.0
-        for k in range(order + 1, 0, -1):
-            u = s / k * (w[k, i] + u)
-        for k in range(order, 0, -1):
-            v = s / k * (w[k + 1, i] + v)
-        slip[p] = w[0, i] + motion.offset[i] + u
-        velocity[p] = w[1, i] + v
-
-
-@inner()
 def take_samples(recorder, motion, tally, start, end, order):
     """Take the samples that are due by ``end``, from polynomials about ``start``."""
-    times = recorder.times
+    times, blocks, w = recorder.times, recorder.blocks, motion.w
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
         s = min(max(times[n], start), end) - start
-        sample(motion, recorder.blocks, s, order, recorder.slip[n], recorder.velocity[n])
+        for p in range(blocks.shape[0]):
+            i = blocks[p]
+            if i < 0:
+                continue
+            u, v = 0.0, 0.0
+            for k in range(order + 1, 0, -1):
+                u = s / k * (w[k, i] + u)
+            for k in range(order, 0, -1):
+                v = s / k * (w[k + 1, i] + v)
+            recorder.slip[n, p] = w[0, i] + motion.offset[i] + u
+            recorder.velocity[n, p] = w[1, i] + v
         tally.samples_taken += 1
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from .lattice import Lattice
 
 # Blocks at rest that are kept beyond the outermost released one.
 MARGIN = 16
+# Of the tally, as they are.
+COUNTED = ("steps", "block_updates", "event_updates", "releases", "sticks", "re_releases", "min_velocity")
 
 
 @dataclass
@@ -30,7 +32,7 @@ class LatticeRun:
     slip_acceleration: np.ndarray
     sample_slip: np.ndarray | None
     sample_velocity: np.ndarray | None
-    numbers: dict = field(default_factory=dict)
+    numbers: dict
 
 
 def energies(lattice: Lattice, totals: dict) -> dict:
@@ -60,50 +62,30 @@ def energies(lattice: Lattice, totals: dict) -> dict:
 
 
 def stress(lattice: Lattice) -> np.ndarray:
-    """Stress of every block at the end, damping included where the release rule includes it."""
+    """Stress of every block at the end, damping included where the release rule includes it; without ghosts."""
     medium, motion = lattice.medium, lattice.motion
     dx, u, v = medium.dx, motion.w[0], motion.w[1]
-    found = motion.tau - medium.leaf * u
-    if lattice.localised:
-        found[1:-1] += np.diff(motion.strain[:-1]) / dx
-    else:
-        found[1:-1] += np.diff(u, 2) / dx**2
-    if medium.total:
-        found[1:-1] += medium.beta * np.diff(v, 2) / dx**2
-    return found
+    elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(u, 2) / dx**2
+    found = (motion.tau - medium.leaf * u)[1:-1] + elastic
+    return found + medium.beta * np.diff(v, 2) / dx**2 if medium.total else found
 
 
 def numbers_of(lattice: Lattice, status: int) -> dict:
     """Energies, counters and extremes of a run."""
     totals = dict(zip(TALLY.names or (), lattice.tally.tolist(), strict=True))
-    stuck_stress = stress(lattice)[1:-1][~lattice.sliding[1:-1]]
+    stuck_stress = stress(lattice)[~lattice.sliding[1:-1]]
     lowest = float(min(totals["min_stuck_stress"], np.min(stuck_stress, initial=np.inf)))
     first_stuck = (totals["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
     return energies(lattice, totals) | {
         "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
-        "steps": totals["steps"],
-        "block_updates": totals["block_updates"],
-        "event_updates": totals["event_updates"],
-        "releases": totals["releases"],
-        "sticks": totals["sticks"],
-        "re_releases": totals["re_releases"],
-        "min_velocity": totals["min_velocity"],
+        **{key: totals[key] for key in COUNTED},
         "min_stuck_stress": lowest,
         "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
         "first_stick_time": totals["first_stick_time"],
         "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
         "half_lattice_used": int(lattice.mirror),
     }
-
-
-def take_last_samples(lattice: Lattice) -> None:
-    """Fill the samples that a run that stopped early did not take: all is at rest."""
-    recorder, w = lattice.recorder, lattice.motion.w
-    inside = recorder.blocks >= 0
-    for n in range(lattice.tally.samples_taken, recorder.times.size):
-        recorder.slip[n, inside] = w[0, recorder.blocks[inside]]
-        recorder.velocity[n, inside] = w[1, recorder.blocks[inside]]
 
 
 def kept_blocks(lattice: Lattice) -> np.ndarray:
@@ -124,8 +106,11 @@ def assemble(lattice: Lattice, status: int) -> LatticeRun:
         n = lattice.segments.count.n
         for a, b in zip(lattice.segments.starts[:n], lattice.segments.ends[:n], strict=True):
             lattice.sliding[a:b] = True
-    take_last_samples(lattice)
     motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
+    # Samples that a run that stopped early did not take: all is at rest.
+    inside = recorder.blocks >= 0
+    for n in range(lattice.tally.samples_taken, recorder.times.size):
+        recorder.slip[n, inside], recorder.velocity[n, inside] = motion.w[:2, recorder.blocks[inside]]
     keep = kept_blocks(lattice)
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:

@@ -62,14 +62,6 @@ def remove(segments, r):
     segments.count.n -= 1
 
 
-@inner()
-def copy_segments(to, segments):
-    """Make one list equal to another."""
-    for r in range(segments.count.n):
-        to.starts[r], to.ends[r] = segments.starts[r], segments.ends[r]
-    to.count.n = segments.count.n
-
-
 @inner(inline=True)
 def holds(segments, block):
     """Whether a block is in one of the segments."""

@@ -20,15 +20,8 @@ from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
 from .jit import entry, inner
-from .notes import (
-    dissipation,
-    note_kink,
-    note_release,
-    note_stick,
-    take_samples,
-    viscous_loss,
-)
-from .segments import copy_segments, holds, release_block, stick_block
+from .notes import dissipation, note_kink, note_release, note_stick, take_samples, viscous_loss
+from .segments import holds, release_block, stick_block
 from .stencils import advance_slip, advance_strain, first_acceleration, next_derivative, velocity_after
 
 # Events closer than this fraction of the largest step are one: fronts of a symmetric scene that meet.
@@ -53,12 +46,6 @@ def derivatives(medium, motion, segments, top):
     if mirror:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
-
-
-@inner()
-def near_the_end(segments, size, mirror):
-    """Whether a front is so near the end of the lattice that the events of a step may reach beyond it."""
-    return segments.ends[segments.count.n - 1] >= size - ROOM or (segments.starts[0] <= ROOM and not mirror)
 
 
 @inner(inline=True)
@@ -167,13 +154,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
 
     At the end the viscous loss is complete and w[2] holds the accelerations.
 
-    Parameters
-    ----------
-    medium, motion, segments, scratch, history, recorder, limits : of one run, see `arrays`
-
-    Returns
-    -------
-    why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK
+    Returns why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK.
     """
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
@@ -192,7 +173,9 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
             return ALL_STUCK
         if t >= limits.end_time:
             return DONE
-        if near_the_end(segments, size, medium.mirror):
+        # The events of a step may reach beyond the end of the lattice.
+        last = segments.ends[segments.count.n - 1]
+        if last >= size - ROOM or (segments.starts[0] <= ROOM and not medium.mirror):
             return GROW
         kinks.k, kinks.ks, kinks.kss = 0.0, 0.0, 0.0
 
@@ -200,7 +183,9 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
         end = limits.end_time if h == limits.end_time - t else t + h
         if not foresee(medium, motion, segments, forecast, tally, h, top):
             return UNSTABLE
-        copy_segments(moved, segments)
+        for r in range(segments.count.n):
+            moved.starts[r], moved.ends[r] = segments.starts[r], segments.ends[r]
+        moved.count.n = segments.count.n
         changed.count.n = 0
 
         early = False
