@@ -8,7 +8,7 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.theory.transition import prestress_balance_position
+from slippulse.model.balance import prestress_balance_position
 
 GAMMA = 2.0 / 3.0
 

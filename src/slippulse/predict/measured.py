@@ -13,8 +13,7 @@ from ..measure.fronts import path
 from ..measure.pulses import LeadingPulse, comoving, slip_variation
 from ..measure.table import measure_run
 from ..model.scene import scene_of
-from ..theory.pulse import paper_pulse, steady_pulse
-from ..theory.transition import paper_transition_displacement, paper_transition_stress
+from ..theory.pulse import paper_pulse, paper_transition_displacement, paper_transition_stress, steady_pulse
 
 # A width that differs from that of the steady pulse at the measured speed by more than this, the damped layer and the
 # blocks that the front takes, or slip that still varies by more than this behind it, belongs to a pulse that changes.

@@ -49,9 +49,7 @@ class ArrestingCrack:
                 f"position: {position!r}; allowed: farther from x_minus = {self.balance_position:.10g}, where"
                 f" characteristics that entered before {last:g} end"
             )
-        return float(
-            root_between(lambda e: self.prestress.integral(position, e), self.zero, last, xtol=1e-13)
-        )
+        return root_between(lambda e: self.prestress.integral(position, e), self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
         """When the left front reaches a position in (x_minus, 0]."""
@@ -81,8 +79,6 @@ class ArrestingCrack:
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
         """The pulse far to the right: x - t of each characteristic and du/dt on it, from the front backwards.
 
-        Parameters
-        ----------
         count : characteristics from each of three parts, 2 to 10000
         """
         check_number("count", count, whole=True, at_least=2, at_most=10_000)

@@ -55,10 +55,9 @@ def barrier_depth(
     level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
     stop = None
     while stop is None:
-        step = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
-        if step.panel is not None:
-            panels.append(step.panel)
-        stop = step.stop
+        panel, stop = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
+        if panel is not None:
+            panels.append(panel)
     if stop != "dead":
         raise ValueError(
             f"tau_barrier: {tau_barrier!r}, where the front is {stop} at tau0 = {tau0!r}, damping_ratio ="

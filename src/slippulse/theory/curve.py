@@ -15,6 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
+from ..model.roots import root_between
+
 # Times and positions that differ by less than this, relative, are the same: a hundred times the error of a stick time.
 SAME = 1e-9
 COUNT = 12
@@ -104,13 +106,9 @@ class Curve:
         restarts = ([-x for x in side] for side in (self.restarts_right, self.restarts_left))
         return Curve(seen(self.panels, -1.0), *restarts)
 
-    def at(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """One of `powers` at a parameter on panels."""
-        return horner(self.powers[name][:, 0, panel], s)
-
-    def slope(self, name: str, panel: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Its derivative by the parameter."""
-        return horner(self.powers[name][:, 1, panel], s)
+    def at(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
+        """One of `powers` at a parameter on panels, or its derivative by the parameter (order 1)."""
+        return horner(self.powers[name][:, order, panel], s)
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Whether positions lie on the curve."""
@@ -151,6 +149,20 @@ class Curve:
         What leaves the rupture across a front that was slower than the waves sees no source beyond.
         """
         return [0, *sorted(int(np.argmin(np.abs(self.edges - x))) for x in restarts), len(self.panels)]
+
+    def front_at(self, time: float, x: float, side: float) -> float:
+        """Where the front going to one side from around x is at a time: the nearest position released then."""
+        edges, times = self.edges, self.edge_times
+        beyond = np.flatnonzero((side * edges > side * x) & (times > time))
+        if not beyond.size:
+            return float(edges[-1 if side > 0.0 else 0])
+        k = beyond[0] if side > 0.0 else beyond[-1]
+        inner = side * max(side * edges[k - int(side)], side * x)
+
+        def late(position: float) -> float:
+            return float(self.arrival(position)) - time
+
+        return inner if late(inner) >= 0.0 else root_between(late, inner, float(edges[k]), xtol=1e-13)
 
     def _solve(self, name, panel, level, at_left, at_right) -> np.ndarray:
         """The parameter where a field, monotonic on its panel with these values at the ends, has a value."""

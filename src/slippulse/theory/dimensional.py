@@ -123,10 +123,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     thickness : H of the damage zone (m)
     rock_thickness : H_r of the host rock, between the zone and the imposed displacement (m), 0 too
 
-    Returns
-    -------
-    float or array
-        G delta / (H + (G/G_r) H_r) in Pa; G delta / H when G << G_r.
+    Returns G delta / (H + (G/G_r) H_r) in Pa, a float or an array; G delta / H when G << G_r.
 
     Raises ValueError: outside these ranges.
     Source: section IV C 2 of the paper.

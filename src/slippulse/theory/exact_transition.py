@@ -9,7 +9,6 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_choice, check_domains, check_kind, check_number
 from ..model.prestress import Prestress
-from ..model.roots import root_between
 from .curve import Curve, seen
 from .front_law import front_speed
 from .fronts import NARROWEST, FrontLaw, straight_panel
@@ -71,13 +70,7 @@ class Fronts:
         check_choice("sign", sign, (-1, 1))
         last = 0 if sign < 0.0 else -1
         check_number("time", time, at_least=0.0, below=float(self.curve.edge_times[last]))
-        # Where the front starts rounding leaves a time.
-        if time <= float(self.curve.arrival(0.0)):
-            return 0.0
-        distance = abs(float(self.curve.edges[last]))
-        return float(
-            root_between(lambda x: float(self.curve.arrival(sign * x)) - time, 0.0, distance, xtol=1e-13)
-        )
+        return abs(self.curve.front_at(time, 0.0, sign))
 
 
 def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:

@@ -8,8 +8,6 @@ wider than the layer of damped or lattice waves at its tip, a few blocks unless 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from ..model.checks import DOMAINS, as_numbers, check_choice, check_domains, check_number, of_one_shape
@@ -136,11 +134,7 @@ def lattice_front_speed(
     if damping_ratio == 0.0:
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
         return float(np.sqrt(springs) / (2.0 * tau0 * np.arcsin(argument)))
-    found = root(
-        lambda x, _: log_prestress(np.exp(x), ratio, springs, release),
-        np.array([float(tau0)]), np.array([low]), first_guess(np.array([tau0]), ratio, release),
-    )  # fmt: skip
-    return float(1.0 + np.exp(found[0]))
+    return float(1.0 + np.exp(root(np.array([float(tau0)]), ratio, springs, release, low)[0]))
 
 
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
@@ -199,16 +193,11 @@ def _nearly_free(speed: float, springs: float, damping: float) -> float:
 def log_excess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     """ln(v - 1) for 1-d arrays, b > 0."""
     # Neighbours in the order of the speed share a contour.
-    guess = first_guess(tau, ratio, release)
-    order = np.argsort(guess)
+    order = np.argsort(first_guess(tau, ratio, release))
     out = np.empty(tau.size)
     for start in range(0, tau.size, CHUNK):
         part = order[start : start + CHUNK]
-
-        def levels(x: np.ndarray, alive: np.ndarray, part: np.ndarray = part) -> np.ndarray:
-            return log_prestress(np.exp(x), ratio[part][alive], 0.0, release)
-
-        out[part] = root(levels, tau[part], np.full(part.size, SLOWEST), guess[part])
+        out[part] = root(tau[part], ratio[part], 0.0, release)
     return out
 
 
@@ -238,25 +227,22 @@ def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
 
 
 def root(
-    levels: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    tau: np.ndarray,
-    low: np.ndarray,
-    guess: np.ndarray,
+    tau: np.ndarray, ratio: np.ndarray, springs: float, release: str, slowest: float = SLOWEST
 ) -> np.ndarray:
-    """x = ln(v - 1) where the pre-stress is tau, by secants in ln(tau/(1 - tau)), which is nearly linear in x.
+    """x = ln(v - 1) from the slowest on where the pre-stress is tau, by secants in ln(tau/(1 - tau)).
 
-    Monotone in x, hence bracketed: a secant that leaves the bracket is replaced by its middle.
+    That is nearly linear in x, and monotone, hence bracketed: a secant that leaves the bracket is replaced by its middle.
     """
-    low, high = low.copy(), np.full(tau.size, FASTEST)
+    low, high = np.full(tau.size, slowest), np.full(tau.size, FASTEST)
     target = np.log(tau) - np.log1p(-tau)
 
     def mismatch(x: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        level = levels(x, alive)
+        level = log_prestress(np.exp(x), ratio[alive], springs, release)
         # Beyond the floating range below 1 the stress is faster than any target.
         return level - np.log(np.maximum(-np.expm1(level), 1e-17)) - target[alive]
 
     alive = np.arange(tau.size)
-    x = np.clip(guess, low + 0.1, high - 1.0)
+    x = np.clip(first_guess(tau, ratio, release), low + 0.1, high - 1.0)
     before, value_before = x.copy(), mismatch(x, alive)
     x = np.clip(x - np.clip(value_before, -2.0, 2.0), low, high)
     for _ in range(200):

@@ -18,19 +18,13 @@ from ..model.scene import RELEASES
 
 # Substeps of a period at which velocity and stress are looked at.
 SUBSTEPS = 16
-# Blocks kept behind the front; what lies farther behind does not reach it.
-BLOCKS = 100
 
 
 class SteadyFront(NamedTuple):
     """A front at one speed, in lattice units: lengths in dx, slip in dx^2, velocity in dx.
 
-    Attributes
-    ----------
-    prestress : tau_0 into which the front runs
-    distance : behind the front, from 0 upwards
-    slip, velocity : there
-    ahead : stress on the first stuck block at SUBSTEPS + 1 times from the last release to its own, where it is 1
+    It runs into tau_0 = prestress, with slip and velocity at distances behind it; ahead is the stress on the first
+    stuck block at SUBSTEPS + 1 times from the last release to its own, where it is 1.
     """
 
     prestress: float
@@ -52,7 +46,7 @@ class SteadyFront(NamedTuple):
 
 
 def steady_front(
-    speed: float, damping_ratio: float, springs: float = 0.0, release: str = "total", blocks: int = BLOCKS
+    speed: float, damping_ratio: float, springs: float = 0.0, release: str = "total", blocks: int = 100
 ) -> SteadyFront:
     """The steady front at a given speed, without sticking behind it.
 

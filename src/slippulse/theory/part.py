@@ -71,20 +71,6 @@ class Part:
         past = Past(self.curve, self.gamma, x, time)
         return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
 
-    def front_at(self, time: float, x: float, side: float) -> float:
-        """Where the front going to one side from around x is at a time: the nearest position released then."""
-        edges, times = self.curve.edges, self.curve.edge_times
-        beyond = np.flatnonzero((side * edges > side * x) & (times > time))
-        if not beyond.size:
-            return float(edges[-1 if side > 0.0 else 0])
-        k = beyond[0] if side > 0.0 else beyond[-1]
-        inner = side * max(side * edges[k - int(side)], side * x)
-
-        def late(position: float) -> float:
-            return float(self.curve.arrival(position)) - time
-
-        return inner if late(inner) >= 0.0 else root_between(late, inner, float(edges[k]), xtol=1e-13)
-
     # Sticking
 
     @cached_property
@@ -289,10 +275,10 @@ class Part:
             n = int(np.argmax(values))
             if values[n] > best:
                 best, centre, at = float(values[n]), grid_x[keep][n], fraction[keep][n]
-            grid_x, fraction = np.meshgrid(
+            near = (
                 np.clip(centre + reach_x * around, x[0], x[-1]),
                 np.clip(at + reach_fraction * around, 0.0, 1.0),
-                indexing="ij",
             )
+            grid_x, fraction = np.meshgrid(*near, indexing="ij")
             reach_x, reach_fraction = 0.4 * reach_x, 0.4 * reach_fraction
         return best

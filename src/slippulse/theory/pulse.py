@@ -1,4 +1,4 @@
-"""The steady slip pulse under a displacement boundary, with damping."""
+"""The steady slip pulse, with damping, and the paper's estimates of where and when a crack becomes a pulse."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_domains, check_number
+from ..model.prestress import Prestress
 from .front_law import front_speed_undamped
 
 
@@ -15,14 +17,8 @@ from .front_law import front_speed_undamped
 class SteadyPulse:
     """A steady pulse; lengths in units of H, xi = x - v t <= 0 behind the front at xi = 0.
 
-    Attributes
-    ----------
-    speed : front speed v
-    width : distance from the front to where the velocity returns to 0
-    slip : final slip left behind
-    peak_velocity : largest slip velocity
-    stress_drop : gamma times the slip
-    growth, wavenumber : p and q of the complex pair p +- i q
+    Width is the distance from the front to where the velocity returns to 0, slip what is left behind, stress_drop gamma
+    times that; growth and wavenumber are p and q of the complex pair p +- i q.
     """
 
     tau0: float
@@ -125,3 +121,29 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     """
     check_domains(tau0=tau0)
     return steady_pulse(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))
+
+
+def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
+    """The paper's T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2), displacement boundary.
+
+    Parameters
+    ----------
+    tau0 : pre-stress on both sides, in (0, 1)
+    gamma : elasticity ratio, > 0
+
+    Raises ValueError: outside the domain.
+    Source: section III B of the paper. It neglects the elastic coupling and the Gaussian at nucleation.
+    """
+    check_domains(tau0=tau0, gamma=gamma)
+    time = np.pi / np.sqrt(float(gamma))
+    return float(time), float(2.0 * time / np.sqrt(1.0 - tau0**2))
+
+
+def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
+    """The paper's T_trans = |x_minus| and L_trans = 2 |x_minus|, stress boundary, front speeds taken as 1.
+
+    Raises ValueError: as `prestress_balance_position`.
+    Source: section III C of the paper.
+    """
+    distance = abs(prestress_balance_position(prestress))
+    return distance, 2.0 * distance

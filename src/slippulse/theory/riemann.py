@@ -48,9 +48,8 @@ class Rest:
         else:
             k = float(np.sqrt(gamma))
             right = _decaying(k, curve.x, curve.source, curve.edges)
-            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])[
-                ::-1, ::-1
-            ]
+            left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])
+            left = left[::-1, ::-1]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
         self.at_nodes = (p, slope, *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)))
@@ -73,9 +72,8 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
     loss = np.exp(-k * np.diff(edges))
     gains = loss * ((source * within) @ WEIGHTS)
     first = float(source[0, 0] / (SLOPE[0] @ x[0])) / k
-    starts = list(
-        accumulate(zip(loss, gains, strict=True), lambda p, step: p * step[0] + step[1], initial=first)
-    )
+    steps = zip(loss, gains, strict=True)
+    starts = list(accumulate(steps, lambda p, step: p * step[0] + step[1], initial=first))
     return (np.array(starts[:-1])[:, None] + (source * within) @ CUMULATIVE.T) / within
 
 
@@ -96,7 +94,7 @@ class Past:
         """Derivatives of du/dt by t - y and by t + y: of the formula's ends and of its kernel."""
         ends = []
         for name, (panel, s, _) in (("early", self.left), ("late", self.right)):
-            slope = self.curve.slope(name, panel, s)
+            slope = self.curve.at(name, panel, s, order=1)
             # Where the slope is 0 so is tau, and the end contributes nothing.
             slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
             ends.append(self.curve.at("source", panel, s) / slope)
@@ -133,9 +131,8 @@ class Past:
             p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
             first = kernel(1)
             growth = gamma**2 * kernel(2) * (ahead * (p * early) - behind * (p * late))
-            return (ahead - behind) * (first * (gamma * slope * time) - growth) + first * (
-                gamma * p * (early + late)
-            )
+            sides = first * (gamma * p * (early + late))
+            return (ahead - behind) * (first * (gamma * slope * time) - growth) + sides
 
         (on_left, s_left, _), (on_right, s_right, _) = self.left, self.right
         behind = (self.xi - curve.at("early", on_right, s_right)) * rest.at(on_right, s_right, 0)

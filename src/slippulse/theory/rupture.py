@@ -46,17 +46,12 @@ class Rupture:
 
     Parameters
     ----------
-    prestress : Prestress
-        Reaching 1 somewhere; each position where it does at t = 0 is a nucleation point.
-    gamma : float
-        Elasticity ratio, > 0; or 0 for the stress boundary.
-    damping_ratio : float
-        beta/dx, from 0 to 1e6, at which dx -> 0.
+    prestress : Prestress, reaching 1 somewhere; each position where it does at t = 0 is a nucleation point
+    gamma : elasticity ratio, > 0; or 0 for the stress boundary
+    damping_ratio : beta/dx, from 0 to 1e6, at which dx -> 0
     release : "total" or "elastic"
-    duration : float
-        Time up to which the rupture is wanted, >= 1e-9.
-    refinement : int
-        Panels are cut into so many more, to see what the result owes to them; 1 to 10.
+    duration : time up to which the rupture is wanted, >= 1e-9
+    refinement : panels are cut into so many more, to see what the result owes to them; 1 to 10
 
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
     20000 panels. Of every method: if a position or a time is not a finite number (where arrays are taken, an array of
@@ -98,7 +93,7 @@ class Rupture:
             reason = "stops" if reason == "dead" else reason
             return FrontEnd(float(x), float(min(time, self.duration)), reason)
         edges = part.curve.edges[part.curve.edge_times <= self.duration]
-        x = part.front_at(self.duration, edges[-1 if side > 0.0 else 0], side)
+        x = part.curve.front_at(self.duration, edges[-1 if side > 0.0 else 0], side)
         return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
@@ -116,7 +111,7 @@ class Rupture:
         check_number("x", x)
         for part in self._parts:
             if part.curve.arrival(x) <= time * (1.0 + SAME):
-                return part.front_at(time, x, -1.0), part.front_at(time, x, 1.0)
+                return part.curve.front_at(time, x, -1.0), part.curve.front_at(time, x, 1.0)
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     # Sticking
@@ -169,10 +164,7 @@ class Rupture:
     def pulse_width(self, time: float, side: str = "right") -> float:
         """Distance between the front and the trailing edge behind it at a time; NaN before anything sticks.
 
-        Parameters
-        ----------
-        time : > 0, at most ``duration``
-        side : "right" or "left"
+        The time is > 0 and at most ``duration``, the side "right" or "left".
         """
         check_choice("side", side, ("right", "left"))
         time = self._time(time)

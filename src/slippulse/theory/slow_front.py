@@ -10,8 +10,6 @@ X is marched as a function of e, in which it stays smooth where the front stops:
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.polynomial import legendre
 
@@ -29,11 +27,8 @@ NEAR_MARK = 1e-4
 LOOK = 1e-11
 
 
-class Advance(NamedTuple):
-    """The next panel of a slow front, and why it is the last one."""
-
-    panel: Panel | None
-    stop: str | None
+# The next panel of a slow front, and why it is the last one.
+Advance = tuple[Panel | None, str | None]
 
 
 def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark: float) -> Advance:
@@ -46,13 +41,13 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
     front = _Chunk(curve, prestress, level, gamma)
     entry = front.entry()
     if entry is None:
-        return Advance(None, "unknown")
+        return None, "unknown"
     k, start = entry
     stop = -1.0
     corrections = 0
     for _ in range(60):
         if start - stop < SHORTEST and not corrections:
-            return Advance(None, "dead") if front.stalled() else front.straight(mark)
+            return (None, "dead") if front.stalled() else front.straight(mark)
         solved = front.solve(k, start, stop)
         if solved is None:
             stop, corrections = 0.5 * (start + stop), 0
@@ -60,14 +55,14 @@ def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark
         x, slope = solved
         found = _first_event(x, slope, mark, limit=1.2 if corrections else 1.0)
         if found is None:
-            return Advance(front.panel(k, start, stop, x, slope), None)
+            return front.panel(k, start, stop, x, slope), None
         s, event = found
         # The chunk is made again to end there: beyond it the solution may mean nothing.
         if corrections and (abs(s - 1.0) < 1e-9 or (corrections > 5 and abs(s - 1.0) < 1e-6)):
-            return Advance(front.panel(k, start, stop, x, slope, mark if event == "mark" else None), event)
+            return front.panel(k, start, stop, x, slope, mark if event == "mark" else None), event
         stop = start + 0.5 * (stop - start) * (1.0 + s)
         corrections += 1
-    return Advance(None, "unresolved")
+    return None, "unresolved"
 
 
 def _first_event(x: np.ndarray, slope: np.ndarray, mark: float, limit: float) -> tuple[float, str] | None:
@@ -160,7 +155,7 @@ class _Chunk:
         """Positions that go on as they would without leaf springs."""
         at = np.array([k]), np.array([start])
         first, source = (float(self.curve.at(name, *at)[0]) for name in ("x", "source"))
-        slope = float(self.curve.slope("x", *at)[0])
+        slope = float(self.curve.at("x", *at, order=1)[0])
         at_entry, here = source / slope, float(self.tau(np.array(self.x0)))
         pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
         return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
@@ -168,7 +163,7 @@ class _Chunk:
     def stalled(self) -> bool:
         """Whether the front has just come to rest, at the end of the last panel of entries."""
         last = np.array([len(self.curve.panels) - 1])
-        at_end = self.curve.slope("x", last, np.array([1.0]))[0]
+        at_end = self.curve.at("x", last, np.array([1.0]), order=1)[0]
         return bool(at_end < 1e-3 * (self.curve.edges[-1] - self.curve.edges[-2]))
 
     def panel(self, k, start, stop, x, slope, end: float | None = None) -> Panel:
@@ -181,8 +176,8 @@ class _Chunk:
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0: too short to be resolved, at the speed of the waves."""
         if not np.isfinite(mark) or mark - self.x0 > NEAR_MARK:
-            return Advance(None, "unresolved")
+            return None, "unresolved"
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
         ends = (self.x0, mark), (self.t0, self.t0 + 2.0 * half)
-        return Advance(Panel(x, self.t0 + x - self.x0, self.tau(x) * half, *ends), "mark")
+        return Panel(x, self.t0 + x - self.x0, self.tau(x) * half, *ends), "mark"

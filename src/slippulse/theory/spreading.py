@@ -130,14 +130,14 @@ def _step(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
     piece = law.piece_right_of(side * x)
     mark = min(piece.right, stretch.limits[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
-    step = advance(curve, law.prestress, piece.level, law.gamma, mark)
-    if step.panel is not None:
-        stretch.add(side, [step.panel], step.panel.x_ends[1], step.panel.time_ends[1])
-    if step.stop in ("dead", *UNKNOWN):
-        stretch.stopped[side] = step.stop
+    panel, stop = advance(curve, law.prestress, piece.level, law.gamma, mark)
+    if panel is not None:
+        stretch.add(side, [panel], panel.x_ends[1], panel.time_ends[1])
+    if stop in ("dead", *UNKNOWN):
+        stretch.stopped[side] = stop
     elif stretch.ends[side][1] >= until:
         stretch.stopped[side] = "duration"
-    elif step.stop == "mark":
+    elif stop == "mark":
         if mark >= stretch.limits[side]:
             stretch.stopped[side] = "met"
         elif law.piece_right_of(mark).supersonic:
