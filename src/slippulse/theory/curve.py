@@ -144,10 +144,7 @@ class Curve:
         return Crossing(panel, np.where(known, s, -1.0), known)
 
     def _regions(self, restarts: tuple[float, ...]) -> list[int]:
-        """Panels at which regions begin that a characteristic from beyond does not see, and their number.
-
-        What leaves the rupture across a front that was slower than the waves sees no source beyond.
-        """
+        """Panels where regions begin, and their number: what leaves one across a slow front sees no source beyond."""
         return [0, *sorted(int(np.argmin(np.abs(self.edges - x))) for x in restarts), len(self.panels)]
 
     def front_at(self, time: float, x: float, side: float) -> float:

@@ -231,7 +231,7 @@ def root(
 ) -> np.ndarray:
     """x = ln(v - 1) from the slowest on where the pre-stress is tau, by secants in ln(tau/(1 - tau)).
 
-    That is nearly linear in x, and monotone, hence bracketed: a secant that leaves the bracket is replaced by its middle.
+    Monotone and nearly linear in x, hence bracketed: a secant that leaves the bracket is replaced by its middle.
     """
     low, high = np.full(tau.size, slowest), np.full(tau.size, FASTEST)
     target = np.log(tau) - np.log1p(-tau)

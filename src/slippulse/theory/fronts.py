@@ -35,10 +35,7 @@ def _slowness(tau: bytes, shape: tuple[int, ...], damping_ratio: float, release:
 
 
 class FrontLaw:
-    """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma.
-
-    Raises ValueError: if a value is outside its domain (`Rupture`), or panels would be too many.
-    """
+    """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma."""
 
     def __init__(
         self, prestress: Prestress, gamma: float, damping_ratio: float, release: str, refinement: int = 1

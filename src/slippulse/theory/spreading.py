@@ -65,10 +65,7 @@ class Stretch:
 
 
 def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float, float, str]]]:
-    """All connected parts of the rupture until a time, from left to right, and points where more is not known.
-
-    Raises ValueError: if the pre-stress nowhere reaches 1.
-    """
+    """All connected parts of the rupture until a time, from left to right, and points where more is not known."""
     starts = nucleations(law.prestress)
     if not starts:
         raise ValueError("prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere")
