@@ -42,12 +42,13 @@ def test_arrival_times_are_integrals_of_the_slowness():
 def test_the_earlier_front_counts_where_two_meet():
     profile = sp.Prestress(0.3, 0.3, bumps=((6.0, 0.9, 1.0),))
     rupture = Rupture(profile, 0.65, 0.1, "total", 3.0)
-    edge = brentq(lambda x: float(profile(x)) - 1.0, 6.0, 8.0, xtol=1e-14)
+    start, edge = (brentq(lambda x: float(profile(x)) - 1.0, *ends, xtol=1e-14) for ends in ((4, 6), (6, 8)))
     assert rupture.release_time([6.0, edge]) == pytest.approx(0.0, abs=1e-12)
     (join,) = rupture.stretches[0].joins
-    rate = lambda x: float(slowness(profile(np.asarray(x)), 0.1))  # noqa: E731
-    start = brentq(lambda x: float(profile(x)) - 1.0, 4.0, 6.0, xtol=1e-14)
-    from_left, from_right = (quad(rate, *ends, epsabs=1e-11)[0] for ends in ((0.0, join), (join, start)))
+    from_left, from_right = (
+        quad(lambda x: float(slowness(profile(np.asarray(x)), 0.1)), *ends, epsabs=1e-11)[0]
+        for ends in ((0.0, join), (join, start))
+    )
     assert from_left == pytest.approx(from_right, rel=1e-7)
     assert float(rupture.release_time(join)) == pytest.approx(from_left, rel=1e-7)
 
