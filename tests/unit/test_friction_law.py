@@ -158,12 +158,3 @@ def test_a_block_released_again_is_counted_and_slides_on():
     assert run.attrs["re_releases"] == run.attrs["releases"] - distinct
     assert (run.attrs["releases"], run.attrs["sticks"]) == (chain.releases, chain.sticks)
     assert run.attrs["releases"] - run.attrs["sticks"] == int(sliding(run).sum())
-
-
-@pytest.mark.parametrize(("max_step", "locked"), [(0.99, True), (0.3, True), (0.037, False)])
-def test_a_front_that_locks_onto_a_fraction_of_the_step_is_flagged(max_step, locked):
-    """The textbook scheme runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps."""
-    scene = sp.Scene(
-        "displacement", sp.Prestress(0.5, 0.5), 10.0, 0.05, gamma=0.65, scheme="fixed_step", max_step=max_step
-    )
-    assert ("locked_front" in sp.simulate(scene).attrs["run_flags"]) == locked
