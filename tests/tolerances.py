@@ -24,24 +24,19 @@ STRESS_AT_END = 1e-9
 
 # --- The lattice as a system of ordinary differential equations ------------------------------------------------
 
-# Order 8 at step 0.05 is at rounding; so is the reference (tolerance 1e-12 a step). Stick times are zeros of a
-# velocity with slopes down to 0.1.
-CHAIN_TIME = 1e-9
-CHAIN_SLIP = 1e-9
+# Order 8 at step 0.05 is at rounding; so is the reference. Stick times are zeros of a velocity with slopes from 0.1.
+CHAIN = 1e-9
 # Order 4 at step 0.1, dx = 1: truncation over some 15 events, 1e-4 in the plain scenes.
 CHAIN_ORDER_4 = 2e-4
 # The same closed-form oscillators, one or two blocks, by order 8 at step 0.05.
 OSCILLATOR = 1e-9
-# Observed orders of the localised scheme, from steps 0.1 and 0.05: events cut steps too, so that halving the longest
-# one does not quite halve the mean one.
+# Observed orders, from steps 0.1 and 0.05: events cut steps too, so that half the longest is not half the mean one.
 ORDER_BELOW, ORDER_ABOVE = 0.5, 0.4
-# First order of the textbook scheme over eight halvings, root mean square over blocks: single releases jump by whole
-# steps, so that the slope scatters.
+# First order of the textbook scheme, root mean square over blocks: single releases jump by whole steps.
 FIRST_ORDER = (0.85, 1.25)
 # The same for a quantity that does not jump: one free block, and the energy balance.
 FIRST_ORDER_SMOOTH = 0.05
-# The viscous loss is integrated to third order whatever the order of the step; without damping the balance has the
-# order of the step.
+# The balance has the order of the step, with damping the third, that of the viscous loss.
 ENERGY_ORDER = 0.5
 # Energy balance at the paper preset's step, relative to its largest part (measured: below 1e-4 in every scene).
 ENERGY = 1e-4
@@ -52,10 +47,8 @@ FIXED_AGAINST_LOCALISED = 1e-3
 
 # --- Stability --------------------------------------------------------------------------------------------------
 
-# Amplification a step just below the bound: rounding of the eigenvalues, and for orders 5 and 6 the growth that the
-# solver allows itself by design.
-AMPLIFICATION = 1e-9
-AMPLIFICATION_WEAK = 1.01e-4
+# Amplification a step just below the bound: rounding; for orders 5 and 6 the growth that the solver allows by design.
+AMPLIFICATION, AMPLIFICATION_WEAK = 1e-9, 1.01e-4
 # How far below and above a bound "just" is.
 BELOW_BOUND, ABOVE_BOUND = 0.98, 1.03
 # Where a run of the localised scheme does not outlast its first oscillations.
@@ -72,28 +65,21 @@ LOCKED = 1e-3
 WORK = 0.02
 # Exponents of the work, from lattices of 60 blocks a pulse up and after 50 units of time, a crack at first.
 EXPONENT = 0.02
-# The textbook scheme in numpy against the compiled one: a block that overshoots zero sticks with the velocity of the
-# step before in one of them, over 320 steps.
+# The textbook scheme in numpy and compiled: one of them sticks a block with the velocity of the step before.
 TEXTBOOK_SLIP = 1e-9
 
 # --- Physics ----------------------------------------------------------------------------------------------------
 
-# Front speed at b = 0 on dx = 0.02 over time 120 at the step of the paper preset: asked for.
-FRONT_SPEED = 1e-3
-# Final slip of the steady pulse, 2 tau_0/gamma, same runs: asked for.
-PULSE_SLIP = 1e-3
+# Front speed and final slip, 2 tau_0/gamma, at b = 0 on dx = 0.02 over time 120 at the paper preset's step: asked for.
+FRONT_SPEED = PULSE_SLIP = 1e-3
 # The published space-time figure, read off by pixel: front, nucleation sticking, trailing edge.
-PUBLISHED_FRONT_SPEED = 0.01
-PUBLISHED_INTERCEPT = 0.05
-PUBLISHED_TRAILING = 0.015
+PUBLISHED_FRONT_SPEED, PUBLISHED_INTERCEPT, PUBLISHED_TRAILING = 0.01, 0.05, 0.015
 # Tabulated transition times and lengths, known to four or five digits.
-TRANSITION_TABLE = 1e-4
-SHARE_TABLE = 1e-4
+TRANSITION_TABLE = SHARE_TABLE = 1e-4
 # Simulated transitions converge to the continuum at first order in dx: halving the spacing halves the error.
 TRANSITION_HALVING = (1.6, 2.5)
 # What is left after the first-order error is extrapolated away (relative), from dx = 0.02 and 0.01.
-TRANSITION_EXTRAPOLATED = 1e-4
-SHARE_EXTRAPOLATED = 4e-3
+TRANSITION_EXTRAPOLATED, SHARE_EXTRAPOLATED = 1e-4, 4e-3
 # Closed forms of the undamped pulse against each other.
 PULSE_THEORY = 1e-12
 # The profile in its own equation, by finite differences of step 1e-4.
