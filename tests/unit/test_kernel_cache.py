@@ -7,8 +7,6 @@ import shutil
 import subprocess
 import sys
 
-import numba
-import numpy as np
 import pytest
 
 from slippulse.model.scene import SCHEMES
@@ -107,21 +105,3 @@ def test_nothing_is_compiled_where_the_compiler_is_switched_off(tmp_path):
     """Whoever looks for a fault with a debugger runs the pipeline so."""
     run_with(tmp_path, COMPILE_ALL, NUMBA_DISABLE_JIT="1")
     assert not list(tmp_path.rglob("*.nbc"))
-
-
-def test_numba_takes_the_private_option():
-    """`_nrt=False`: no counting of references in the machine code, and an error where an array is made.
-
-    Should numba drop or rename the option, remove it from `jit.FLAGS` and measure narrow pulses.
-    """
-    assert {name for name in jit.FLAGS if name.startswith("_")} == {"_nrt"}
-
-    def first(values):
-        return values
-
-    for flags, counted in (({}, True), ({"_nrt": False}, False)):
-        kernel = numba.njit(**flags)(first)
-        kernel.compile((numba.float64[::1],))
-        assert ("NRT_incref" in next(iter(kernel.inspect_llvm().values()))) is counted
-    with pytest.raises(numba.core.errors.NumbaError):
-        numba.njit(_nrt=False)(lambda count: np.zeros(count))(3)

@@ -45,22 +45,14 @@ def test_crossing_finds_a_root_that_is_hard_to_find(coefficients, root, accuracy
     assert found == pytest.approx(root, abs=accuracy)
 
 
-def found_sticks(w: np.ndarray, last: int, suspects: int, h: float, now: float = 0.0):
-    """Blocks 1..last-1 whose velocity passes 0 between ``now`` and h, and when; None if one is not finite."""
-    motion, forecast = arrays.make_motion(*w.shape), arrays.make_forecast(w.shape[1], w.shape[0] - 2)
-    motion.w[:] = w
-    from_python(stencils.velocity_after)(motion.velocity, motion.w, 1, last, h, w.shape[0] - 2)
-    finite = from_python(foresight.find_sticks)(motion, forecast, 1, last, suspects, now, h, w.shape[0] - 1)
-    n = forecast.sticks.n
-    return (forecast.stick_block[:n].tolist(), forecast.stick_time[:n]) if finite else None
-
-
 def stop(coefficients, h: float, now: float = 0.0):
     """When a block with this polynomial for its velocity sticks, () if it does not; None if it is not finite."""
-    w = np.zeros((len(coefficients) + 1, 3))
-    w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
-    found = found_sticks(w, 2, 1, h, now)
-    return found and tuple(found[1])
+    top = len(coefficients)
+    motion, forecast = arrays.make_motion(top + 1, 3), arrays.make_forecast(3, top - 1)
+    motion.w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
+    from_python(stencils.velocity_after)(motion.velocity, motion.w, 1, 2, h, top - 1)
+    finite = from_python(foresight.find_sticks)(motion, forecast, 1, 2, 1, now, h, top)
+    return tuple(forecast.stick_time[: forecast.sticks.n]) if finite else None
 
 
 # Real parts of a product with a positive polynomial; a dip is below 0 for a hundredth of the time only.
@@ -101,14 +93,6 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
             root = from_python(polynomials.crossing)(coefficients, 4, 0.0, 1.0)
             for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
                 assert stop(coefficients, h) in ((), (pytest.approx(root, abs=1e3 * tol.ROOT),))
-
-
-def test_the_search_stops_at_the_last_block_that_may_stick():
-    w = np.zeros((6, 6))
-    w[1], w[2] = 1.0, -2.0
-    blocks, times = found_sticks(w, 5, 4, 1.0)
-    assert blocks == [1, 2, 3, 4] and times == pytest.approx(0.5, abs=tol.ROOT)
-    assert found_sticks(w, 5, 2, 1.0)[0] == [1, 2]
 
 
 @pytest.mark.parametrize(

@@ -88,27 +88,30 @@ def free_front(accuracy, level, ratio):
     return scene, {"front_speed_left": speed, "front_speed_right": speed}
 
 
+KINDS = ((pulse, PULSES), (crack, CRACKS), (free_front, FREE_FRONTS))
+CASES = [(make, case) for make, cases in KINDS for case in cases]
+
+
 @pytest.fixture(scope="module")
 def shares():
     """Error against theory over the promise: of each scene, by number."""
-    asked = [(case[0], *make(*case)) for make, cases in KINDS for case in cases]
-    sweep = run_sweep([scene for _, scene, _ in asked], record=("fronts", "fields"), threads=2)
-    found = []
-    for (accuracy, _, exact), run in zip(
-        asked, measured_table(sweep, SETTINGS).to_dict("records"), strict=True
-    ):
-        covered = [name for name in exact if covers(run, name, SHARE)]
-        found.append({name: abs(run[name] / exact[name] - 1.0) / accuracy for name in covered})
-    return found
+    scenes, exact = zip(*(make(*case) for make, case in CASES), strict=True)
+    sweep = run_sweep(list(scenes), record=("fronts", "fields"), threads=2)
+    runs = measured_table(sweep, SETTINGS).to_dict("records")
+    return [
+        {
+            name: abs(run[name] / value - 1.0) / case[0]
+            for name, value in numbers.items()
+            if covers(run, name, SHARE)
+        }
+        for (_, case), numbers, run in zip(CASES, exact, runs, strict=True)
+    ]
 
 
-KINDS = ((pulse, PULSES), (crack, CRACKS), (free_front, FREE_FRONTS))
-CASES = [(make.__name__, *case) for make, cases in KINDS for case in cases]
-
-
-@pytest.mark.parametrize("index", range(len(CASES)), ids=["-".join(map(str, case)) for case in CASES])
+@pytest.mark.parametrize("index", range(len(CASES)), ids=[f"{make.__name__}-{case}" for make, case in CASES])
 def test_every_covered_number_is_as_near_to_theory_as_promised(shares, index):
-    expected = {"pulse": 9, "crack": 3 if CASES[index][3] > 0.0 else 1, "free_front": 2}[CASES[index][0]]
+    make, case = CASES[index]
+    expected = {pulse: 9, crack: 3 if case[2] > 0.0 else 1, free_front: 2}[make]
     assert len(shares[index]) == expected
     for name, share in shares[index].items():
         assert share <= 1.0, f"{name}: {share:.3g} of the promise"

@@ -21,15 +21,15 @@ import slippulse as sp
 def run(**changes):
     values = {"boundary": "displacement", "gamma": 0.65, "beta": 0.05, "dx": 0.25, "duration": 4.0,
               "prestress": sp.Prestress(0.4, 0.6), "max_step": 0.3}
-    values.update(changes)
-    scene = sp.Scene(**values)
-    data = sp.simulate(scene, sp.Samples(np.linspace(0.0, 4.0, 9), np.linspace(-1.0, 1.0, 5)))
+    samples = sp.Samples(np.linspace(0.0, 4.0, 9), np.linspace(-1.0, 1.0, 5))
+    data = sp.simulate(sp.Scene(**values | changes), samples)
     numbers = [data.attrs[name] for name in (
         "steps", "block_updates", "releases", "sticks", "re_releases", "energy_residual", "viscous_loss",
         "work_of_prestress", "min_stuck_stress", "first_stick_time")]
     fields = [data[name].values.ravel() for name in sorted(data.variables)]
     return np.concatenate([np.array(numbers, dtype=float), *fields])
 
+one_way = {"boundary": "stress", "gamma": 0.0, "prestress": sp.Prestress(-0.5, 0.0)}
 np.savez(
     sys.argv[1],
     jit=not numba.config.DISABLE_JIT,
@@ -37,35 +37,22 @@ np.savez(
     elastic=run(release="elastic"),
     mirrored=run(prestress=sp.Prestress(0.5, 0.5), order=6),
     undamped=run(beta=0.0),
-    one_way=run(boundary="stress", gamma=0.0, prestress=sp.Prestress(-0.5, 0.0)),
-    one_way_undamped=run(boundary="stress", gamma=0.0, beta=0.0, prestress=sp.Prestress(-0.5, 0.0)),
+    one_way=run(**one_way),
+    one_way_undamped=run(**one_way, beta=0.0),
     fixed=run(scheme="fixed_step", max_step=0.2),
 )
 """
 
 
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("jit")
-    out = {}
-    for name, disabled in (("compiled", "0"), ("interpreted", "1")):
-        path = folder / f"{name}.npz"
-        subprocess.run(
-            [sys.executable, "-c", SCRIPT, str(path)],
-            env=os.environ | {"NUMBA_DISABLE_JIT": disabled},
-            check=True,
-        )
-        out[name] = np.load(path)
-    return out
-
-
-def test_one_was_compiled_and_the_other_was_not(results):
-    assert bool(results["compiled"]["jit"]) and not bool(results["interpreted"]["jit"])
-
-
-@pytest.mark.parametrize(
-    "case", ["damped", "elastic", "mirrored", "undamped", "one_way", "one_way_undamped", "fixed"]
-)
-def test_compiled_and_interpreted_agree(results, case):
-    compiled, interpreted = results["compiled"][case], results["interpreted"][case]
-    assert compiled == pytest.approx(interpreted, rel=tol.JIT, abs=tol.JIT, nan_ok=True)
+def test_compiled_and_interpreted_agree(tmp_path):
+    results = []
+    for disabled in ("0", "1"):
+        path = tmp_path / f"{disabled}.npz"
+        environment = os.environ | {"NUMBA_DISABLE_JIT": disabled}
+        subprocess.run([sys.executable, "-c", SCRIPT, str(path)], env=environment, check=True)
+        results.append(np.load(path))
+    compiled, interpreted = results
+    assert bool(compiled["jit"]) and not bool(interpreted["jit"])
+    for case in set(compiled) - {"jit"}:
+        expected = pytest.approx(interpreted[case], rel=tol.JIT, abs=tol.JIT, nan_ok=True)
+        assert compiled[case] == expected, case
