@@ -38,10 +38,8 @@ FIRST_ORDER = (0.85, 1.25)
 FIRST_ORDER_SMOOTH = 0.05
 # The balance has the order of the step, with damping the third, that of the viscous loss.
 ENERGY_ORDER = 0.5
-# Energy balance at the paper preset's step, relative to its largest part (measured: below 1e-4 in every scene).
-ENERGY = 1e-4
-# And at a tenth of the largest step, order 8.
-ENERGY_FINE = 1e-7
+# Energy balance relative to its largest part, at the paper preset's step, and at order 8 and a tenth of the step.
+ENERGY, ENERGY_FINE = 1e-4, 1e-7
 # The textbook scheme at step 1/1024 of dx: release times to the steps that a front loses over 60 blocks, half each.
 FIXED_AGAINST_LOCALISED = 1e-3
 
@@ -53,18 +51,13 @@ AMPLIFICATION, AMPLIFICATION_WEAK = 1e-9, 1.01e-4
 BELOW_BOUND, ABOVE_BOUND = 0.98, 1.03
 # Where a run of the localised scheme does not outlast its first oscillations.
 WELL_ABOVE_BOUND = 1.25
-# Measured boundary below the derived one: the resolution of the bisection.
-BOUNDARY_BELOW = 0.011
-# And above it: within 400 steps a mode that grows by less than a few per cent a step is not seen.
-BOUNDARY_ABOVE = 0.03
-# Without damping the growth beyond the bound of order 4 begins more slowly.
-BOUNDARY_ABOVE_UNDAMPED = 0.05
+# Measured boundary below the derived one, the resolution of the bisection, and above it: within 400 steps a mode that
+# grows by less than a few per cent a step is not seen, and without damping growth begins more slowly.
+BOUNDARY_BELOW, BOUNDARY_ABOVE, BOUNDARY_ABOVE_UNDAMPED = 0.011, 0.03, 0.05
 # A locked front advances one block in whole steps: what is left is the fit over a path that ends within a step.
 LOCKED = 1e-3
-# Work over sliding blocks and steps: the mean over time against the mean over steps, which events crowd.
-WORK = 0.02
-# Exponents of the work, from lattices of 60 blocks a pulse up and after 50 units of time, a crack at first.
-EXPONENT = 0.02
+# Work over sliding blocks and steps, mean over time against mean over steps; exponents of the work, a crack at first.
+WORK = EXPONENT = 0.02
 # The textbook scheme in numpy and compiled: one of them sticks a block with the velocity of the step before.
 TEXTBOOK_SLIP = 1e-9
 
@@ -80,10 +73,8 @@ TRANSITION_TABLE = SHARE_TABLE = 1e-4
 TRANSITION_HALVING = (1.6, 2.5)
 # What is left after the first-order error is extrapolated away (relative), from dx = 0.02 and 0.01.
 TRANSITION_EXTRAPOLATED, SHARE_EXTRAPOLATED = 1e-4, 4e-3
-# Closed forms of the undamped pulse against each other.
-PULSE_THEORY = 1e-12
-# The profile in its own equation, by finite differences of step 1e-4.
-PULSE_EQUATION = 1e-5
+# Closed forms of the undamped pulse; the profile in its own equation, by finite differences of step 1e-4.
+PULSE_THEORY, PULSE_EQUATION = 1e-12, 1e-5
 
 # --- The solver against exact results, at the step of preset "paper" --------------------------------------------
 
@@ -97,10 +88,8 @@ TRANSITION = 5e-4
 SHARE_TIME, STRESS_PEAK = 5e-3, 2e-3
 # Observed orders may differ from the formal one by this much where the next order is not negligible.
 ORDER_BAND = 0.35
-# The damped theory against simulation at dx = 0.02, step 0.05: what is left is how steady the front is by then.
-FRONT_SPEED_THEORY = 3e-4
-# The same without leaf springs, where the front has long been steady.
-FRONT_SPEED_STUDY = 5e-5
+# The damped theory against simulation at dx = 0.02: how steady the front is by then, and where it has long been so.
+FRONT_SPEED_THEORY, FRONT_SPEED_STUDY = 3e-4, 5e-5
 # The damped pulse at dx = 0.01: it is a continuum theory behind a front that is some blocks wide.
 PULSE_SLIP_THEORY, PULSE_PEAK_THEORY, PULSE_WIDTH_BLOCKS = 5e-4, 2e-3, 2.0
 
