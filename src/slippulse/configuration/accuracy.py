@@ -95,16 +95,17 @@ def settings_for(
     if not isinstance(fields, bool):
         raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
     check_number("gamma", gamma, at_least=0.0)
-    check_number("damping_ratio", damping_ratio, at_least=0.0)
-    if damping_ratio > STRONGEST_DAMPING:
-        raise ValueError(
-            f"damping_ratio: {damping_ratio!r}; allowed: up to {STRONGEST_DAMPING:g} where an accuracy is promised"
-        )
+    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
+    error, levels = (
+        SHARE * accuracy,
+        [prestress.left, prestress.right, *(level for _, level in prestress.steps)],
+    )
+    peak = min(prestress.width, *(width for *_, width in prestress.bumps), math.inf)
     if boundary == "displacement":
         check_number("gamma", gamma, above=0.0)
-        spacings = _over_springs(SHARE * accuracy, prestress, gamma, damping_ratio, release, fields)
+        spacings = _over_springs(error, levels, peak, gamma, damping_ratio, release, fields)
     else:
-        spacings = _free(SHARE * accuracy, prestress, damping_ratio, fields)
+        spacings = _free(error, levels, peak, prestress, damping_ratio, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
     bound = MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2)
     settings: Settings = {"dx": dx, "beta": damping_ratio * dx, "max_step": min(STEP, bound), "order": ORDER}
@@ -114,14 +115,9 @@ def settings_for(
 
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
-    """A resolved simulation, with the spacing of each run where an accuracy is promised.
-
-    Raises
-    ------
-    ConfigError
-        Where another scheme is asked for: the error of its step is not seen by a grid study.
-    """
+    """A resolved simulation, with the spacing of each run where an accuracy is promised; raises ConfigError."""
     promise = promise_of(simulation)
+    # The error of another scheme's step is not seen by a grid study.
     if promise is not None and simulation["scheme"] != "localised":
         raise ConfigError(f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given")
     if promise is None or math.isnan(promise):
@@ -137,15 +133,13 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
 
 
 def _over_springs(
-    error: float, prestress: Prestress, gamma: float, ratio: float, release: str, fields: bool
+    error: float, levels: list[float], peak: float, gamma: float, ratio: float, release: str, fields: bool
 ) -> list[float]:
     """Spacings that each number under a displacement boundary allows."""
-    nucleation = min(_narrowest_peak(prestress), 1.0 / math.sqrt(gamma))
+    nucleation = min(peak, 1.0 / math.sqrt(gamma))
     start = NUCLEATION * (1.0 + ratio) / nucleation
     spacings = [nucleation / BLOCKS, error / start]
-    for level in _levels(prestress):
-        if level <= 0.0:
-            continue
+    for level in (level for level in levels if level > 0.0):
         speed = _speed(level, ratio, release)
         # In the limit dx -> 0 damping acts through the speed alone.
         width = steady_pulse(level, gamma, 0.0, speed).width
@@ -160,13 +154,14 @@ def _over_springs(
     return spacings
 
 
-def _free(error: float, prestress: Prestress, ratio: float, fields: bool) -> list[float]:
+def _free(
+    error: float, levels: list[float], peak: float, prestress: Prestress, ratio: float, fields: bool
+) -> list[float]:
     """Spacings that each number under a stress boundary allows."""
-    peak = _narrowest_peak(prestress)
     spacings = [peak / BLOCKS]
-    if any(level > 0.0 for level in _levels(prestress)):
+    if max(levels) > 0.0:
         spacings.append(error * peak / FREE_SPEED)
-    negative = [level for level in _levels(prestress) if level < 0.0 < prestress.peak]
+    negative = [level for level in levels if level < 0.0 < prestress.peak]
     reaches = [prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level)) for level in negative]
     spacings += [reach / BLOCKS for reach in reaches]
     if prestress.left < 0.0 == prestress.right and reaches:
@@ -175,14 +170,6 @@ def _free(error: float, prestress: Prestress, ratio: float, fields: bool) -> lis
         if fields:
             spacings.append(error * reaches[0] / (VELOCITY + VELOCITY_DAMPED * ratio))
     return spacings
-
-
-def _levels(prestress: Prestress) -> list[float]:
-    return [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
-
-
-def _narrowest_peak(prestress: Prestress) -> float:
-    return min(prestress.width, *(width for *_, width in prestress.bumps), math.inf)
 
 
 @lru_cache(maxsize=4096)

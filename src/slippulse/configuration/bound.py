@@ -46,11 +46,8 @@ class Bound(NamedTuple):
         for name, value, limit in zip(self._fields, self, LIMITS, strict=True):
             if not value <= most * limit:
                 shared = f" in each of {chunks} chunks" if chunks > 1 else ""
-                unit = name.replace("_", " ")
-                return (
-                    f"cost: up to {value:.3g} {unit}{shared}; allowed: {most * limit:.3g}, with more chunks or"
-                    f" {HOW_TO_GO_ON}"
-                )
+                takes = f"{value:.3g} {name.replace('_', ' ')}{shared}"
+                return f"cost: up to {takes}; allowed: {most * limit:.3g}, with more chunks or {HOW_TO_GO_ON}"
         return ""
 
     @property
@@ -99,10 +96,9 @@ def bound_of_sweep(simulation: Mapping, chunks: int = 1) -> Bound:
 def corners(simulation: Mapping) -> dict[str, Any]:
     """A resolved simulation of the runs at the ends of the lists of numbers."""
     found = {key: value for key, value in simulation.items() if key != "chunk"}
-    for key in ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx"):
+    if "beyond" in found:
+        found["beyond"] = corners(found["beyond"])
+    for key in ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels"):
         if isinstance(found.get(key), list):
             found[key] = sorted({min(found[key]), max(found[key])})
-    if "beyond" in found:
-        levels = found["beyond"]["levels"]
-        found["beyond"] = found["beyond"] | {"levels": sorted({min(levels), max(levels)})}
     return found

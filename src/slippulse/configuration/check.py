@@ -27,32 +27,25 @@ def simulation_problems(config: Configuration) -> list[str]:
     A rule of `Scene` that holds at the smallest and the largest entries of all lists holds between them too.
     """
     accuracy, problems = accuracy_of(config), []
+    coarsest = max(accuracy["coarser"])
     for name, simulation in all_simulations(config).items():
-        lattice, coarsest = "", max(accuracy["coarser"])
+        key, where = f"{'scenes' if name in config.scenes else 'simulations'}.{name}", ""
         try:
-            for coarser in (1.0, coarsest):
-                sweep = resolve(simulation, config.model, accuracy, coarser)
-                if simulation.chunks > (count := run_count(sweep)):
-                    raise ValueError(
-                        f"chunks: {simulation.chunks}; allowed: up to the number of runs, {count}"
-                    )
-                scenes, _ = expand(promised(corners(sweep)))
-                if coarser == 1.0:
-                    _check_nucleation(scenes)
-                    _check_resolved(scenes)
-                    lattice = f" (on the lattice {coarsest:g} times coarser of the grid study)"
+            sweep = resolve(simulation, config.model, accuracy)
+            if simulation.chunks > (count := run_count(sweep)):
+                raise ValueError(f"chunks: {simulation.chunks}; allowed: up to the number of runs, {count}")
+            scenes, _ = expand(promised(corners(sweep)))
+            _check_nucleation(scenes)
+            _check_resolved(scenes)
+            where = f" (on the lattice {coarsest:g} times coarser of the grid study)"
+            expand(promised(corners(resolve(simulation, config.model, accuracy, coarsest))))
         except ArithmeticError:
             problems.append(
-                f"{_key(config, name)}: a number too large or too small to compute with; allowed: numbers near 1"
+                f"{key}: a number too large or too small to compute with; allowed: numbers near 1"
             )
         except ValueError as error:
-            where = lattice if coarser > 1.0 else ""
-            problems.append(f"{_key(config, name)}.{error}{where}")
+            problems.append(f"{key}.{error}{where}")
     return problems
-
-
-def _key(config: Configuration, name: str) -> str:
-    return f"scenes.{name}" if name in config.scenes else f"simulations.{name}"
 
 
 def _check_nucleation(scenes: Sequence[Scene]) -> None:
@@ -67,14 +60,12 @@ def _check_nucleation(scenes: Sequence[Scene]) -> None:
 
 def _check_resolved(scenes: Sequence[Scene]) -> None:
     """Refuse scenes none of which comes near resolving its pulse; those of somewhat few blocks are flagged."""
-    widest, needed = 0.0, 0
+    widest, needed = 0.0, scenes[0].resolved_blocks
     # Wide pulses first, so that the first run usually settles it.
     for scene in sorted(scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left)):
-        blocks = pulse_blocks(scene)
-        if blocks >= HARDLY_RESOLVED * scene.resolved_blocks:
+        widest = max(widest, pulse_blocks(scene))
+        if widest >= HARDLY_RESOLVED * needed:
             return
-        if blocks >= widest:
-            widest, needed = blocks, scene.resolved_blocks
     raise ValueError(
         f"resolved_blocks: {needed}, while the widest pulse has about {widest:.2g} blocks; allowed: a pulse of at least"
         f" {HARDLY_RESOLVED * needed:g} blocks: a smaller dx, or a smaller resolved_blocks where single blocks are the"
@@ -83,19 +74,17 @@ def _check_resolved(scenes: Sequence[Scene]) -> None:
 
 
 def pulse_blocks(scene: Scene) -> float:
-    """Blocks across the narrowest thing that a scene must resolve; infinite where nothing is predicted.
+    """Blocks across the steady pulse of the exact theory, or across the Gaussian under a stress boundary.
 
-    The steady pulse of the exact theory under a displacement boundary, the Gaussian under a stress boundary.
+    Infinite where nothing is predicted.
     """
-    if scene.scheme == "continuum":
-        return math.inf
-    if scene.boundary == "stress":
+    if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.width / scene.dx
-    levels = [level for level in (scene.prestress.left, scene.prestress.right) if 0.0 < level < 1.0]
-    if not levels:
+    level = max(scene.prestress.left, scene.prestress.right)
+    if scene.scheme == "continuum" or level <= 0.0:
         return math.inf
     try:
-        speed = float(front_speed(max(levels), scene.damping_ratio, scene.release))
-        return steady_pulse(max(levels), scene.gamma, scene.beta, speed).width / scene.dx
+        speed = float(front_speed(level, scene.damping_ratio, scene.release))
+        return steady_pulse(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):
         return math.inf

@@ -18,7 +18,7 @@ from .problems import json_schema, resolved, words
 
 README, SCHEMA, SHIPPED = "config/README.md", "workflow/schemas/config.schema.yaml", "config/config.yaml"
 # A table stands between these two lines; the first names the model, and where its values stand in config/config.yaml.
-TABLE = re.compile(r"(<!-- keys: (\w+)(?: at ([\w.]+))? -->\n).*?(<!-- end of keys -->)", re.DOTALL)
+TABLE = re.compile(r"(<!-- keys: (\w+)(?: at (\w+))? -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 HEAD = "| key | meaning | allowed | default |\n|---|---|---|---|\n"
 LONGEST_DEFAULT = 40
 
@@ -35,14 +35,7 @@ def schema_text() -> str:
 
 
 def rows(node: dict[str, Any], values: Mapping | None = None, prefix: str = "") -> Iterator[str]:
-    """One line of a table for each key of a mapping and of what is nested in it.
-
-    Parameters
-    ----------
-    node : its schema
-    values : its values in config/config.yaml, where it has a place there
-    prefix : of its keys
-    """
+    """One line for each key of a mapping and of what is nested in it, by its schema and its shipped values if any."""
     for name, key in node["properties"].items():
         inside = resolved(key)
         mapping = inside.get("type") == "object"
@@ -64,19 +57,11 @@ def _short(value: Any) -> str:
 
 
 def readme(text: str, shipped: Mapping) -> str:
-    """The manual with its tables made anew.
-
-    Parameters
-    ----------
-    text : of config/README.md
-    shipped : config/config.yaml
-    """
+    """The text of config/README.md with its tables made anew, by the values in config/config.yaml."""
 
     def table(found: re.Match) -> str:
         start, name, place, end = found.groups()
-        values: Any = shipped if place else None
-        for part in (place or "").split(".") if place not in (None, "top") else ():
-            values = values[part]
+        values = shipped if place == "top" else shipped.get(place)
         node = json_schema() if name == "Configuration" else json_schema()["$defs"][name]
         return f"{start}{HEAD}" + "\n".join(rows(node, values)) + f"\n{end}"
 
