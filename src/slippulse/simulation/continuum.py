@@ -12,7 +12,7 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.run import LatticeRun
 from ..theory.profile import nucleations
-from ..theory.rupture import Limit, Rupture
+from ..theory.rupture import Rupture
 
 # Positions at rest that are kept beyond the outermost released one, as on the lattice.
 MARGIN = 16
@@ -56,7 +56,7 @@ def solve_scene(
     sampled: dict[str, np.ndarray] = {}
     if samples is not None:
         sampled = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
-    numbers = _numbers(scene, release, stick, velocity, rupture.first_stick, rupture.limit)
+    numbers = _numbers(scene, release, stick, velocity, rupture)
     return LatticeRun(
         x, scene.prestress(x), release, stick, slip, velocity, acceleration, sampled.get("slip"),
         sampled.get("slip_velocity"), numbers,
@@ -68,7 +68,7 @@ def _at_rest(scene: Scene, samples: Samples | None) -> LatticeRun:
     x = np.arange(-MARGIN, MARGIN + 1) * scene.dx
     never, none = np.full(x.size, np.nan), np.zeros(x.size)
     sampled = None if samples is None else np.zeros((samples.times.size, samples.positions.size))
-    numbers = _numbers(scene, never, never, none, None, None)
+    numbers = _numbers(scene, never, never, none)
     return LatticeRun(x, scene.prestress(x), never, never, none, none, none, sampled, sampled, numbers)
 
 
@@ -77,10 +77,11 @@ def _numbers(
     release: np.ndarray,
     stick: np.ndarray,
     velocity: np.ndarray,
-    first_stick: tuple[float, float] | None,
-    limit: Limit | None,
+    rupture: Rupture | None = None,
 ) -> dict:
-    first = first_stick or (math.nan, math.nan)
+    first, limit = (math.nan, math.nan), None
+    if rupture is not None:
+        first, limit = rupture.first_stick or first, rupture.limit
     return {
         "end_time": scene.duration,
         "stopped_because": "everything is stuck" if not np.any(velocity > 0.0) else "duration reached",

@@ -49,13 +49,7 @@ def run_sweep(
 def _check_arguments(
     scenes: object, samples: object, record: object, threads: object, progress: object
 ) -> None:
-    """Refuse what is not a list of scenes with what each records.
-
-    Raises
-    ------
-    ValueError
-        Naming the argument and what is allowed.
-    """
+    """Refuse what is not a list of scenes with what each records, naming the argument and what is allowed."""
     if (
         not isinstance(scenes, Sequence)
         or not scenes
