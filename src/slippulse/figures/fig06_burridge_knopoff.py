@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MultipleLocator
 
 from ..data.points import point
-from ..model.scene import prestress_from
+from ..model.prestress import prestress_from
 from .style import BLACK, BLUE, GREY, ORANGE, Look, entry, legend_below, new_figure, panel_letter
 
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}

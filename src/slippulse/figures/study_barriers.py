@@ -15,8 +15,8 @@ from .style import BLACK, BLUE, ORANGE, PAGE, Look, colour_scale, few_ticks, new
 NEEDS = {"studies": ["barriers"]}
 
 MAP = "cividis"
-# Points of the interpolated map along each axis, and contour lines on it.
-FINE, CONTOURS = 41, (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
+# Points of the interpolated map along each axis, its bands of colour, and contour lines on it.
+FINE, BANDS, CONTOURS = 41, 33, (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
 MARKERS, COLOURS = ("o", "s", "^"), (BLUE, ORANGE)
 OPEN: Look = {"markersize": 3.8, "markerfacecolor": "white"}
 # gamma of the curves, for which the later estimate is drawn; exact depths scale to it.
@@ -60,11 +60,12 @@ def plot(table: pd.DataFrame) -> Figure:
     figure, (*maps, curve_axes, convergence_axes) = new_panels(PAGE, 5.4, 2, 2)
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
-    scale = LogNorm(float(fine["exact"].min()), float(fine["exact"].max()))
+    ends = fine["exact"].min(), fine["exact"].max()
+    scale, bands = LogNorm(*ends), np.geomspace(*ends, BANDS)
     ratios = np.sort(runs["damping_ratio"].unique())
     for axes, ratio in zip(maps, ratios, strict=True):
         at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
-        image = _draw_map(axes, at, marked, scale)
+        image = _draw_map(axes, at, marked, scale, bands)
         axes.set_title(rf"$b = {ratio:g}$", loc="right")
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
@@ -77,10 +78,10 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm):
+def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm, bands: np.ndarray):
     grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
-    image = axes.pcolormesh(x, y, grid.to_numpy(), norm=scale, cmap=MAP, shading="gouraud", rasterized=True)
+    image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
     lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors="white", linewidths=0.5)
     axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
     look: Look = {"s": 26.0, "edgecolors": "white", "linewidths": 0.9, "gid": "lattice", "zorder": 3.0}

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from ..data.points import point
-from ..model.scene import scene_of
+from ..model.prestress import prestress_from
 from .style import GREY, PAGE, Look, colour_scale, new_panels
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
@@ -34,7 +34,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
     for run in _runs(data["pulses_across_a_step"]):
-        position, level = scene_of(run).prestress.steps[-1]
+        position, level = prestress_from(run.attrs).steps[-1]
         x = run["x"].values - position
         drawn = exact.loc[np.isclose(exact["level"], level), "x"]
         inside = np.flatnonzero(np.isfinite(run["stick_time"]) & (x > drawn.min()) & (x < drawn.max()))
@@ -47,7 +47,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         if run.attrs["left"] == lowest:
             largest = run["sample_velocity"].sel(sample_position=slice(1e-9, None)).max("sample_position")
             lines = {"time": run["sample_time"].values, "largest_velocity": largest.values}
-            position, level = scene_of(run).prestress.steps[-1]
+            position, level = prestress_from(run.attrs).steps[-1]
             values = {"level": level, "before": run.attrs["right"], "step": position}
             parts.append(pd.DataFrame(lines).assign(role="velocity", **values))
     return pd.concat(parts, ignore_index=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from ..model.scene import scene_of
+from ..model.prestress import prestress_from
 from .pulses import LeadingPulse, comoving
 
 # Fewer sliding blocks show no waves of the lattice.
@@ -68,7 +68,9 @@ def far_field(run: xr.Dataset) -> dict[str, float]:
     left where it entered, over the largest strain); NaN where nothing slides there at two thirds of the run
     """
     out = {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
-    start = max([FAR * run.attrs["width"], *(abs(position) for position, _ in scene_of(run).prestress.steps)])
+    start = max(
+        [FAR * run.attrs["width"], *(abs(position) for position, _ in prestress_from(run.attrs).steps)]
+    )
     times, x = run["sample_time"].values, run["sample_position"].values
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     moved = float(times[-1] - times[early])

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from ..model.scene import scene_of
+from ..model.prestress import prestress_from
 from .fronts import front_speed, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, leading_pulse, slip_variation
 from .regime import classify
@@ -37,7 +37,7 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
     slip velocity is recorded
     """
     row = {name: run.attrs[name] for name in PARAMETERS}
-    steps = scene_of(run).prestress.steps
+    steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]
     for side in ("right", "left"):
         speed, intercept, error = front_speed(run, settings["front_window"], side)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..model.balance import prestress_balance_position
-from ..model.scene import scene_of
+from ..model.prestress import prestress_from
 from .fronts import arrival, longest_wait, path, position_at
 
 NAN = float("nan")
@@ -65,7 +65,7 @@ def transition_stress(run: xr.Dataset, fraction: float) -> dict[str, float | str
     release on the left), which the paper draws, does not: in the continuum it never comes. ``transition_state`` is
     "resolved", "stalled" where the lattice held the left front up on its way, or "not reached".
     """
-    distance = abs(prestress_balance_position(scene_of(run).prestress))
+    distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
     arrest = float(np.max(times)) if times.size else NAN

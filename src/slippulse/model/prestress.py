@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
@@ -136,6 +138,26 @@ class Prestress:
         for centre, amplitude, width in self.bumps:
             total += amplitude * _gaussian_area(min(lower, upper), max(lower, upper), centre, width)
         return total if upper >= lower else -total
+
+
+def prestress_from(attributes: Mapping) -> Prestress:
+    """The pre-stress of a run, from its attributes.
+
+    Raises ValueError if a value is none that `Scene.attributes` writes, KeyError if one is missing.
+    """
+    steps, bumps = _steps_and_bumps(attributes["steps_and_bumps"])
+    left, right, width, peak = (attributes[name] for name in ("left", "right", "width", "peak"))
+    return Prestress(left, right, width, peak, steps, bumps)
+
+
+def _steps_and_bumps(text: str) -> tuple[Any, Any]:
+    try:
+        more = json.loads(text)
+        return more["steps"], more["bumps"]
+    except (TypeError, ValueError, LookupError):
+        raise ValueError(
+            f"steps_and_bumps: {short_repr(text)}; allowed: a JSON object of steps and bumps"
+        ) from None
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:

@@ -11,7 +11,7 @@ from numbers import Real
 from typing import Any
 
 from .checks import check_choice, check_kind, check_number, short_repr
-from .prestress import Prestress
+from .prestress import Prestress, prestress_from
 from .stability import largest_step
 
 BOUNDARIES = ("displacement", "stress")
@@ -243,23 +243,3 @@ def scene_of(run: Any) -> Scene:
         return Scene.from_attributes(run._asdict())
     attributes = getattr(run, "attrs", None)
     return Scene.from_attributes(attributes or run)
-
-
-def prestress_from(attributes: Mapping) -> Prestress:
-    """The pre-stress of a run, from its attributes.
-
-    Raises ValueError if a value is none that `Scene.attributes` writes, KeyError if one is missing.
-    """
-    steps, bumps = _steps_and_bumps(attributes["steps_and_bumps"])
-    left, right, width, peak = (attributes[name] for name in ("left", "right", "width", "peak"))
-    return Prestress(left, right, width, peak, steps, bumps)
-
-
-def _steps_and_bumps(text: str) -> tuple[Any, Any]:
-    try:
-        more = json.loads(text)
-        return more["steps"], more["bumps"]
-    except (TypeError, ValueError, LookupError):
-        raise ValueError(
-            f"steps_and_bumps: {short_repr(text)}; allowed: a JSON object of steps and bumps"
-        ) from None

@@ -12,7 +12,7 @@ from ..data.points import point
 from ..measure.fronts import path
 from ..measure.pulses import LeadingPulse, comoving, slip_variation
 from ..measure.table import measure_run
-from ..model.scene import scene_of
+from ..model.prestress import prestress_from
 from ..theory.pulse import paper_pulse, paper_transition_displacement, paper_transition_stress, steady_pulse
 
 # A width that differs from that of the steady pulse at the measured speed by more than this, the damped layer and the
@@ -108,7 +108,6 @@ def shape_deviation(run: xr.Dataset, pulse: LeadingPulse) -> float:
 
 def paper_transition(run: xr.Dataset) -> tuple[float, float]:
     """The paper's T_trans and L_trans of a run (sections III B and III C)."""
-    scene = scene_of(run)
-    if scene.boundary == "displacement":
-        return paper_transition_displacement(scene.prestress.left, scene.gamma)
-    return paper_transition_stress(scene.prestress)
+    if run.attrs["boundary"] == "displacement":
+        return paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
+    return paper_transition_stress(prestress_from(run.attrs))

@@ -16,8 +16,7 @@ import pandas as pd
 from markupsafe import Markup
 
 from ..figures.style import VELOCITY_MAP
-from ..model.prestress import Prestress
-from ..model.scene import prestress_from
+from ..model.prestress import Prestress, prestress_from
 from .html import page
 
 # What is shown of a run with its settings; absent where it was not measured.

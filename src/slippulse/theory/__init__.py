@@ -19,7 +19,7 @@ _HOMES = {
     "damage_zone_stress_drop": "dimensional",
     "exact_transition_displacement": "exact_transition",
     "front_speed": "front_law",
-    "front_speed_undamped": "front_law",
+    "front_speed_undamped": "pulse",
     "lattice_front_speed": "front_law",
     "paper_pulse": "pulse",
     "paper_transition_displacement": "pulse",

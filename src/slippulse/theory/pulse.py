@@ -10,7 +10,18 @@ import numpy as np
 from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_domains, check_number
 from ..model.prestress import Prestress
-from .front_law import front_speed_undamped
+
+
+def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
+    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
+
+    Parameters
+    ----------
+    tau0 : float or array, in [0, 1)
+
+    Raises ValueError: outside the domain.
+    """
+    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 @dataclass(frozen=True)

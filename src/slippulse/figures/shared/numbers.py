@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from ...model.scene import prestress_from
+from ...model.prestress import prestress_from
 
 EITHER = {
     "front_speed_left": "front speed, left",
