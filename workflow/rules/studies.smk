@@ -5,7 +5,7 @@ from slippulse.steps.reach import sources
 
 def kernels_for(study):
     """Only a study that reaches the solver waits for the kernels."""
-    reached = any("/solver/" in path for path in sources(f"studies.{study}"))
+    reached = any("solver" in Path(path).parts for path in sources(f"studies.{study}"))
     return {"kernels": "results/kernels.txt"} if reached else {}
 
 

@@ -19,10 +19,12 @@ from slippulse.steps.targets import check_places, check_targets
 CALL = "records/.call"
 CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
 # With these Snakemake only looks.
-LOOKING = any(
-    getattr(CALLED, option)
-    for option in "dryrun touch summary detailed_summary dag rulegraph filegraph unlock report archive".split()
+LOOKS = (
+    "archive cleanup_metadata containerize dag d3dag detailed_summary dryrun export_cwl filegraph generate_unit_tests lint"
+    " list_changes list_input_changes list_params_changes list_rules list_target_rules list_untracked print_compilation"
+    " report rulegraph summary touch unlock"
 )
+LOOKING = any(getattr(CALLED, option) for option in LOOKS.split())
 OPTIONS = [
     *(["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []),
     *(["--config", *CALLED.config] if CALLED.config else []),
