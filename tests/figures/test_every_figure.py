@@ -10,6 +10,7 @@ import pytest
 import tolerances as tol
 from matplotlib.legend import Legend
 from matplotlib.text import Text
+from PIL import Image
 
 from slippulse.figures.style import PAGE, save_figure
 from slippulse.report.texts import read_captions
@@ -49,7 +50,10 @@ def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     with matplotlib.rc_context({"savefig.dpi": 50}):
         save_figure(drawn.figure, tmp_path / "first.png", tmp_path / "first.pdf")
     for ending in ("png", "pdf"):
-        assert (tmp_path / f"first.{ending}").stat().st_size > 5000
+        assert (tmp_path / f"first.{ending}").stat().st_size > 2000
+    # As many grey levels as letters and lines have.
+    with Image.open(tmp_path / "first.png") as picture:
+        assert len(picture.convert("L").getcolors()) > 20
     assert not np.isinf(drawn.table.select_dtypes("number").to_numpy()).any()
     sizes = {
         text.get_text(): text.get_fontsize() for text in drawn.figure.findobj(Text) if text.get_visible()
