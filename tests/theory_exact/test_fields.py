@@ -200,9 +200,7 @@ def test_where_the_construction_ends_is_said_and_kept():
 
 
 def test_times_beyond_the_duration_are_refused():
-    with pytest.raises(
-        ValueError, match=r"^time: [45]\.[09]*[0-9]; allowed: <= duration = [34][.09]*[0-9]?$"
-    ):
+    with pytest.raises(ValueError, match=r"^time: [45]\.\d+; allowed: <= duration = [34][.\d]*$"):
         Rupture(*PUBLISHED, "total", 4.0).slip(0.0, 5.0)
 
 
