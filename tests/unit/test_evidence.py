@@ -14,7 +14,7 @@ from slippulse.claims.paper import written
 from slippulse.claims.rules import VERDICTS
 from slippulse.measure.uncertainty import grid_tables
 
-YES, CAVEAT, NO, OPEN, NONE = VERDICTS
+YES, CAVEAT, _, NO, OPEN, NONE = VERDICTS
 ENTRIES = {
     "equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]},
     "estimate": {

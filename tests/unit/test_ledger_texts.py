@@ -88,7 +88,7 @@ def test_what_follows_is_not_counted_again():
     ledger = Ledger([CLAIM | fields for fields in (reproduced | {"id": "a"}, follows, {"id": "c"})])
     assert ledger.count() == 2 and ledger.count("reproduced") == 1 and ledger.following() == 1
     assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced. 1 more follow from these."
-    assert ledger.by_kind() == [("exact", ["1", "0", "0", "0", "1 + 1"])]
+    assert ledger.by_kind() == [("exact", ["1", "0", "0", "0", "0", "1 + 1"])]
 
 
 def test_findings_and_further_numbers_are_asked_for_by_name():

@@ -7,7 +7,7 @@ import pytest
 from slippulse.claims import rules
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
 
-YES, CAVEAT, NO, OPEN, NONE = VERDICTS
+YES, CAVEAT, DEPENDS, NO, OPEN, NONE = VERDICTS
 NAN = float("nan")
 
 
@@ -52,14 +52,15 @@ CASES = {
         (((0.1, 0.01), 0.2, (1.0, 0.2), 0.1), OPEN),
         (((NAN, NAN), 0.2, (1.0, 0.01), 0.1), NONE),
     ],
-    rules.at_fractions: [
-        (([YES, YES, YES], NO), YES),
-        (([YES, YES, NO], NO), CAVEAT),
-        (([NO, NO, NO], YES), CAVEAT),
-        (([CAVEAT, NO, NO], NO), CAVEAT),
-        (([NO, NO, NO], NO), NO),
-        (([OPEN, NO, NO], NO), OPEN),
-        (([NONE, NONE, NONE], NONE), NONE),
+    # At every admissible combination of what the paper leaves open.
+    rules.over_choices: [
+        (([YES, YES, YES],), YES),
+        (([YES, CAVEAT, NONE],), CAVEAT),
+        (([YES, YES, NO],), DEPENDS),
+        (([CAVEAT, NO, OPEN],), DEPENDS),
+        (([NO, NO, OPEN],), NO),
+        (([OPEN, YES],), OPEN),
+        (([NONE, NONE],), NONE),
     ],
     # Runs that hold, fail and are undecided, and whether under a condition: one decided run contradicts every.
     rules.qualitative: [

@@ -23,6 +23,10 @@ NAN = float("nan")
 # deviation: what stands beside the tolerance: relative deviation, its median, fraction of runs that contradict, p;
 # runs and left_out (those without numbers), held, failed and undecided; ninety and largest (quantile and largest
 #     deviation of the runs), exponent and exponent_uncertainty, exact_median and exact_largest (`Evidence.compared`);
+# choices: of each admissible combination of what the paper leaves open its values by name, deviation, exponent, verdict
+#     and holds (None where that is undecided); combinations and holds_at: how many there are, and how many hold;
+#     choice: the one that moves the deviation most;
+# flips_at: tolerances at which the verdict changes (`rules.flips`), found by `at`, which is the verdict at a tolerance;
 # further: other numbers, by what they are; why: one sentence, where the numbers do not say it; note and source in place
 #     of those that stand with the text.
 Claim = dict[str, Any]
@@ -138,9 +142,13 @@ class Evidence:
         paper = np.broadcast_to(np.asarray(predicted, float), value.shape)
         scale = np.where(paper == 0.0, 1.0, np.abs(paper))
         deviation = np.abs(value - paper) / scale
+
+        def at(tolerance: float) -> str:
+            return rules.exact(deviation, blur / scale, tolerance)[0]
+
         verdict, run = rules.exact(deviation, blur / scale, self.tolerance(id))
         usable = int(np.isfinite(deviation + blur).sum())
-        claim = {"id": id, "verdict": verdict, "runs": usable, "left_out": len(value) - usable}
+        claim = {"id": id, "verdict": verdict, "at": at, "runs": usable, "left_out": len(value) - usable}
         numbers = {"predicted": paper, "measured": value, "uncertainty": blur, "deviation": deviation}
         return claim if run is None else claim | {name: float(each[run]) for name, each in numbers.items()}
 
@@ -191,12 +199,16 @@ class Evidence:
             moved = max((abs(other - found.value) for other in without), default=0.0)
             slope = found.value, max(found.uncertainty, moved)
             claim |= {"exponent": slope[0], "exponent_uncertainty": slope[1]}
-        verdict = rules.approximate(
-            (median.value, median.uncertainty), self.tolerance(id), slope, float(allowed or 0.0)
-        )
+
+        def at(tolerance: float) -> str:
+            return rules.approximate(
+                (median.value, median.uncertainty), tolerance, slope, float(allowed or 0.0)
+            )
+
         return claim | {
-            "verdict": verdict, "predicted": 1.0, "measured": ratio.value, "uncertainty": ratio.uncertainty,
-            "deviation": median.value, "ninety": float(np.quantile(each, 0.9)), "largest": float(each.max()),
+            "verdict": at(self.tolerance(id)), "at": at, "predicted": 1.0, "measured": ratio.value,
+            "uncertainty": ratio.uncertainty, "deviation": median.value,
+            "ninety": float(np.quantile(each, 0.9)), "largest": float(each.max()),
         }  # fmt: skip
 
     def qualitative(self, id: str, decided: Iterable[bool | None], condition: bool = False) -> Claim:

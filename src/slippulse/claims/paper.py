@@ -91,9 +91,15 @@ def written(claim: Claim, entry: Mapping, where: str) -> dict:
     """One claim with its text, as JSON has it."""
     numbers = dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
     out = {
-        "figure": "", "follows_from": [], "note": "", "source": "", "further": {}, "why": "", **numbers, **entry,
-        **claim, "figure_or_section": where, "counted": "follows_from" not in entry,
+        "figure": "", "follows_from": [], "note": "", "source": "", "further": {}, "why": "", "caveat": "",
+        "choices": [], "choice": "", "combinations": 0, "holds_at": 0, "flips_at": [], **numbers, **entry, **claim,
+        "figure_or_section": where, "counted": "follows_from" not in entry,
     }  # fmt: skip
+    if at := out.pop("at", None):
+        out["flips_at"] = rules.flips(at, out["tolerance"])
+    # A stated condition or an erratum leaves no claim simply reproduced.
+    if out["caveat"] and out["verdict"] == "reproduced":
+        out |= {"verdict": "reproduced with caveat", "why": out["why"] or out["caveat"]}
     del out["sentences"]
     out = finite(out)
     return out | {"why": why_text(SimpleNamespace(**out))}

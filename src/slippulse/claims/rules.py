@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 KINDS = ("exact", "approximate", "qualitative", "reading", "arithmetic")
-VERDICTS = ("reproduced", "reproduced with caveat", "not reproduced", "inconclusive", "not testable")
+DEPENDS = "depends on an open choice"
+VERDICTS = (
+    "reproduced", "reproduced with caveat", DEPENDS, "not reproduced", "inconclusive", "not testable"
+)  # fmt: skip
 # Of several verdicts the first of these counts.
-WORST_FIRST = ("not reproduced", "inconclusive", "not testable", "reproduced with caveat", "reproduced")
+WORST_FIRST = (
+    "not reproduced", DEPENDS, "inconclusive", "not testable", "reproduced with caveat", "reproduced"
+)  # fmt: skip
+HOLDS = {"reproduced": True, "reproduced with caveat": True, "not reproduced": False}
+# Tolerances at which a verdict is looked at for where it changes, and halvings of what lies between two of them.
+SCANNED, BISECTED = 41, 12
 # More undecided runs than this fraction leave a qualitative claim open.
 UNDECIDED = 0.1
 # Below this p the readings exclude every parameter, not only most.
@@ -70,18 +78,35 @@ def approximate(
     return worst(verdicts)
 
 
-def at_fractions(fractions: Sequence[str], last: str) -> str:
-    """Verdict on a time that has no end, from those at several fractions of the way and at the last release.
+def over_choices(verdicts: Sequence[str]) -> str:
+    """Verdict on a claim from those at every admissible combination of what the paper leaves open.
 
-    "reproduced" if it is at every fraction; "not reproduced" if it is at none of them nor at the last release; else
-    "reproduced with caveat", which of them being the caveat; "inconclusive" if that is the best there is.
+    "depends on an open choice" if it holds at some and fails at others; else the worst of those that have numbers.
     """
-    every = [*fractions, last]
-    if all(verdict == "reproduced" for verdict in fractions):
-        return "reproduced"
-    if "reproduced" in every or "reproduced with caveat" in every:
-        return "reproduced with caveat"
-    return "inconclusive" if "inconclusive" in every else worst(every)
+    if {True, False} <= {HOLDS.get(verdict) for verdict in verdicts}:
+        return DEPENDS
+    return worst(verdict for verdict in verdicts if verdict != "not testable")
+
+
+def flips(at: Callable[[float], str], tolerance: float) -> list[dict]:
+    """Tolerances at which a verdict changes, from a tenth to ten times its own, each with the verdict on both sides.
+
+    Parameters
+    ----------
+    at : the verdict at a tolerance
+    """
+    if not tolerance:
+        return []
+    factors = np.geomspace(0.1, 10.0, SCANNED)
+    found = [at(tolerance * factor) for factor in factors]
+    out = []
+    for low, high, below, above in zip(factors, factors[1:], found, found[1:], strict=False):
+        for _ in range(BISECTED if below != above else 0):
+            middle = np.sqrt(low * high)
+            low, high = (middle, high) if at(tolerance * middle) == below else (low, middle)
+        if below != above:
+            out.append({"tolerance": float(tolerance * high), "below": below, "above": above})
+    return out
 
 
 def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:

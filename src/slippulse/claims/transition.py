@@ -9,6 +9,7 @@ import pandas as pd
 
 from ..measure.fronts import straight_line
 from . import rules
+from .choices import over_choices
 from .evidence import NAN, Claim, Evidence, agreeing, ratios
 
 # Percent of |x_minus| at which a time that has no end is judged.
@@ -81,17 +82,12 @@ def arrests(evidence: Evidence) -> dict[str, list[pd.DataFrame]]:
 
 
 def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim]) -> Claim:
-    """A claim judged at each fraction by the exact solution and at the last release, as `rules.at_fractions`.
-
-    Its numbers are those of the middle fraction; the verdict at each says why.
-    """
-    claims = {where: judge(tables) for where, tables in arrests(evidence).items()}
-    *verdicts, last = (claim["verdict"] for claim in claims.values())
-    verdict = rules.at_fractions(verdicts, last)
-    said = ", ".join(f"{where} {claim['verdict']}" for where, claim in claims.items())
-    why = "" if verdict == "reproduced" else f"It depends on where the transition is taken to end: {said}."
-    further = {f"median ratio {where}": claim.get("measured") for where, claim in claims.items()}
-    return [*claims.values()][1] | {"verdict": verdict, "why": why, "further": further}
+    """A claim judged at each fraction (exact) and at the last release; its numbers are the middle one's."""
+    judged = {where: judge(tables) for where, tables in arrests(evidence).items()}
+    further = {f"median ratio {where}": claim.get("measured") for where, claim in judged.items()}
+    rows = [({"fraction": where.removeprefix("at ")}, claim) for where, claim in judged.items()]
+    rows.insert(0, rows.pop(1))
+    return over_choices(rows) | {"further": further}
 
 
 def speeds_near_one(evidence: Evidence) -> Claim:

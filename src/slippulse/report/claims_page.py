@@ -13,7 +13,9 @@ from ..data.numerals import rounded
 from .html import markup_of, page
 
 # Each verdict has a sign, so that colour is not needed.
-SIGNS = dict(zip(VERDICTS, "\N{CHECK MARK}~\N{MULTIPLICATION SIGN}?\N{EN DASH}", strict=True))
+SIGNS = dict(
+    zip(VERDICTS, "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{MULTIPLICATION SIGN}?\N{EN DASH}", strict=True)
+)
 # The bar of a deviation ends at this many tolerances.
 LONGEST = 2.0
 

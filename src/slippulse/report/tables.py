@@ -78,7 +78,9 @@ def counts(ledger: Ledger) -> str:
     """How many claims of each kind have each verdict; behind a plus those that follow from others."""
     rows = [[kind, *numbers] for kind, numbers in ledger.by_kind()]
     rows.append(["counted", *(str(ledger.count(verdict)) for verdict in FAILURES_FIRST)])
-    return table(["kind", *FAILURES_FIRST], rows, [14, 14, 13, 11, 14, 12], "lrrrrr")
+    return table(
+        ["kind", *FAILURES_FIRST], rows, [14] * (1 + len(FAILURES_FIRST)), "l" + "r" * len(FAILURES_FIRST)
+    )
 
 
 def failures(ledger: Ledger) -> str:
