@@ -23,7 +23,7 @@ def selected(config: dict, keys: Iterable[str], own: dict) -> dict:
     return found
 
 
-def small_sweep(config: dict, name: str, coarser: float = 1.0) -> dict:
+def small_sweep(config: dict, name: str) -> dict:
     """A simulation at preset draft with the first, the last and a few evenly between of each list, but of regimes."""
     block = copy.deepcopy(config["simulations"][name])
     for key, count in THIN.items():
@@ -31,4 +31,4 @@ def small_sweep(config: dict, name: str, coarser: float = 1.0) -> dict:
         if not name.startswith("regimes") and len(values) > count:
             step = (len(values) - 1) / (count - 1)
             block[key] = [values[round(i * step)] for i in range(count)]
-    return resolve(block, config["model"], config["presets"]["draft"], coarser)
+    return resolve(block, config["model"], config["presets"]["draft"])

@@ -24,14 +24,14 @@ def draw(project, tmp_path_factory, study):
     folder = tmp_path_factory.mktemp("tables")
     simulated, drawn = {}, {}
 
-    def simulate(name: str, coarser: float = 1.0):
-        if (name, coarser) not in simulated:
-            block = small_sweep(config, name, coarser)
+    def simulate(name: str):
+        if name not in simulated:
+            block = small_sweep(config, name)
             scenes, samples = expand(block)
             sweep = run_sweep(scenes, samples, block["record"], threads=2)
             save_table(measured_table(sweep, config["measure"]), folder / f"{name}.csv")
-            simulated[name, coarser] = (sweep, load_table(folder / f"{name}.csv"), scenes)
-        return simulated[name, coarser]
+            simulated[name] = (sweep, load_table(folder / f"{name}.csv"), scenes)
+        return simulated[name]
 
     def inputs(needs: dict) -> tuple[dict, dict]:
         """Data and tables, as the workflow joins them."""
@@ -45,9 +45,6 @@ def draw(project, tmp_path_factory, study):
             tables[source] = tables[source].join(predicted) if source in tables else predicted
         for source in needs.get("studies", []):
             tables[source] = study(source, *inputs(declared(f"studies.{source}", "NEEDS")))
-        factor = config["presets"]["draft"]["coarser"][0]
-        for source in needs.get("coarser", []):
-            tables[f"coarser/{source}"] = simulate(source, factor)[1].assign(factor=factor)
         return data, tables
 
     def figure(name: str) -> SimpleNamespace:

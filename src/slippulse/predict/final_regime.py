@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..measure.regime import UNDECIDED
 from ..model.checks import check_number
 from ..theory.front_law import front_speed
@@ -50,9 +52,13 @@ def final_regime(
         return "crack-like, two-way"
     if high == 0.0:
         return "pulse, one-way, steady"
-    ratio = high / -low
-    centre = ratio / (1.0 + 1.0 / float(front_speed(high, damping_ratio, release)) + 2.0 * ratio)
-    return "crack-like, one-way" if centre >= still else "pulse, one-way, growing"
+    pulse = high / -low < float(largest_pulse_ratio(high, damping_ratio, release, still))
+    return "pulse, one-way, growing" if pulse else "crack-like, one-way"
+
+
+def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float) -> np.ndarray:
+    """The ratio r = p/n of `final_regime` below which the nucleation point comes to rest, by the level p > 0."""
+    return still * (1.0 + 1.0 / front_speed(level, damping_ratio, release)) / (1.0 - 2.0 * still)
 
 
 def growth_beyond(level: float) -> str:
