@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .shared.pulses import SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
-from .style import COLUMN, legend_below, new_panels
+from .shared.pulses import conditions, draw_prestress, draw_pulses, handles, pulse_rows
+from .style import COLUMN, new_panels
 
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
@@ -27,18 +27,13 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Left: displacement boundary, on axes where undamped pulses are one. Right: stress boundary."""
+    """Left: displacement boundary, on axes where undamped pulses are one; right: stress boundary."""
     figure, panels = new_panels(COLUMN, 3.2, 1, 2)
-    left, right = (table[table["panel"] == name] for name in ("displacement", "stress"))
-    titles = (r"$\Gamma = 1$", r"$\Gamma = 0$")
-    for axes, rows, title, widths in zip(panels, (left, right), titles, (6.0, 5.0), strict=True):
+    for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
+        rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")
-        draw_prestress(axes, rows, widths)
-        axes.set_title(title, fontsize=9)
-        axes.set_ylim(-0.05, 1.75)
-    panels[0].set_ylabel("slip velocity / largest")
-    panels[0].set_xlabel(rf"$\chi$ / paper's width ($\gamma = {left['gamma'].max():g}$)", fontsize=8)
-    panels[1].set_xlabel(r"$\chi/W$")
-    # A column a boundary.
-    legend_below(figure, [*handles(left), *handles(right), SIMULATION], 2)
+        draw_prestress(axes, rows, (0.14, 0.7, 0.28, 0.2), widths)
+        axes.set_title(conditions(rows), fontsize=9, loc="right")
+        axes.set_ylim(-0.03, 1.06)
+        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.45, -0.2))
     return figure

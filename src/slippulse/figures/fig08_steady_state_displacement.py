@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .shared.pulses import FIELDS, SIMULATION, draw_pulses, handles, pulse_rows
+from .shared.pulses import FIELDS, conditions, draw_pulses, handles, pulse_rows
 from .style import PAGE, legend_below, new_panels
 
 NEEDS = {
@@ -26,12 +26,11 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Slip, slip velocity and acceleration in units of the paper's pulse."""
-    figure, panels = new_panels(PAGE, 3.0, 1, 3)
-    for axes, (field, label) in zip(panels, FIELDS.items(), strict=True):
+    figure, panels = new_panels(PAGE, 2.8, 1, 3)
+    for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
-        axes.set(xlabel=r"$\chi$ / paper's width", ylabel=f"{label} / paper's largest")
     # The undamped lattice rings beyond the theory at the front.
-    panels[2].set_ylim(-1.5, 1.5)
-    panels[1].set_title(rf"$\Gamma = 1$, $\gamma = {table['gamma'].max():g}$", fontsize=9)
-    legend_below(figure, [*handles(table), SIMULATION], 4)
+    panels[2].set_ylim(-1.3, 1.3)
+    panels[1].set_title(conditions(table), fontsize=9)
+    legend_below(figure, handles(table), 6)
     return figure

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .shared.pulses import FIELDS, SIMULATION, draw_prestress, draw_pulses, handles, pulse_rows
+from .shared.pulses import FIELDS, conditions, draw_prestress, draw_pulses, handles, pulse_rows
 from .style import PAGE, legend_below, new_panels
 
 NEEDS = {
@@ -26,14 +26,13 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Slip with the pre-stress as inset, slip velocity, acceleration near the front."""
-    figure, panels = new_panels(PAGE, 3.0, 1, 3)
-    for axes, (field, label) in zip(panels, FIELDS.items(), strict=True):
+    figure, panels = new_panels(PAGE, 2.8, 1, 3)
+    for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
-        axes.set(xlabel=r"$\chi/W$", ylabel=f"{label} / scale")
-    panels[0].set_ylim(-0.04, 1.6)
-    draw_prestress(panels[0], table, 5.0)
-    panels[1].set_title(rf"$\Gamma = 0$, $b = {table['damping_ratio'].max():g}$", fontsize=9)
+    # Where slip and velocity are small.
+    draw_prestress(panels[1], table, (0.09, 0.66, 0.33, 0.22), 5.0)
+    panels[1].set_title(conditions(table), fontsize=9)
     # The exact acceleration has no bound at the front.
     panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
-    legend_below(figure, [*handles(table), SIMULATION], 3)
+    legend_below(figure, handles(table), 6)
     return figure

@@ -43,7 +43,7 @@ VELOCITY_MAP = "viridis"
 # scale is logarithmic.
 SCALES = {
     "tau_0": ("plasma", (0.0, 0.88), (0.0, 1.0), False),
-    "tau_l": ("YlGnBu_r", (0.0, 0.75), (-2.0, 0.0), False),
+    "tau_l": ("YlGnBu_r", (0.0, 0.62), (-2.0, 0.0), False),
     "gamma": ("cividis", (0.0, 0.9), (1e-3, 1.0), True),
     "damping_ratio": ("viridis", (0.0, 0.92), (5e-3, 5.0), True),
     "width": ("YlOrBr", (0.42, 1.0), (0.5, 16.0), True),

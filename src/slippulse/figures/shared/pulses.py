@@ -13,17 +13,34 @@ from matplotlib.lines import Line2D
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
-from ..style import BLACK, CYCLE, Look, colour_scale, entry, prestress_inset
+from ..style import BLACK, Look, colour_scale, entry, prestress_inset
+from .scaling import chosen
 
-FIELDS = {
-    "slip": r"slip $u$",
-    "slip_velocity": r"slip velocity $\dot u$",
-    "slip_acceleration": r"slip acceleration $\ddot u$",
+FIELDS = ("slip", "slip_velocity", "slip_acceleration")
+# What is drawn of each boundary: labels of the fields in their units and of the distance.
+LABELS = {
+    "displacement": (
+        r"slip $u\,\gamma/2\tau_0$",
+        r"slip velocity $\dot u\,\sqrt{\gamma}$",
+        r"acceleration $\ddot u\,\tau_0$",
+    ),
+    "stress": (
+        r"slip $u/u_\mathrm{max}$",
+        r"slip velocity $\dot u/\dot u_\mathrm{max}$",
+        r"acceleration $\ddot u\,W/\dot u_\mathrm{max}$",
+    ),
 }
+DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
+# The quantity of the colours, the column of the line styles, and their symbols; and how many levels are drawn.
+LOOKS = {
+    "displacement": ("tau_0", "damping_ratio", r"\tau_0", "b"),
+    "stress": ("tau_l", "width", r"\tau_{0,l}", "W"),
+}
+LEVELS = {"displacement": 2, "stress": 3}
 STYLES = ("-", "--", ":", "-.")
 # Points of a simulated curve, digits that can be seen, and what is drawn ahead of a pulse and behind it, in widths.
-POINTS, DIGITS, AHEAD, BEHIND = 400, 5, 0.08, 0.25
-PALE: Look = {"linewidth": 2.4, "alpha": 0.35}
+POINTS, DIGITS, AHEAD, BEHIND = 300, 4, 0.08, 0.25
+PALE: Look = {"linewidth": 2.6, "alpha": 0.3}
 # The paper's scales of FIELDS, as its predictions name them.
 SCALES = ("slip", "peak_velocity", "acceleration")
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
@@ -32,7 +49,7 @@ PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 def pulse_rows(
     name: str, data: Mapping, tables: Mapping, settings: Mapping, fields: Sequence[str] = tuple(FIELDS)
 ) -> pd.DataFrame:
-    """Simulated pulses of a sweep, and the exact one of each run.
+    """Simulated pulses of a sweep at some of its levels, and the exact one of each run.
 
     Parameters
     ----------
@@ -48,6 +65,7 @@ def pulse_rows(
     since its acceleration has no bound; panel: the boundary
     """
     runs, profiles = tables[name], tables["pulse_profiles"]
+    runs = runs[runs["left"].isin(chosen(runs["left"], LEVELS[runs["boundary"].iloc[0]]))]
     profiles = profiles[profiles["simulation"] == name]
     parts = [runs[PARAMETERS].assign(role="run", run=runs.index)]
     for index, numbers in runs.iterrows():
@@ -77,13 +95,11 @@ def simulation(run: xr.Dataset, window: float, span: float, reach: float) -> pd.
 
 
 def looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
-    """Colour and line style of each run of one boundary: of its level and damping, or of the run."""
+    """Colour and line style of each run of one boundary."""
+    quantity, other, *_ = LOOKS[table["panel"].iloc[0]]
     runs = table[table["role"] == "run"].set_index("run")
-    if table["panel"].iloc[0] == "stress":
-        return {run: (colour, "-") for run, colour in zip(runs.index, CYCLE, strict=False)}
-    style = dict(zip(np.sort(runs["damping_ratio"].unique()), STYLES, strict=False))
-    scale = colour_scale("tau_0")
-    return {run: (scale.to_rgba(row["left"]), style[row["damping_ratio"]]) for run, row in runs.iterrows()}
+    style, scale = dict(zip(np.sort(runs[other].unique()), STYLES, strict=False)), colour_scale(quantity)
+    return {run: (scale.to_rgba(row["left"]), style[row[other]]) for run, row in runs.iterrows()}
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
@@ -95,28 +111,34 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
         shade = "0.7" if run in flagged else colour
         axes.plot(simulated["x"], simulated[field], color=shade, gid=f"simulation {run}", **PALE)
         axes.plot(exact["x"], exact[field], style, color=colour, linewidth=0.8, gid=f"exact {run}")
+    boundary = table["panel"].iloc[0]
+    axes.set(xlabel=DISTANCE[boundary], ylabel=LABELS[boundary][FIELDS.index(field)])
 
 
-def draw_prestress(axes: Axes, table: pd.DataFrame, widths: float) -> None:
+def draw_prestress(
+    axes: Axes, table: pd.DataFrame, box: tuple[float, float, float, float], widths: float
+) -> None:
     """The pre-stress of the runs in an inset, over some widths of the widest Gaussian."""
     runs, look = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"]), looks(table)
     colours = [look[run][0] for run in runs["run"]]
-    prestress_inset(axes, (0.57, 0.7, 0.4, 0.2), runs, colours, widths)
+    prestress_inset(axes, box, runs, colours, widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
-    """Legend of one boundary: what the colours and the line styles of the exact pulses are."""
+    """Legend of one boundary: what the colours and the line styles of the exact pulses are, and what is pale."""
     runs, look = table[table["role"] == "run"].set_index("run"), looks(table)
-    if table["panel"].iloc[0] == "stress":
-        names = [rf"$\tau_{{0,l}} = {row['left']:g}$, $W = {row['width']:g}$" for _, row in runs.iterrows()]
-        found = [entry(name, color=look[run][0]) for run, name in zip(runs.index, names, strict=True)]
-        return [*found, entry("exact, far field", color=BLACK, linewidth=0.8)]
-    levels = runs.drop_duplicates("left")
-    found = [entry(rf"$\tau_0 = {row['left']:g}$", color=look[run][0]) for run, row in levels.iterrows()]
-    for run, row in runs.drop_duplicates("damping_ratio").iterrows():
-        name = rf"exact, $b = {row['damping_ratio']:g}$"
+    _, other, symbol, other_symbol = LOOKS[table["panel"].iloc[0]]
+    levels, others = (runs.drop_duplicates(column).sort_values(column) for column in ("left", other))
+    found = [entry(rf"${symbol} = {row['left']:g}$", color=look[run][0]) for run, row in levels.iterrows()]
+    for run, row in others.iterrows():
+        name = rf"exact, ${other_symbol} = {row[other]:g}$"
         found.append(entry(name, color=BLACK, linewidth=0.8, linestyle=look[run][1]))
-    return found
+    return [*found, entry("simulation", color=BLACK, **PALE)]
 
 
-SIMULATION = entry("simulation", color=BLACK, **PALE)
+def conditions(table: pd.DataFrame) -> str:
+    """The boundary of the runs, and gamma or b, which their looks do not tell."""
+    held = table["panel"].iloc[0] == "displacement"
+    column, symbol = ("gamma", r"\gamma") if held else ("damping_ratio", "b")
+    values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
+    return rf"$\Gamma = {int(held)}$, ${symbol} = {values}$"
