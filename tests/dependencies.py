@@ -72,7 +72,8 @@ READ_BY = {
     "replication.md": {"write_report"},
     "shipped_verdicts.yaml": {"write_report"},
     "statements.yaml": {"write_claims", "write_report"},
-    "summary.yaml": {"write_index"},
+    "summary.yaml": {"write_index", "write_report"},
+    "supplement.md": {"write_report"},
 }
 # Notes a digest of every source.
 EVERY_SOURCE = {"write_provenance"}

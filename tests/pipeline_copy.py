@@ -13,7 +13,9 @@ from numba.core.caching import _CacheLocator
 
 from slippulse.solver import jit
 
-PARTS = ("Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock")
+PARTS = (
+    "CITATION.cff", "Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock",
+)  # fmt: skip
 
 
 def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:

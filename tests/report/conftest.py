@@ -14,7 +14,7 @@ import yaml
 from slippulse.claims.rules import within
 from slippulse.data.origin import configured_by
 from slippulse.figures.style import new_figure
-from slippulse.report.manuscript import Inputs
+from slippulse.report.manuscript import DOCUMENTS, Inputs
 from slippulse.steps import write_report
 
 DIGEST = "0123456789abcdef"
@@ -67,7 +67,7 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
 
 def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
     """Each finding with a number for everything that any text asks of one."""
-    names = set(re.findall(r"\b(?:n|late|literal|damped|made_with)\.(\w+)", texts))
+    names = set(re.findall(r"\b(?:n|late|literal|damped|made_with|collapse)\.(\w+)", texts))
     names |= set(re.findall(r'found\("\w+"\)\.(\w+)', texts))
     numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))} | {"release": "total"}
     return [{"id": id, "numbers": numbers, "text": f"found {id.replace('_', ' ')}"} for id in findings]
@@ -75,6 +75,8 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     """What the report reads, with a number for each that its text asks for."""
+
+    scaling = {f"{who}transition_{name}": 1.0 for who in ("", "exact_") for name in ("time", "length")}
 
     def row(variable: str) -> dict[str, float]:
         return {name: 1.0 + 0.01 * i for i, name in enumerate(re.findall(rf"\b{variable}\.(\w+)", texts))}
@@ -90,7 +92,8 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     )  # fmt: skip
     rows = {
         "space_time_displacement": [row("scene")], "space_time_stress": [row("crack")],
-        "steady_displacement": [steady] * 2, "derivations": quoted, "extremes": [EDGE],
+        "steady_displacement": [steady] * 2, "scaling_displacement": [scaling],
+        "derivations": quoted, "extremes": [EDGE],
     }  # fmt: skip
     studied = write_report.NEEDS["uncertainties"]
     return {name: pd.DataFrame(found) for name, found in rows.items()} | {
@@ -131,6 +134,7 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
             figures=figures,
             figures_folder=folder,
             manuscript=manuscript,
+            citation=read(manuscript.parent / "CITATION.cff"),
         )
 
     return make
@@ -142,7 +146,8 @@ def build(tmp_path_factory):
 
     def made(inputs: Inputs) -> SimpleNamespace:
         folder = tmp_path_factory.mktemp("report")
-        outputs = {kind: folder / f"replication.{kind}" for kind in ("html", "pdf", "verdicts")}
+        outputs = {kind: [folder / f"{name}.{kind}" for name in DOCUMENTS] for kind in ("html", "pdf")}
+        outputs |= {"verdicts": folder / "verdicts"}
         with pytest.MonkeyPatch.context() as patch, configured_by(DIGEST):
             patch.setattr(write_report, "inputs_of", lambda files, settings: inputs)
             write_report.run({}, outputs, {})

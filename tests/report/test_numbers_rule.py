@@ -16,6 +16,8 @@ import tokenize
 import pytest
 from report.conftest import read
 
+from slippulse.report.manuscript import DOCUMENTS
+
 WORDS = (
     r"four|five|six|seven|eight|nine|ten|eleven|twelve|thirteen|fourteen|fifteen|"
     r"sixteen|seventeen|eighteen|nineteen|twenty|thirty|forty|fifty|sixty|seventy|eighty|ninety|"
@@ -71,11 +73,15 @@ def typed_numbers(source: str) -> list[str]:
 
 
 def test_no_text_has_a_typed_number(manuscript):
-    assert typed_numbers((manuscript / "replication.md").read_text(encoding="utf-8")) == []
+    for name in DOCUMENTS:
+        assert typed_numbers((manuscript / f"{name}.md").read_text(encoding="utf-8")) == []
     texts = [text for entry in read(manuscript / "errata.yaml") for text in entry.values()]
     texts += [text for parts in read(manuscript / "captions.yaml").values() for text in parts.values()]
     summary = read(manuscript / "summary.yaml")
-    texts += [summary["accuracy"], *(line[key] for line in summary["verdict"] for key in ("topic", "text"))]
+    texts += [
+        summary["accuracy"],
+        *(line[key] for line in summary["verdict"] for key in ("topic", "named", "text")),
+    ]
     assert [number for text in texts for number in in_prose(text)] == []
 
 

@@ -17,8 +17,7 @@ RESULTS = [
     "results/findings.json",
     "results/claims.html",
     "results/explorer.html",
-    "results/manuscript/replication.html",
-    "results/manuscript/replication.pdf",
+    *(f"results/manuscript/{name}.{ending}" for name in DOCUMENTS for ending in ("html", "pdf")),
 ]
 # What a draft makes unless everything is asked for: the figures of the paper with what they are drawn from, and what
 # an overlay adds.

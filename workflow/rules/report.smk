@@ -1,4 +1,6 @@
-# The replication report: text with expressions, executed over the ledger and rendered as one HTML file and a PDF.
+# The replication report and its supplement: texts with expressions, executed over the ledger, each as HTML and PDF.
+
+DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 
 
 rule write_report:
@@ -13,18 +15,20 @@ rule write_report:
                 "references.bib",
                 "shipped_verdicts.yaml",
                 "statements.yaml",
+                "summary.yaml",
             )
         ],
         **inputs_of(declared("steps.write_report", "NEEDS")),
-        source="manuscript/replication.md",
+        sources=expand("manuscript/{document}.md", document=DOCUMENTS),
         claims="results/claims.json",
         findings="results/findings.json",
         figures=[f"results/figures/{name}.pdf" for name in NEEDS],
         pictures=[f"results/figures/{name}.png" for name in NEEDS],
         shipped="config/config.yaml",
+        citation="CITATION.cff",
     output:
-        html="results/manuscript/replication.html",
-        pdf="results/manuscript/replication.pdf",
+        html=expand("results/manuscript/{document}.html", document=DOCUMENTS),
+        pdf=expand("results/manuscript/{document}.pdf", document=DOCUMENTS),
         verdicts="results/manuscript/verdicts.yaml",
     log:
         "results/logs/write_report.log",

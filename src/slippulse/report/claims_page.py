@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from itertools import chain
+from pathlib import Path
 from types import SimpleNamespace
 
 from ..claims import reading
@@ -18,16 +21,39 @@ SIGNS = dict(
 )
 # The bar of a deviation ends at this many tolerances.
 LONGEST = 2.0
+# Kinds of tables by their folder.
+KINDS = {
+    "measurements": "measured",
+    "predictions": "predicted",
+    "uncertainties": "uncertainties",
+    "studies": "study",
+}
+# Of more simulations than these everything is made.
+FEW = 6
 
 
 def claims_page(
-    claims: Iterable[Mapping], altered: Sequence[Mapping] = (), findings: Sequence[Mapping] = ()
+    claims: Iterable[Mapping],
+    altered: Sequence[Mapping] = (),
+    findings: Sequence[Mapping] = (),
+    tables: Iterable[str] = (),
 ) -> str:
-    """The ledger and the findings, as in their JSON, with what differs from the shipped configuration."""
+    """The ledger and the findings, as in their JSON.
+
+    Parameters
+    ----------
+    claims, findings : as in their JSON
+    altered : what differs from the shipped configuration
+    tables : files that claims are judged by, from the folder of the page on
+    """
     return page(
         "claims.html",
         findings=findings,
         altered=altered,
+        tables_behind=partial(tables_behind, tables=sorted(tables)),
+        command=command,
+        few=FEW,
+        counted=lambda claims: sum(claim.counted for claim in claims),
         rules_altered=any(change["key"].startswith("claims.") for change in altered),
         **shown(Ledger(claims), [finding["text"] for finding in findings]),
     )
@@ -40,14 +66,31 @@ def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
     return {
         "html": markup_of([*texts, *chain.from_iterable(asked)]),
         "summary": ledger.summary(),
-        "kinds": ledger.by_kind(),
         "groups": {verdict: claims for verdict, claims in by_verdict.items() if claims},
-        "verdicts": FAILURES_FIRST,
         "signs": SIGNS,
         "reading": reading,
         "bar": bar,
         "figure_title": figure_title,
     }
+
+
+def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Files of the simulations and studies that the source of a claim names, by name and kind of table."""
+    every = source.startswith("every simulation")
+    named = {Path(path).stem: None for path in tables} if every else dict.fromkeys(re.findall(r"\w+", source))
+    found = {
+        name: {KINDS[Path(path).parts[0]]: path for path in tables if Path(path).stem == name}
+        for name in named
+    }
+    return {name: kinds for name, kinds in found.items() if kinds}
+
+
+def command(behind: Mapping[str, Mapping[str, str]]) -> str:
+    """The command that makes some tables anew."""
+    paths = [f"results/{path}" for kinds in behind.values() for path in kinds.values()]
+    if not paths:
+        return "make test"
+    return f'make replicate TARGET="{" ".join(paths)}"' if len(behind) <= FEW else "make replicate"
 
 
 def bar(claim: SimpleNamespace) -> tuple[str, float] | None:

@@ -55,19 +55,20 @@ def as_page(html: str) -> str:
         pictures = pool.map(_as_webp, [figure[2] for figure in FIGURE.findall(text)])
         # A click on a figure opens its picture, at its own size.
         text = FIGURE.sub(
-            lambda it: f'{it[1]}<a href="../figures/{it[2]}.png"><img src="{next(pictures)}"{it[4]}</a>',
-            text,
+            lambda it: f'{it[1]}<a href="../figures/{it[2]}.png"><img {next(pictures)}{it[4]}</a>', text
         )
     return head + opening + text
 
 
 def _as_webp(path: str) -> str:
-    """A picture with the same pixels in two thirds of the bytes, as an address."""
+    """A picture with the same pixels in two thirds of the bytes, and its size, which no page waits for."""
     content = BytesIO()
     with Image.open(path) as picture:
         # Higher settings take longer and gain nothing.
         picture.convert("RGB").save(content, format="WEBP", lossless=True, method=2, quality=75)
-    return "data:image/webp;base64," + b64encode(content.getvalue()).decode("ascii")
+        width, height = picture.size
+    address = "data:image/webp;base64," + b64encode(content.getvalue()).decode("ascii")
+    return f'src="{address}" width="{width}" height="{height}"'
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
@@ -79,6 +80,8 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
         If Typst refuses the text, with its message.
     """
     options = ["--to=typst", "--default-image-extension=pdf"]
+    # The documents of this kind lead to each other.
+    text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", options)
     shows = dict(ALTERNATIVE.findall(text))
 

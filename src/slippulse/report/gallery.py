@@ -19,29 +19,43 @@ PAGE = 7.0
 
 
 class Gallery:
-    """The figures that one report includes: those whose NAME.pdf and NAME.png are in a folder.
+    """The figures of a report of several documents: those whose NAME.pdf and NAME.png are in a folder.
 
-    They are numbered by the order in which the text names them; one that it does not name comes last, and one without a
-    caption has its name.
+    Each document numbers its own by the order in which its text names them, the first from 1 on, the others from S1 on.
+    One that no text names comes last, and one without a caption has its name.
     """
 
     def __init__(
-        self, included: Sequence[str], text: str, captions: Mapping[str, Caption], folder: str | Path
+        self,
+        included: Sequence[str],
+        texts: Mapping[str, str],
+        captions: Mapping[str, Caption],
+        folder: str | Path,
+        here: str,
     ) -> None:
-        named = NAMED.findall(text)
-        self.unnamed = [name for name in included if name not in named]
-        self.order = [name for name in named if name in included] + self.unnamed
+        named = {document: NAMED.findall(text) for document, text in texts.items()}
+        self.unnamed = [name for name in included if not any(name in names for names in named.values())]
+        named[[*texts][-1]] += self.unnamed
+        # Of each figure the document and the number.
+        self.places: dict[str, tuple[str, str]] = {}
+        for document, names in named.items():
+            letter = "" if document == next(iter(texts)) else "S"
+            there = [name for name in names if name in included]
+            self.places |= {name: (document, f"{letter}{i}") for i, name in enumerate(there, start=1)}
         self.captions = captions
         self.folder = Path(folder)
+        self.here = here
 
     def figure(self, name: str) -> str:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
-        if name not in self.order:
+        if name not in self.places:
             return ""
         title = name.replace("_", " ")
         caption = self.captions.get(name, Caption(title, title, "", ""))
         paper = OF_PAPER.match(name)
-        head = f"Figure {self.order.index(name) + 1}" + (f" (paper, figure {int(paper[1])})" if paper else "")
+        head = f"Figure {self.places[name][1]}"
+        if paper and head != f"Figure {int(paper[1])}":
+            head += f" (paper, figure {int(paper[1])})"
         text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         with Image.open(self.folder / f"{name}.png") as picture:
@@ -57,7 +71,9 @@ class Gallery:
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
         """A link to a figure between two texts, with the word before its number; nothing if it is not included."""
-        if name not in self.order:
+        if name not in self.places:
             return ""
         start, word = re.fullmatch(r"(.*?)((?:figures? )?)", before).groups()  # type: ignore[union-attr]
-        return f"{start}[{word}{self.order.index(name) + 1}](#{name}){after}"
+        document, number = self.places[name]
+        file = "" if document == self.here else f"{document}.html"
+        return f"{start}[{word}{number}]({file}#{name}){after}"

@@ -9,25 +9,33 @@ from pathlib import Path
 
 from PIL import Image
 
-from ..claims.reading import FAILURES_FIRST, Ledger
+from ..claims.reading import Ledger
 from ..data.prose import fill
+from .answer import answer, judged_lines
 from .claims_page import shown
 from .html import page
 from .parameters import parameters
 from .texts import read_captions, read_text
 
-FILES_OF_RESULTS = {
-    "explorer.html": "Explorer (a rupture with sliders)",
-    "manuscript/replication.html": "Replication report (HTML)",
-    "manuscript/replication.pdf": "Replication report (PDF)",
-    "claims.html": "Ledger of claims (a table)",
-    "claims.json": "Ledger of claims (JSON)",
-    "findings.json": "Further findings (JSON)",
-    "provenance.json": "Provenance (JSON)",
-    "codecheck.yml": "Manifest of every output (CODECHECK)",
-    "checksums.txt": "Checksums (make verify)",
-    "scenes/index.html": "Scenes",
+# Where a reader goes first, and what else there is.
+FIRST = {
+    "manuscript/replication.html": "Report",
+    "explorer.html": "Explore a rupture with sliders",
+    "claims.html": "Every claim, with the tables behind it",
 }
+OTHERS = {
+    "manuscript/replication.pdf": "report (PDF)",
+    "manuscript/supplement.html": "supplement",
+    "manuscript/supplement.pdf": "supplement (PDF)",
+    "claims.json": "claims (JSON)",
+    "findings.json": "further findings (JSON)",
+    "provenance.json": "provenance (JSON)",
+    "codecheck.yml": "manifest of every output (CODECHECK)",
+    "checksums.txt": "checksums",
+    "scenes/index.html": "scenes",
+}
+# Pixels of a page for one of a figure: what is as wide as a column of the journal stays narrower than the page.
+SCALE = 0.4
 
 
 def index_page(
@@ -58,36 +66,39 @@ def index_page(
     captions = read_captions(texts["captions"], lambda text: fill(text, names))
     summary = read_text(texts["summary"])
     accuracy = fill(summary["accuracy"], names)
-    for line in summary["verdict"]:
-        line["text"] = fill(line["text"], names)
-        # Its sign is the worst of its claims.
-        line["claim"] = min(
-            map(ledger, line["claims"]), key=lambda claim: FAILURES_FIRST.index(claim.verdict)
-        )
+    lines = judged_lines(summary, ledger, lambda text: fill(text, names))
     figures = {
         # A user-defined sweep has no caption but its name.
         name: captions.get(name) or captions["own_sweep"]._replace(title=name.removeprefix("sweep_"))
         for listed in galleries.values()
         for name in listed
     }
+    found = answer(lines)
+    texts_of = [text for line in lines for text in (line.topic, line.text)]
     written = [text for caption in figures.values() for text in (caption.finding, caption.caption)]
+    there = [
+        {path: name for path, name in files.items() if (results / path).exists()} for files in (FIRST, OTHERS)
+    ]
     return page(
         "index.html",
         altered=facts["overlay"],
-        lines=summary["verdict"],
+        answer=found,
+        lines=lines,
         accuracy=accuracy,
         figures=figures,
         sizes={name: _size(results / f"figures/{name}.png") for name in figures},
         picture=summary["picture"],
-        files={path: title for path, title in FILES_OF_RESULTS.items() if (results / path).exists()},
+        first=there[0],
+        others=there[1],
         galleries=galleries,
         scenes={name: (title, (results / f"scenes/{name}.html").exists()) for name, title in scenes.items()},
         facts=facts,
-        **shown(ledger, [*written, *(line["text"] for line in summary["verdict"]), accuracy]),
+        **shown(ledger, [*written, *texts_of, found, accuracy]),
     )
 
 
 def _size(path: Path) -> tuple[int, int]:
-    """Width and height of a picture, so that the page does not jump while it loads."""
+    """Width and height of a picture on a page, which does not jump while it loads."""
     with Image.open(path) as picture:
-        return picture.size
+        width, height = picture.size
+    return round(SCALE * width), round(SCALE * height)

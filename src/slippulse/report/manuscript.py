@@ -14,14 +14,16 @@ import pandas as pd
 from ..claims.entries import coverage
 from ..claims.reading import Ledger
 from ..data.alterations import changes
-from ..data.numerals import FILTERS
+from ..data.numerals import FILTERS, percent
 from ..data.prose import fill
+from .answer import answer, judged_lines
 from .gallery import Gallery
 from .parameters import parameters
-from .tables import alteration_note, errata
+from .tables import alteration_note, errata, verdicts
 from .texts import read_captions, read_errata, read_text
 
-SOURCE = "replication.md"
+# The report and what it refers to for more; each is NAME.md.
+DOCUMENTS = ("replication", "supplement")
 # A cell for the notebook opened by hand: here its names are there already.
 BY_HAND = "by-hand"
 
@@ -39,6 +41,7 @@ class Inputs:
     figures : names of the figures to include, in any order
     figures_folder : where their files are
     manuscript : folder of the texts
+    citation : as in CITATION.cff: version, date-released
     """
 
     config: Mapping
@@ -49,10 +52,11 @@ class Inputs:
     figures: Sequence[str]
     figures_folder: Path
     manuscript: Path
+    citation: Mapping
 
 
-def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
-    """The names that cells and prose use, with ``show``, which puts Markdown into the report."""
+def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dict[str, object]:
+    """The names that cells and prose of a document use, with ``show``, which puts Markdown into it."""
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
@@ -61,11 +65,14 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
         **FILTERS,
         "config": config,
         "shipped": inputs.shipped,
+        "citation": inputs.citation,
         "tables": inputs.tables,
         "show": show,
         "claim": ledger,
         "found": ledger.found,
-        "judged": lambda id: f"{ledger.measured(id)}, {ledger.verdict(id)}",
+        "cite": cite,
+        "off": lambda id: cite(id, percent(ledger.deviation(id))),
+        "measured": lambda id: cite(id, ledger.measured(id)),
         "runs": partial(parameters, config),
         "entries": read_text(folder / "claims.yaml"),
         "statements": statements,
@@ -77,12 +84,10 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
         # The errata see what the cells add later.
         return fill(text, names)
 
-    gallery = Gallery(
-        inputs.figures,
-        (folder / SOURCE).read_text(encoding="utf-8"),
-        read_captions(folder / "captions.yaml", filled),
-        inputs.figures_folder,
-    )
+    texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
+    captions = read_captions(folder / "captions.yaml", filled)
+    gallery = Gallery(inputs.figures, texts, captions, inputs.figures_folder, document)
+    lines = judged_lines(read_text(folder / "summary.yaml"), ledger, filled)
     names |= {
         "figure": lambda name: show(gallery.figure(name)),
         "further": lambda: show(gallery.further()),
@@ -90,9 +95,16 @@ def names_for(inputs: Inputs, show: Callable[[str], None]) -> dict[str, object]:
         "alteration_note": lambda: alteration_note(
             altered, ledger, read_text(folder / "shipped_verdicts.yaml") or {}
         ),
+        "answer": answer(lines),
+        "verdicts": lambda: verdicts(lines),
         "errata": lambda: errata(read_errata(folder / "errata.yaml"), filled),
     }
     return names
+
+
+def cite(id: str, text: str) -> str:
+    """A number as a link to its claim or finding, where the tables behind it are."""
+    return f"[{text}](../claims.html#{id})"
 
 
 def execute(source: str | Path, inputs: Inputs) -> str:
@@ -109,7 +121,8 @@ def execute(source: str | Path, inputs: Inputs) -> str:
         If a cell fails: the error and the first line of the cell.
     """
     shown: list[str] = []
-    names = names_for(inputs, lambda markdown: shown.append(markdown) if markdown else None)
+    document = Path(source).stem
+    names = names_for(inputs, lambda markdown: shown.append(markdown) if markdown else None, document)
     for cell in jupytext.read(source).cells:
         if BY_HAND in cell.metadata.get("tags", []):
             continue

@@ -20,6 +20,7 @@ from ..claims.reading import (
     predicted_text,
 )
 from ..data.numerals import number, percent, setting, short, with_uncertainty
+from .answer import Line
 from .texts import ERRATUM
 
 # Wide enough that pandoc takes the dashes as relative widths.
@@ -74,13 +75,12 @@ def plain(text: str) -> str:
     return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)
 
 
-def counts(ledger: Ledger) -> str:
-    """How many claims of each kind have each verdict; behind a plus those that follow from others."""
-    rows = [[kind, *numbers] for kind, numbers in ledger.by_kind()]
-    rows.append(["counted", *(str(ledger.count(verdict)) for verdict in FAILURES_FIRST)])
-    return table(
-        ["kind", *FAILURES_FIRST], rows, [14] * (1 + len(FAILURES_FIRST)), "l" + "r" * len(FAILURES_FIRST)
-    )
+def verdicts(lines: Iterable[Line]) -> str:
+    """The lines of the answer, each with its verdict as a link to the claim that it has it from."""
+    rows = [
+        [line.topic, f"[{line.claim.verdict}](../claims.html#{line.claim.id})", line.text] for line in lines
+    ]
+    return table(["what the paper says", "verdict", "what was found"], rows, [28, 16, 56], "lll")
 
 
 def failures(ledger: Ledger) -> str:

@@ -32,4 +32,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
     write_text(json.dumps(beside, indent=1, ensure_ascii=False) + "\n", outputs["findings"])
-    write_text(claims_page(claims, settings["altered"], beside), outputs["html"])
+    here = Path(outputs["html"]).parent
+    listed = [path for kind in ("measured", "predicted", "uncertainties", "studies") for path in files[kind]]
+    tables_of = [Path(path).relative_to(here).as_posix() for path in listed]
+    write_text(claims_page(claims, settings["altered"], beside, tables_of), outputs["html"])

@@ -1,4 +1,4 @@
-"""Write the replication report as HTML and PDF."""
+"""Write the replication report and its supplement, each as HTML and PDF."""
 
 from __future__ import annotations
 
@@ -12,14 +12,25 @@ import yaml
 
 from ..data.files import write_text
 from ..report.document import write_html, write_pdf
-from ..report.manuscript import SOURCE, Inputs, execute, names_for
+from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
+from ..report.texts import read_text
 from .inputs import given
 
 FILES = ("report/templates/report.html", "report/templates/report.css", "report/templates/report.typ")
 # What the report quotes.
 NEEDS = {
-    "measured": ["space_time_displacement", "space_time_stress", "steady_displacement"],
-    "predicted": ["space_time_displacement", "space_time_stress", "steady_displacement"],
+    "measured": [
+        "scaling_displacement",
+        "space_time_displacement",
+        "space_time_stress",
+        "steady_displacement",
+    ],
+    "predicted": [
+        "scaling_displacement",
+        "space_time_displacement",
+        "space_time_stress",
+        "steady_displacement",
+    ],
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["derivations", "extremes"],
 }
@@ -29,18 +40,18 @@ HEAD = (
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """Files: source, claims, findings, shipped, figures, and as `given` takes them. Outputs: html, pdf, verdicts.
+    """Files: sources, claims, findings, shipped, citation, figures, and as `given` takes them.
 
-    Settings: figures (names), config.
+    Outputs: html and pdf, lists with a file for each document; verdicts. Settings: figures (names), config.
     """
     inputs = inputs_of(files, settings)
-    text = execute(inputs.manuscript / SOURCE, inputs)
     with ThreadPoolExecutor() as pool:
-        # Both wait for processes of their own, so they overlap.
-        writings = [
-            pool.submit(copy_context().run, write, text, inputs.manuscript, outputs[kind])
-            for kind, write in (("html", write_html), ("pdf", write_pdf))
-        ]
+        # They wait for processes of their own, so they overlap.
+        writings = []
+        for document, *paths in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
+            text = execute(inputs.manuscript / f"{document}.md", inputs)
+            for write, path in zip((write_html, write_pdf), paths, strict=True):
+                writings.append(pool.submit(copy_context().run, write, text, inputs.manuscript, path))
     for writing in writings:
         writing.result()
     verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
@@ -51,21 +62,23 @@ def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
     """What the report is written from, read."""
     return Inputs(
         config=settings["config"],
-        shipped=yaml.safe_load(Path(files["shipped"]).read_text(encoding="utf-8")),
+        shipped=read_text(files["shipped"]),
         claims=json.loads(Path(files["claims"]).read_text(encoding="utf-8")),
         findings=json.loads(Path(files["findings"]).read_text(encoding="utf-8")),
         tables=given(files)[1],
         figures=settings["figures"],
         figures_folder=Path(files["figures"][0]).resolve().parent,
-        manuscript=Path(files["source"]).resolve().parent,
+        manuscript=Path(files["sources"][0]).resolve().parent,
+        citation=read_text(files["citation"]),
     )
 
 
-def by_hand(show: Callable[[str], None] | None = None) -> dict[str, object]:
+def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
     """The names of the cells for a notebook that is opened inside a project with finished results.
 
     Parameters
     ----------
+    document : one of `DOCUMENTS`
     show : what is shown goes there; by default below the cell
     """
     if show is None:
@@ -85,6 +98,7 @@ def by_hand(show: Callable[[str], None] | None = None) -> dict[str, object]:
     }
     figures = sorted((results / "figures").glob("*.pdf"))
     files |= {"claims": results / "claims.json", "findings": results / "findings.json", "figures": figures}
-    files |= {"shipped": project / "config/config.yaml", "source": project / "manuscript" / SOURCE}
+    files |= {"shipped": project / "config/config.yaml", "citation": project / "CITATION.cff"}
+    files["sources"] = [project / f"manuscript/{document}.md"]
     names = [figure.stem for figure in figures]
-    return names_for(inputs_of(files, {"config": config, "figures": names}), show)
+    return names_for(inputs_of(files, {"config": config, "figures": names}), show, document)
