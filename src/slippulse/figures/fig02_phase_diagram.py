@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
@@ -60,7 +59,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 def plot(table: pd.DataFrame) -> Figure:
     """A plane for each boundary, and velocity profiles of the ruptures that are numbered in them."""
     figure = new_figure(PAGE, 2.55)
-    planes, strips = np.ravel(figure.subfigures(1, 2, width_ratios=(2.05, 1.0)))
+    grid = figure.add_gridspec(1, 2, width_ratios=(2.05, 1.0))
+    planes, strips = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
     numbers = {tuple(rows[["boundary", "regime"]].iloc[0]): NUMBERS[i] for i, rows in enumerate(profiles)}
     for axes, letter, boundary in zip(planes.subplots(1, 2), "ab", BOUNDARIES, strict=True):

@@ -8,6 +8,7 @@ import matplotlib.patheffects as effects
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -21,6 +22,7 @@ NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
     "measured": ["space_time_displacement", "space_time_stress"],
     "studies": ["exact_space_time"],
+    "settings": ["measure.share"],
 }
 
 PANELS = {"displacement": "a", "stress": "b"}
@@ -34,7 +36,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     -------
     panel ("displacement" or "stress"), role, series, time, position, value: as `run_rows` has them, and the roles
     exact_front and exact_trailing, and measured, paper and last_release (the transition: its time, positions of the
-    left and right front then; value: the length)
+    left and right front then; value: the length), and fraction (value: of |x_minus| that the left front has covered at
+    T_trans under a stress boundary)
     """
     parts = []
     for panel in PANELS:
@@ -46,6 +49,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
             for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time"))
         ]
         found = [run_rows(run), transition_rows(run, tables[name].iloc[0]), *edges]
+        if panel == "stress":
+            found.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
         parts.append(pd.concat(found).assign(panel=panel))
     columns = ["panel", "role", "series", "time", "position", "value"]
     return pd.concat(parts, ignore_index=True)[columns]
@@ -71,10 +76,11 @@ def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Draw the figure from its table."""
+    """Draw the figure from its table; what is in one panel alone has its letter in the legend."""
     figure = new_figure(COLUMN, 5.6)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
-    handles: Look = {}
+    handles: dict[str, Artist] = {}
+    panels: dict[str, str] = {}
     for side, (panel, letter) in zip(stacked(figure, (1.0, 1.0)), PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.27, 1.0))
         roles = {str(role): rows for role, rows in table[table["panel"] == panel].groupby("role")}
@@ -84,13 +90,19 @@ def plot(table: pd.DataFrame) -> Figure:
         bar = side.colorbar(image, ax=axes, pad=0.02, aspect=22)
         bar.set_label(rf"slip velocity $\dot u$ (largest {roles['largest']['value'].iloc[0]:#.3g})")
         panel_letter(profile, letter)
-        side.suptitle(description(roles), fontsize=9.0)
-        handles |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
-    patches = [
-        Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5, label=label)
-        for colour, label in (("white", "not yet slipped"), (STUCK, "stuck again"))
-    ]
-    legend_below(figure, [*handles.values(), *patches], 3)
+        when = "first stick"
+        if "fraction" in roles:
+            when = rf"left front at {100.0 * roles['fraction']['value'].iloc[0]:g} % of its way to $x_-$"
+        side.suptitle(rf"{description(roles)}" + "\n" + rf"$T_\mathrm{{trans}}$: {when}", fontsize=9.0)
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            handles[label], panels[label] = handle, panels.get(label, "") + letter
+    for label, colour in (("not yet slipped", "white"), ("stuck again", STUCK)):
+        handles[label] = Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5)
+    # What is stuck is grey behind a trailing edge.
+    panels |= {"not yet slipped": "ab", "stuck again": panels.get("trailing edge", "a")}
+    for label, handle in handles.items():
+        handle.set_label(label if panels[label] == "ab" else f"{label} ({panels[label]})")
+    legend_below(figure, list(handles.values()), 3)
     return figure
 
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from .shared.scaling import (
     LEVEL,
     OTHER,
+    SYMBOLS,
     chosen,
     colour_bar,
     colours,
@@ -17,7 +18,7 @@ from .shared.scaling import (
     draw_ratio,
     transition_rows,
 )
-from .style import BLACK, COLUMN, GREY, entry, legend_below, new_panels, prestress_inset
+from .style import BLACK, PAGE, new_panels, prestress_inset
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
@@ -28,35 +29,27 @@ BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Every run of both sweeps, as `transition_rows` has it."""
-    parts = [transition_rows(tables[f"scaling_{boundary}"], boundary) for boundary in BOUNDARIES]
-    return pd.concat(parts, ignore_index=True)
+    return pd.concat([transition_rows(tables[f"scaling_{name}"]) for name in BOUNDARIES], ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """A column a boundary: the collapse, and below it measured over predicted against the level."""
-    figure, panels = new_panels(COLUMN, 5.0, 2, 2, height_ratios=(1.2, 1.0))
-    for above, below, (boundary, title) in zip(panels, panels[2:], BOUNDARIES.items(), strict=False):
-        runs = table[table["boundary"] == boundary]
-        draw_collapse(above, runs)
-        above.set_title(title, fontsize=9)
-        above.set_xlabel("predicted $L$, $T$")
+    """A row a quantity, a column a boundary: the collapse, and inset measured over predicted against the level."""
+    figure, panels = new_panels(PAGE, 4.8, 2, 2)
+    for column, (boundary, title) in enumerate(BOUNDARIES.items()):
+        runs, other = table[table["boundary"] == boundary], OTHER[boundary][0]
+        for axes, (quantity, symbol) in zip(panels[column::2], SYMBOLS.items(), strict=True):
+            draw_collapse(axes, runs, quantity)
+            axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
+            inset = axes.inset_axes((0.09, 0.58, 0.36, 0.33))
+            inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
+            draw_ratio(inset, runs[runs[other].isin(chosen(runs[other], 3))], quantity, "left", other, "o")
+            inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
+            inset.set_xlabel(LEVEL[boundary][1], fontsize=7.0, labelpad=0.0)
+            inset.set_title("measured / formula", fontsize=7.0, pad=1.5)
         narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
         narrow = narrow[narrow["left"].isin(chosen(runs["left"], 3))]
-        prestress_inset(above, (0.14, 0.68, 0.3, 0.2), narrow, list(colours(narrow, "left")), 6.0)
-        below.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
-        other = OTHER[boundary][0]
-        some = runs[runs[other].isin(chosen(runs[other], 3))]
-        draw_ratio(below, some, "length", "left", other, "o", "-")
-        draw_ratio(below, some, "time", "left", other, "^", "--")
-        below.set_xlabel(LEVEL[boundary][1])
-        bars = {"location": "bottom", "aspect": 25, "pad": 0.02}
-        colour_bar(figure, (above, below), boundary, "left", **bars)
-        colour_bar(figure, (above, below), boundary, other, **bars)
-    panels[0].set_ylabel("measured $L$, $T$")
-    panels[2].set_ylabel("measured over predicted")
-    marks = [("length", "o"), ("time", "^"), ("literal definition", "x")]
-    handles = [entry(label, marker=marker, color=GREY) for label, marker in marks]
-    for label, style in (("exact length", "-"), ("exact time", "--")):
-        handles.append(entry(label, color=GREY, linewidth=0.8, linestyle=style))
-    legend_below(figure, [*handles, entry("equality", color=BLACK, linewidth=0.8)], 3)
+        prestress_inset(panels[column], (0.7, 0.13, 0.26, 0.22), narrow, list(colours(narrow, "left")), 6.0)
+        panels[column].set_title(title, fontsize=9)
+        for kind in ("left", other):
+            colour_bar(figure, panels[column::2], boundary, kind, location="bottom", aspect=35, pad=0.02)
     return figure

@@ -14,7 +14,7 @@ NEEDS = {"measured": ["damping_displacement"], "predicted": ["damping_displaceme
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Every run, as `transition_rows` has it."""
-    return transition_rows(tables["damping_displacement"], "displacement")
+    return transition_rows(tables["damping_displacement"])
 
 
 def plot(table: pd.DataFrame) -> Figure:

@@ -14,7 +14,7 @@ NEEDS = {"measured": ["damping_stress"], "predicted": ["damping_stress"]}
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Every run, as `transition_rows` has it."""
-    return transition_rows(tables["damping_stress"], "stress")
+    return transition_rows(tables["damping_stress"])
 
 
 def plot(table: pd.DataFrame) -> Figure:

@@ -13,26 +13,22 @@ from matplotlib.figure import Figure
 from ..style import BLACK, GREY, PAGE, Look, colour_scale, entry, few_ticks, legend_below, new_panels
 
 SYMBOLS = {"length": r"L_\mathrm{trans}", "time": r"T_\mathrm{trans}"}
-# The paper's definitions read literally, which are measured beside those used here.
-LITERAL = {
-    "displacement": {"length": "slip_length_background", "time": "slip_time_background"},
-    "stress": {"length": "last_release_length", "time": "last_release_time"},
-}
 # What varies beside the level: column, and its symbol.
 OTHER = {"displacement": ("gamma", r"$\gamma$"), "stress": ("width", r"$W$")}
 LEVEL = {"displacement": ("tau_0", r"$\tau_0$"), "stress": ("tau_l", r"$\tau_{0,l}$")}
-MARKERS = "os^Dv<>pP*hX"
+# Of figures 10 and 11: how many levels, and values of gamma or W, are drawn.
+MARKERS, DRAWN = "os^Dv", 3
+NEAR, FAR = np.arange(0.5, 1.5, 0.05), np.array([0.5, 0.7, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0])
 
 
-def transition_rows(runs: pd.DataFrame, boundary: str) -> pd.DataFrame:
-    """One row a run: parameters, length and time as measured, by the paper, exact, and by the literal definition."""
+def transition_rows(runs: pd.DataFrame) -> pd.DataFrame:
+    """One row a run: parameters, length and time as measured, by the paper, and exact."""
     kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
     found = runs[kept].copy()
     for quantity in SYMBOLS:
         found[quantity] = runs[f"transition_{quantity}"]
         found[f"paper_{quantity}"] = runs[f"paper_transition_{quantity}"]
         found[f"exact_{quantity}"] = runs[f"exact_transition_{quantity}"]
-        found[f"literal_{quantity}"] = runs[LITERAL[boundary][quantity]]
     return found
 
 
@@ -59,16 +55,12 @@ def draw_ratio(
     _scatter(axes, runs, runs[across], runs[quantity] / runs[f"paper_{quantity}"], marker, colour, zorder=3)
 
 
-def draw_collapse(axes: Axes, runs: pd.DataFrame) -> None:
-    """Measured against predicted: lengths as circles, times as triangles, the level as face, gamma or W as rim."""
+def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
+    """Measured against predicted, the level as face, gamma or W as rim."""
     rim = OTHER[runs["boundary"].iloc[0]][0]
-    ends = [np.inf, 0.0]
-    for quantity, marker in (("length", "o"), ("time", "^")):
-        x, y, literal = runs[f"paper_{quantity}"], runs[quantity], runs[f"literal_{quantity}"]
-        axes.scatter(x, literal, marker="x", s=5.0, linewidths=0.4, color="0.7", zorder=1, gid="literal")
-        _scatter(axes, runs, x, y, marker, "left", rim, s=11.0, linewidths=0.8, zorder=3)
-        ends = [min(ends[0], x.min(), y.min(), literal.min()), max(ends[1], x.max(), y.max(), literal.max())]
-    ends = [ends[0] / 1.4, ends[1] * 1.4]
+    x, y = runs[f"paper_{quantity}"], runs[quantity]
+    _scatter(axes, runs, x, y, "o", "left", rim, s=15.0, linewidths=1.0, zorder=3)
+    ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
 
@@ -97,24 +89,30 @@ def damping_figure(runs: pd.DataFrame) -> Figure:
     """Figures 10 and 11: L_trans and T_trans over the paper's predictions against the damping ratio."""
     boundary = runs["boundary"].iloc[0]
     other, symbol = OTHER[boundary]
-    values = np.sort(runs[other].unique())
+    ratios, values = np.sort(runs["damping_ratio"].unique()), chosen(runs[other], DRAWN)
+    runs = runs[runs["left"].isin(chosen(runs["left"], DRAWN))]
     figure, panels = new_panels(PAGE, 2.8, 1, 2)
     for axes, quantity in zip(panels, SYMBOLS, strict=True):
         axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
         for marker, value in zip(MARKERS, values, strict=False):
             draw_ratio(axes, runs[runs[other] == value], quantity, "damping_ratio", "left", marker)
-        ratios = np.sort(runs["damping_ratio"].unique())
         axes.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
         few_ticks(axes.xaxis, ratios)
         axes.set_xlim(-0.3 * ratios[1], 1.5 * ratios[-1])
+        axes.set_yscale("log")
+        low, high = axes.get_ylim()
+        ticks = NEAR if high < 1.45 * low else FAR
+        few_ticks(axes.yaxis, ticks[(low < ticks) & (ticks < high)])
         axes.minorticks_off()
-        axes.set(xlabel=r"damping ratio $b$", ylabel=f"measured over predicted ${SYMBOLS[quantity]}$")
+        axes.set(xlabel=r"damping ratio $b$", ylabel=f"${SYMBOLS[quantity]}$ / paper's formula")
+    spacing = runs["dx"] / runs["width"]
     panels[0].set_title(rf"$\Gamma = {int(boundary == 'displacement')}$", fontsize=9)
+    panels[1].set_title(rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}", fontsize=9)
     colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
     handles = [
-        entry(f"{symbol} = {value:g}", marker=marker, color=GREY)
+        entry(f"simulation, {symbol} = {value:g}", marker=marker, color=GREY)
         for marker, value in zip(MARKERS, values, strict=False)
     ]
-    handles.append(entry("exact theory", color=GREY, linewidth=0.8))
+    handles.append(entry(r"exact, $\Delta x\to0$", color=GREY, linewidth=0.8))
     legend_below(figure, handles, len(handles))
     return figure
