@@ -37,26 +37,30 @@ def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
 
 # What a job does in an imitated project: each output says what it is made by and from, as quickly as possible.
 IMITATION = """
-def imitate(origin, outputs):
-    from ..data.files import write_text
-    from ..data.records import file_digest
 
-    text = f"{origin.step} {origin.configuration} {[file_digest(f'results/{name}') for name in sorted(origin.inputs)]}"
-    for value in outputs.values():
-        for output in [value] if isinstance(value, str) else value:
-            write_text(f"{text} {output}\\n", output)
+class import_module:
+    def __init__(self, name):
+        self.name = name
+
+    def run(self, files, outputs, settings):
+        from ..data.files import write_text
+        from ..data.origin import configuration
+        from ..data.records import file_digest
+
+        given, made = ([path for value in all.values() for path in ([value] if isinstance(value, str) else value)]
+                       for all in (files, outputs))
+        digests = [file_digest(path) for path in given if path.startswith("results/")]
+        for path in made:
+            write_text(f"{self.name} {configuration()} {digests} {path}\\n", path)
 """
 
 
 def imitate_steps(folder: Path) -> None:
     """Let every job of a copy write short texts instead of running its step; all else is as it is."""
     path = folder / "src/slippulse/steps/job.py"
-    text, step = path.read_text(encoding="utf-8"), 'import_module(f"slippulse.steps.{origin.step}").run('
-    assert text.count(step) == 1
-    path.write_text(
-        text.replace(f"{step}files, outputs, settings)", "imitate(origin, outputs)") + IMITATION,
-        encoding="utf-8",
-    )
+    text = path.read_text(encoding="utf-8")
+    assert text.count('import_module(f"slippulse.steps.') == 1
+    path.write_text(text + IMITATION, encoding="utf-8")
 
 
 def share_kernels(folder: Path) -> None:
