@@ -75,9 +75,9 @@ def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
         return subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, start_new_session=True)
 
 
-def digests(folder: Path) -> dict[str, str]:
+def digests(folder: Path, results: str = "results") -> dict[str, str]:
     """Every result but logs, times and notes; a hidden name is a file that its writer was killed over."""
-    results = folder / "results"
+    results = folder / results
     return {
         str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in sorted(results.rglob("*"))

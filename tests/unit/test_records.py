@@ -93,7 +93,7 @@ HARM |= {
 
 
 @pytest.mark.parametrize("case", HARM)
-def test_what_is_not_as_made_is_named_and_removed_whatever_its_time(results, case):
+def test_what_is_not_as_made_is_named_and_in_the_way_whatever_its_time(results, case):
     harm, expected = HARM[case]
     harm(results)
     for path in results.rglob("*"):
@@ -102,17 +102,24 @@ def test_what_is_not_as_made_is_named_and_removed_whatever_its_time(results, cas
     origins = origins_of(JOBS)
     lines, _ = problems_of(results, origins, origins)
     assert lines == [f"{results / name}: {reason}" for name, reason in expected.items()]
-    removed = Tree(results, origins).remove_faulty(origins)
-    assert removed == {name: reason for name, reason in expected.items() if reason != "missing"}
-    assert not any((results / name).exists() for name in removed)
+    in_the_way = Tree(results, origins).to_remove(origins)
+    assert in_the_way == {name: reason for name, reason in expected.items() if reason != "missing"}
 
 
-def test_only_what_is_wanted_and_what_that_is_made_from_is_removed(results):
+def test_only_what_is_wanted_and_what_that_is_made_from_is_in_the_way(results):
     for name in (DATA, OTHER):
         (results / name).write_text("changed")
-    assert Tree(results, origins_of(JOBS)).remove_faulty([TABLE]) == {DATA: "not what its job wrote"}
     # The table was made from what the record of the data says.
-    assert (results / TABLE).exists() and (results / OTHER).read_text() == "changed"
+    assert Tree(results, origins_of(JOBS)).to_remove([TABLE]) == {DATA: "not what its job wrote"}
+
+
+def test_what_a_job_has_made_goes_together(tmp_path):
+    jobs = [Job("draw_figure", (), ("results/a.png", "results/a.pdf"), {})]
+    run(tmp_path, jobs)
+    (tmp_path / "results/a.pdf").unlink()
+    tree = Tree(tmp_path / "results", origins_of(jobs))
+    assert tree.behind(["a.png"]) == ["a.png", "a.pdf"]
+    assert tree.to_remove(["a.png"]) == {"a.png": "made with a file that is not as made"}
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 import random
 import resource
@@ -13,6 +14,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -91,48 +93,17 @@ def test_a_signal_ends_a_run_at_once_and_the_next_gives_the_same(tmp_path, each)
     assert start_by_make(quiet, targets).wait(timeout=600) == 0
     duration, chance = time.monotonic() - began, random.Random(5)
     expected = digests(quiet)
-    for number in SIGNALS * each:
+    met = Counter()
+    while min(met[number] for number in SIGNALS) < each:
+        number = min(SIGNALS, key=met.__getitem__)
         seconds = stop_at(harmed, number, chance.uniform(0.02, 0.9) * duration, targets)
         assert number == signal.SIGKILL or not seconds > AT_ONCE, (number, seconds)
-        if chance.random() < 0.3:
+        met[number] += not math.isnan(seconds)
+        # Otherwise it goes on from what is there, and is done before the next signal at last.
+        if math.isnan(seconds) or chance.random() < 0.3:
             shutil.rmtree(harmed / "results", ignore_errors=True)
     assert start_by_make(harmed, targets).wait(timeout=600) == 0
     assert digests(harmed) == expected
-
-
-HARM = {
-    "truncated": lambda whole: whole[: len(whole) // 2],
-    "corrupted": lambda whole: b"\0" * 600 + whole[600:],
-    "empty": lambda whole: b"",
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("harm", HARM)
-def test_a_harmed_data_file_is_made_anew_to_the_same_bytes(finished, harm):
-    data, table = finished / DATA, finished / SCENE
-    whole, before = data.read_bytes(), table.read_bytes()
-    data.write_bytes(HARM[harm](whole))
-    moment = time.time_ns() + 10**9
-    os.utime(data, ns=(moment, moment))
-    result = snakemake(finished, "--", DATA, SCENE, overlay="overlay.yaml")
-    assert result.returncode == 0, result.stderr
-    assert f"as {DATA}: not what its job wrote; removed, and made anew where needed" in result.stderr
-    assert data.read_bytes() == whole and table.read_bytes() == before
-
-
-@pytest.mark.slow
-def test_a_data_file_without_a_record_is_made_anew(finished, tmp_path):
-    """As of a job of another program, or of a folder that was put together by hand."""
-    folder = tmp_path / "copy"
-    shutil.copytree(finished, folder, symlinks=True)
-    (folder / f"results/records/{Path(DATA).relative_to('results')}.json").unlink()
-    (folder / SCENE).unlink()
-    (folder / DATA).write_bytes(b"of another job")
-    result = snakemake(folder, "--", SCENE, overlay="overlay.yaml")
-    assert result.returncode == 0, result.stderr
-    assert f"as {DATA}: no record; removed, and made anew where needed" in result.stderr
-    assert digests(folder) == digests(finished)
 
 
 @pytest.mark.slow

@@ -2,7 +2,10 @@
 # what its record says.
 
 import json
+import math
 import shlex
+import time
+from contextlib import suppress
 from types import SimpleNamespace
 
 from snakemake.cli import get_argument_parser
@@ -58,7 +61,8 @@ def jobs_of(rule):
         yield Job(settings.pop("step"), inputs, outputs, settings)
 
 
-ORIGINS = origins_of(job for rule in RULES.values() if "step" in rule.params.keys() for job in jobs_of(rule))
+ALL_JOBS = [job for rule in RULES.values() if "step" in rule.params.keys() for job in jobs_of(rule)]
+ORIGINS = origins_of(ALL_JOBS)
 MADE = [f"results/{name}" for name in ORIGINS]
 
 
@@ -123,6 +127,30 @@ def say_faulty(faulty):
         )
 
 
+def settle_times(wanted):
+    """Let no wanted result be older than what it is made from, for which Snakemake would make it anew, nor later than now."""
+    made = {f"results/{name}" for name in wanted}
+    jobs = [job for job in ALL_JOBS if job.outputs[0] in made]
+    times = {
+        path: os.path.getmtime(path)
+        for job in jobs
+        for path in (*job.inputs, *job.outputs)
+        if os.path.isfile(path)
+    }
+    late = [path for path, moment in times.items() if moment > time.time()]
+    if late:
+        print(f"{len(late)} files have a time in the future, as {late[0]}: set to now.", file=sys.stderr)
+    if late or any(
+        times.get(path, 0.0) > min(times.get(output, math.inf) for output in job.outputs)
+        for job in jobs
+        for path in job.inputs
+    ):
+        now = time.time()
+        for path in {*late, *(path for path in times if path in made)}:
+            with suppress(OSError):
+                os.utime(path, (now, now))
+
+
 def plan(faulty):
     """Say what would be removed; a dry run begins anew with these files forced, since they are still there."""
     if "SLIPPULSE_PLANNED" not in os.environ:
@@ -177,10 +205,14 @@ try:
         WANTED = TREE.behind(file for target in targets for file in files_of(target))
         refuse_expensive_targets(WANTED)
         if LOOKING:
-            plan(TREE.faults(name for name in WANTED if Path("results", name).is_file()))
+            plan(TREE.to_remove(WANTED))
         else:
             LOCK = lock_folder()
-            say_faulty(TREE.remove_faulty(WANTED))
+            FAULTY = TREE.to_remove(WANTED)
+            say_faulty(FAULTY)
+            for name in FAULTY:
+                Path("results", name).unlink()
+            settle_times(WANTED)
             write_text(json.dumps({"options": OPTIONS, "targets": targets}), Path("results", CALL))
 except ConfigError as error:
     refuse(str(error))

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from .files import write_text
 
 FOLDER = "records"
-MISSING, CHANGED = "missing", "not what its job wrote"
+MISSING, CHANGED, PARTED = "missing", "not what its job wrote", "made with a file that is not as made"
 
 
 class Origin(NamedTuple):
@@ -132,19 +132,22 @@ class Tree:
 
     def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
         self.results, self.origins = Path(results), origins
+        self._made: dict[str, list[str]] = {}
+        for name, origin in origins.items():
+            self._made.setdefault(origin.record, []).append(name)
         self._digests = Digests(self.results / FOLDER / ".digests")
         self._records: dict[str, Record | str] = {}
         self._outdated: dict[str, str] = {}
 
     def behind(self, names: Iterable[str]) -> list[str]:
-        """Some results and all that they are made from, the first ones last."""
+        """Some results, all that they are made from, and what else the same jobs make; the first ones last."""
         found: dict[str, None] = {}
 
         def visit(name: str) -> None:
             if name not in found and name in self.origins:
                 for source in sorted(self.origins[name].inputs):
                     visit(source)
-                found[name] = None
+                found.update(dict.fromkeys(self._made[self.origins[name].record]))
 
         for name in names:
             visit(name)
@@ -162,15 +165,20 @@ class Tree:
             self._outdated[name] = self._compare(name)
         return self._outdated[name]
 
-    def remove_faulty(self, names: Iterable[str]) -> dict[str, str]:
-        """Remove, of some results and what they are made from, the faulty ones; returns them with the reasons."""
+    def to_remove(self, names: Iterable[str]) -> dict[str, str]:
+        """What is in the way of making anew what is faulty of some results and of what they are made from.
+
+        What a job has made goes together: a missing file is made anew only where the others are not there either.
+        """
+        found = self.faults(self.behind(names))
+        jobs = {self.origins[name].record for name in found}
         # A link to nowhere, or to something else than a file, is in the way too.
-        paths = {name: self.results / name for name in self.behind(names)}
-        there = [name for name, path in paths.items() if os.path.lexists(path) and not path.is_dir()]
-        found = self.faults(there)
-        for name in found:
-            (self.results / name).unlink()
-        return found
+        return {
+            name: found.get(name, PARTED)
+            for job in jobs
+            for name in self._made[job]
+            if os.path.lexists(self.results / name) and not (self.results / name).is_dir()
+        }
 
     def _fault(self, name: str) -> str:
         path = self.results / name
