@@ -18,6 +18,7 @@ import yaml
 from selection import selected, small_sweep
 
 from slippulse.data.store import load_table, save_table
+from slippulse.steps.inputs import given
 from slippulse.steps.reach import declared
 
 PROJECT = Path(__file__).resolve().parents[1]
@@ -127,7 +128,8 @@ def study(project, tmp_path_factory):
             if "sweeps" in needs:
                 settings["sweeps"] = {sweep: small_sweep(config, sweep) for sweep in needs["sweeps"]}
             module = import_module(f"slippulse.studies.{name}")
-            save_table(module.table(data or {}, tables or {}, settings), path)
+            lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
+            save_table(module.table(data or {}, (tables or {}) | lists, settings), path)
         return load_table(path)
 
     return run

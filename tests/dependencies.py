@@ -68,6 +68,7 @@ READ_BY = {
     "claims.yaml": {"write_claims", "write_report"},
     "errata.yaml": {"write_report"},
     "metadata.yaml": {"write_report"},
+    "open_choices.yaml": {"study_of_open_choices"},
     "references.bib": {"write_report"},
     "replication.md": {"write_report"},
     "shipped_verdicts.yaml": {"write_report"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from types import SimpleNamespace
 
+import pandas as pd
 import pytest
 import yaml
 from selection import selected, small_sweep
@@ -15,6 +16,19 @@ from slippulse.predict.measured import measured_table
 from slippulse.predict.table import predictions
 from slippulse.simulation.sweep import run_sweep
 from slippulse.steps.reach import declared
+
+# A claim that a choice decides, and one without a choice, as in claims.json.
+CLAIMS = [
+    {"id": "estimate", "kind": "approximate", "verdict": "depends on an open choice", "tolerance": 0.2,
+     "choice": "release", "deviation": 0.24, "choices": [
+         {"release": "total", "deviation": 0.24, "solution": "lattice"},
+         {"release": "elastic", "deviation": 0.16, "solution": "exact"}]},
+    {"id": "equation", "kind": "exact", "verdict": "reproduced", "tolerance": 0.01, "choice": "", "deviation": 1e-9,
+     "choices": []},
+    {"id": "position_of_arrest", "kind": "approximate", "verdict": "reproduced", "tolerance": 0.2,
+     "choice": "damping_ratio", "deviation": 0.01, "choices": [
+         {"release": "total", "deviation": 0.04, "solution": "lattice"}]},
+]  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -45,6 +59,8 @@ def draw(project, tmp_path_factory, study):
             tables[source] = tables[source].join(predicted) if source in tables else predicted
         for source in needs.get("studies", []):
             tables[source] = study(source, *inputs(declared(f"studies.{source}", "NEEDS")))
+        if "lists" in needs:
+            tables["claims"] = pd.DataFrame(CLAIMS)
         return data, tables
 
     def figure(name: str) -> SimpleNamespace:

@@ -169,6 +169,8 @@ NEEDED = {
     "uncertainties": "results/uncertainties/{}.csv",
     "coarser": "results/uncertainties/coarser/{}.csv",
     "studies": "results/studies/{}.csv",
+    # Lists of entries, by their whole path.
+    "lists": "{}",
 }
 
 
@@ -179,7 +181,7 @@ def inputs_of(needs):
 
 def simulations_in(needs):
     """Simulations that a figure or a study is made from, through other studies too."""
-    found = {name for kind in NEEDED if kind != "studies" for name in needs.get(kind, [])}
+    found = {name for kind in NEEDED if kind not in ("studies", "lists") for name in needs.get(kind, [])}
     found |= set(needs.get("sweeps", []))
     for study in needs.get("studies", []):
         found |= simulations_in(STUDY_NEEDS[study])

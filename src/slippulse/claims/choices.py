@@ -2,55 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from itertools import combinations
+from collections.abc import Callable, Mapping, Sequence
+from itertools import permutations
+from typing import Any
 
 from ..data.numerals import percent, setting
 from . import rules
 from .evidence import Claim
 
+# A combination of choices, by name.
+Chosen = dict[str, float | str]
 # What a combination has beside its choices.
 FOUND = ("deviation", "exponent", "verdict", "holds")
 
 
-def over_choices(claims: Sequence[tuple[Mapping, Claim]]) -> Claim:
-    """The first claim, with the verdict over all of them.
+def over_choices(claims: Sequence[tuple[Chosen, Claim]], shown: Claim | None = None) -> Claim:
+    """One claim with the verdict over all combinations of choices.
 
     Parameters
     ----------
-    claims : combinations of choices by name, each with the claim judged at it; ours first
+    claims : combinations of choices by name, each with the claim judged at it
+    shown : whose numbers stand with it; without, those of the first combination
     """
-    choices = [
-        {**chosen, "deviation": claim.get("deviation"), "exponent": claim.get("exponent")}
+    rows: list[dict[str, Any]] = [
+        {**choice, "deviation": claim.get("deviation"), "exponent": claim.get("exponent")}
         | {"verdict": claim["verdict"], "holds": rules.HOLDS.get(claim["verdict"])}
-        for chosen, claim in claims
+        for choice, claim in claims
     ]
-    ats = [claim["at"] for _, claim in claims if "at" in claim]
-    verdict, (choice, pair) = rules.over_choices([row["verdict"] for row in choices]), decisive(choices)
-    told = {
-        "choices": choices, "choice": choice, "combinations": len(choices),
-        "holds_at": sum(row["holds"] is True for row in choices), "verdict": verdict,
-        "at": lambda tolerance: rules.over_choices([at(tolerance) for at in ats]),
+    verdict, pairs = rules.over_choices([row["verdict"] for row in rows]), decisive(rows)
+    found = (claims[0][1] if shown is None else shown) | {
+        "choices": rows, "choice": next(iter(pairs), ""), "verdict": verdict,
+        "combinations": len(rows), "holds_at": sum(row["holds"] is True for row in rows),
     }  # fmt: skip
-    why = {}
+    if all("at" in claim for _, claim in claims):
+        ats = [claim["at"] for _, claim in claims]
+        found["at"] = lambda tolerance: rules.over_choices([at(tolerance) for at in ats])
     if verdict == rules.DEPENDS:
-        sides = " and ".join(
-            f"{'holds' if row['holds'] else 'fails'} at {named(row[choice])} ({percent(row['deviation'])})"
-            for row in sorted(pair, key=lambda row: not row["holds"])
+        sides = "; on ".join(
+            f"{NAMES[name]}: {' and '.join(map(side(name), pair))}" for name, pair in pairs.items()
         )
-        why["why"] = (
-            f"It depends on {NAMES[choice]}: it {sides}; it holds at {told['holds_at']} of {len(choices)}."
-        )
-    return claims[0][1] | told | why
+        found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations. It depends on {sides}."
+    elif verdict == "reproduced with caveat":
+        unsure = next(row for row in rows if row["verdict"] == verdict)
+        where = ", ".join(f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure)
+        found["why"] = f"A tolerance lies within the uncertainty at {where}."
+    return found
+
+
+def side(name: str) -> Callable[[Mapping], str]:
+    """What a combination says of a claim, by the value of one of its choices."""
+
+    def text(row: Mapping) -> str:
+        return f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({percent(row['deviation'], 3)})"
+
+    return text
 
 
 # What each choice is called in a sentence.
 NAMES = {
     "fraction": "the fraction of the path that counts as arrest",
     "release": "the release rule",
-    "damping_ratio": r"the damping ratio $b$",
-    "nucleation": "the shape of the nucleation",
-    "spacing": "the spacing",
+    "damping_ratio": r"the damping ratio $\beta/\Delta x$",
+    "nucleation": "the nucleation",
 }
 
 
@@ -59,15 +72,26 @@ def named(value: float | str) -> str:
     return value if isinstance(value, str) else setting(value)
 
 
-def decisive(choices: Sequence[Mapping]) -> tuple[str, tuple[Mapping, Mapping]]:
-    """The choice that, changed alone, moves the deviation most, from holding to failing if any does; and the pair."""
-    best = (False, -1.0)
-    found: tuple[str, tuple[Mapping, Mapping]] = ("", ({}, {}))
-    for one, other in combinations(choices, 2):
+def decisive(choices: Sequence[Mapping]) -> dict[str, tuple[Mapping, Mapping]]:
+    """Choices that, changed alone, decide whether a claim holds, first the one that moves the deviation most.
+
+    Returns
+    -------
+    of each the combination that holds and the one that fails, of those that differ in nothing else the closest; where
+    none decides, the choice that moves the deviation most, without a pair that does
+    """
+    moves: dict[str, list[tuple[float, Mapping, Mapping]]] = {}
+    quiet: dict[str, tuple[bool, float]] = {}
+    for one, other in permutations(choices, 2):
         apart = [name for name in {*one, *other} - {*FOUND} if one.get(name) != other.get(name)]
-        if len(apart) == 1 and apart[0] in NAMES and None not in (one["deviation"], other["deviation"]):
-            flips = {one["holds"], other["holds"]} == {True, False}
-            rank = (flips, abs(one["deviation"] - other["deviation"]))
-            if rank > best:
-                best, found = rank, (apart[0], (one, other))
-    return found
+        if len(apart) != 1 or apart[0] not in NAMES or None in (one["deviation"], other["deviation"]):
+            continue
+        move = abs(one["deviation"] - other["deviation"])
+        # A lattice is a corner; the exact solution has every combination.
+        rank = one.get("solution") == "exact", move
+        quiet[apart[0]] = max(rank, quiet.get(apart[0], rank))
+        if one["holds"] and other["holds"] is False:
+            moves.setdefault(apart[0], []).append((move, one, other))
+    order = sorted(moves, key=quiet.__getitem__, reverse=True)
+    closest = {name: min(moves[name], key=lambda each: each[0])[1:] for name in order}
+    return closest or dict.fromkeys(sorted(quiet, key=quiet.__getitem__)[-1:], ({}, {}))

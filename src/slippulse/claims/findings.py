@@ -12,7 +12,7 @@ from .evidence import Evidence, NoRuns, deviations, ratios
 from .inference import inference
 from .pulses import UNDAMPED
 from .reading import Numbers
-from .transition import PERCENT, arrests
+from .transition import INSIDE, LAST, arrests, at_ours
 
 # Pre-stress at which the effect of damping on the front speed is shown.
 LEVEL = 0.6
@@ -79,10 +79,10 @@ def collapse(evidence: Evidence, _: float) -> dict[str, float]:
 
 def never_arrives(evidence: Evidence, _: float) -> dict[str, float]:
     """Gap and time of the last release, and how they change with the lattice; exact times at fractions of the way."""
-    table = evidence.runs("scaling_stress")
+    table = evidence.runs("scaling_stress", INSIDE)
     gaps = [
         float((t["balance_distance"] - t["last_release_distance"]).abs().median())
-        for t in evidence.lattices("scaling_stress")
+        for t in evidence.lattices("scaling_stress", where=INSIDE)
     ]
     late = ratios(table, "last_release_time", "balance_distance")
     out = {
@@ -94,8 +94,10 @@ def never_arrives(evidence: Evidence, _: float) -> dict[str, float]:
     for name, quantity in {"last": "last_release_time", "share": "transition_time"}.items():
         relative = ratios(table, f"uncertainty_{quantity}", quantity)
         out[f"uncertainty_of_{name}"] = float(np.nanmedian(relative))
-    for percent, tables in zip(PERCENT, arrests(evidence).values(), strict=False):
-        out[f"median_{percent}"] = float(np.nanmedian(ratios(tables[0], "time", "distance")))
+    for choice, tables in at_ours(arrests(evidence)):
+        if choice["fraction"] != LAST:
+            median = float(np.nanmedian(ratios(tables[0], "time", "distance")))
+            out[f"median_{100.0 * float(choice['fraction']):.0f}"] = median
     return out
 
 

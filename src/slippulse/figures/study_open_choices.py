@@ -1,0 +1,77 @@
+"""Every claim that is judged by numbers, at each choice that the paper leaves open: a specification curve."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from .style import BLACK, BLUE, COLUMN, GREEN, GREY, ORANGE, Look, entry, legend_below, new_figure
+
+NEEDS = {"lists": ["results/claims.json"]}
+
+NUMERIC = ("exact", "approximate")
+# Below this fraction of the tolerance a deviation is drawn there.
+LEAST = 1e-2
+# What changes a verdict if a tolerance is taken this much larger or smaller.
+BAND = 1.5
+LOOKS: dict[str, Look] = {
+    "fraction": {"color": ORANGE, "label": "fraction that is arrest"},
+    "damping_ratio": {"color": BLUE, "label": r"damping ratio $b$"},
+    "release": {"color": GREEN, "label": "release rule"},
+    "": {"color": GREY, "label": "none is open"},
+}
+MARKERS: dict[str, Look] = {
+    "exact": {"marker": "o", "markersize": 3.0},
+    "lattice": {"marker": "s", "markersize": 3.0, "markerfacecolor": "white"},
+}
+# The rows of the printed rule are drawn this far below, those of the total force as far above.
+APART = {"elastic": -0.17, "total": 0.17}
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """A row of each claim at each combination, or at the one that there is.
+
+    Returns
+    -------
+    DataFrame of id, verdict, tolerance, deviation, over (deviation over tolerance), choice (that matters most),
+    release (rule) and solution (exact or lattice)
+    """
+    rows = []
+    for claim in tables["claims"].to_dict("records"):
+        if claim["kind"] in NUMERIC and claim["tolerance"]:
+            for found in claim["choices"] or [{"deviation": claim["deviation"]}]:
+                rows.append(
+                    {name: claim[name] for name in ("id", "verdict", "tolerance", "choice")}
+                    | {"deviation": found["deviation"], "release": found.get("release", "")}
+                    | {"solution": found.get("solution", "lattice")}
+                )
+    drawn = pd.DataFrame(rows).dropna(subset="deviation")
+    return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """Deviation over tolerance, a claim a row; those that depend on a choice above."""
+    table = table.fillna({"choice": "", "release": ""})
+    farthest = table.groupby("id")["over"].max().sort_values()
+    figure = new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
+    axes = figure.subplots()
+    axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
+    axes.axvline(1.0, color=BLACK, linewidth=0.8, gid="tolerance")
+    for place, id in enumerate(farthest.index):
+        for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):
+            look = {"color": LOOKS.get(str(choice), LOOKS[""])["color"]} | MARKERS[str(solution)]
+            over = np.maximum(rows["over"], LEAST)
+            height = place + rows["release"].map(APART).fillna(0.0)
+            axes.plot(over, height, linestyle="none", gid=f"claim {id}", **look)
+    axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
+    axes.set_yticks(range(len(farthest)), [id.replace("_", " ") for id in farthest.index], fontsize=7.0)
+    axes.set_ylim(-0.7, len(farthest) - 0.3)
+    figure.supylabel("claim", fontsize=9.0)
+    axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
+    handles = [entry(marker="o", **LOOKS[name]) for name in LOOKS if (table["choice"] == name).any()]
+    handles += [entry(name, color=BLACK, **look) for name, look in MARKERS.items()]
+    legend_below(figure, handles, 2)
+    return figure
