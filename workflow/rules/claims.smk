@@ -15,7 +15,7 @@ rule write_claims:
         measured=tables("measurements", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=tables("uncertainties/coarser", CLAIM_SIMULATIONS),
         uncertainties=tables("uncertainties", CLAIM_SIMULATIONS),
-        predicted=tables("predictions", [*CLAIM_SIMULATIONS, "front_speed"]),
+        predicted=tables("predictions", declared("claims.paper", "PREDICTED")),
         studies=tables("studies", ["exact_pulses", "open_choices", "published_figure"]),
         texts="manuscript/claims.yaml",
         statements="manuscript/statements.yaml",
@@ -25,6 +25,7 @@ rule write_claims:
         html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
     log:
         "results/logs/write_claims.log",
+    priority: 1
     params:
         step="write_claims",
         claims=plain(config["claims"]),

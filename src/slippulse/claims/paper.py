@@ -20,7 +20,7 @@ from .transition import transition_claims
 
 # Fitted parameters of the left panel of the published figure.
 FITTED = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
-# Whose measured numbers, grid studies, coarser tables and predictions the claims are computed from.
+# Whose measured numbers, grid studies and coarser tables the claims are computed from.
 SIMULATIONS = [
     "any_prestress",
     "arrest_profiles",
@@ -41,6 +41,21 @@ SIMULATIONS = [
     "scaling_stress",
     "space_time_displacement",
     "space_time_stress",
+    "speed_against_gamma",
+    "steady_displacement",
+    "stress_pulses",
+]
+# Of these and of front speeds at one level, the predictions are compared.
+PREDICTED = [
+    "burridge_knopoff_speed",
+    "front_speed",
+    "front_speed_undamped",
+    "regimes_displacement",
+    "regimes_displacement_asymmetric",
+    "regimes_stress",
+    "scaling_displacement",
+    "scaling_stress",
+    "space_time_displacement",
     "speed_against_gamma",
     "steady_displacement",
     "stress_pulses",
