@@ -10,6 +10,7 @@ import tolerances
 import yaml
 from numpy.polynomial import polynomial as poly
 from scipy.integrate import quad
+from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.special import j0
 
@@ -174,6 +175,13 @@ def relative(one, other) -> float:
     return 1.0 + float(np.max(np.abs(one - other)) / np.max(np.abs(other)))
 
 
+def wave_equation_at_zero(layer, tau, random):
+    """A step of the discretised equation at Gamma = 0 and tau = 0, as long as a block, moves any profile by a block."""
+    slip = random.normal(size=64)
+    after = 2.0 * slip - np.roll(slip, -1) + np.roll(slip, 1) - 2.0 * slip + np.roll(slip, -1)
+    return [relative(after, np.roll(slip, 1))]
+
+
 def layer_average(layer, tau, random):
     """Mean over the height of the divergence of stress against equation (3), at u_y = 0, by exact quadrature."""
     u = random.normal(size=(DEGREE + 1, DEGREE + 1))  # powers of x, powers of y/H
@@ -189,17 +197,19 @@ def layer_average(layer, tau, random):
 
 
 def displacement_reduction(layer, tau, random):
-    """Mean of a linear profile under a held top, in the averaged balance times H, against equation (A8).
-
-    Without the curvature of the imposed displacement, whose printed sign has no consequence.
-    """
-    slip, curvature, acceleration, held = random.normal(size=4)
+    """A linear profile under a held top, averaged by quadrature, against equation (A8) with the sign put right."""
+    slip, held, acceleration, *curvatures = random.normal(size=5)
     height, rigidity = layer.thickness, layer.shear_modulus / layer.thickness
+    nodes, weights = np.polynomial.legendre.leggauss(3)
+    y = 0.5 * (nodes + 1.0)
+    inertia = layer.density * height * 0.5 * float(weights @ (acceleration * (1.0 - y)))
+    stiffness = (
+        layer.modulus * height * 0.5 * float(weights @ (curvatures[0] * (1.0 - y) + curvatures[1] * y))
+    )
     shear = layer.shear_modulus * (held - slip) / height
-    inertia, stiffness = layer.density * height * acceleration, height * layer.modulus * curvature
-    printed = 0.5 * inertia - 0.5 * stiffness - rigidity * held + rigidity * slip
-    difference = 0.5 * inertia - 0.5 * stiffness - shear - printed
-    return [1.0 + difference / max(abs(stiffness), abs(shear), abs(inertia))]
+    printed = 0.5 * layer.density * height * acceleration - 0.5 * layer.modulus * height * sum(curvatures)
+    printed += rigidity * slip - rigidity * held
+    return [1.0 + (inertia - stiffness - shear - printed) / max(map(abs, (stiffness, shear, inertia)))]
 
 
 def prestress_is_initial_displacement(layer, tau, random):
@@ -259,11 +269,12 @@ def pulse_algebra(layer, tau, random):
 
 
 def transition_estimate_algebra(layer, tau, random):
-    """The oscillator without strain term at pi/sqrt(gamma): slip 2 tau/gamma, at rest, its first stick; the length."""
-    gamma, time = layer.gamma, np.pi / np.sqrt(layer.gamma)
-    slip = tau / gamma * (1.0 - np.cos(np.sqrt(gamma) * time))
-    length = 2.0 * time * front_speed_undamped(tau) / (2.0 * np.pi / np.sqrt(gamma * (1.0 - tau**2)))
-    return [slip / (2.0 * tau / gamma), 1.0 + np.sin(np.sqrt(gamma) * time), length]
+    """The oscillator without strain term, solved to pi/sqrt(gamma): slip 2 tau/gamma, at rest; and the length."""
+    root = np.sqrt(layer.gamma)
+    # In units of 1/sqrt(gamma) and tau/gamma: slip, velocity, and the constant load.
+    slip, velocity, _ = expm(np.pi * np.array([[0, 1, 0], [-1, 0, 1], [0, 0, 0]])) @ [0.0, 0.0, 1.0]
+    length = 2.0 * np.pi / root * front_speed_undamped(tau)
+    return [slip / 2.0, 1.0 + velocity, length / (2.0 * np.pi / (root * np.sqrt(1.0 - tau**2)))]
 
 
 def dimensional_transition_length(layer, tau, random):
@@ -307,6 +318,7 @@ def burridge_knopoff_identity(layer, tau, random):
 
 
 ALGEBRA = {
+    "wave_equation_at_zero": wave_equation_at_zero,
     "layer_average": layer_average,
     "displacement_reduction": displacement_reduction,
     "prestress_is_initial_displacement": prestress_is_initial_displacement,

@@ -33,6 +33,7 @@ SIMULATIONS = [
     "nucleation_widths",
     "pulses_across_a_step",
     "pulses_across_wide_steps",
+    "pulses_perturbed_elsewhere",
     "regimes_beyond",
     "regimes_displacement",
     "regimes_displacement_asymmetric",
@@ -43,7 +44,9 @@ SIMULATIONS = [
     "space_time_stress",
     "speed_against_gamma",
     "steady_displacement",
+    "steady_elsewhere",
     "stress_pulses",
+    "undamped_pulses",
 ]
 # Of these and of front speeds at one level, the predictions are compared.
 PREDICTED = [
