@@ -50,6 +50,7 @@ SIMULATIONS = [
 ]
 # Of these and of front speeds at one level, the predictions are compared.
 PREDICTED = [
+    "any_prestress",
     "burridge_knopoff_speed",
     "front_speed",
     "front_speed_undamped",
@@ -61,7 +62,9 @@ PREDICTED = [
     "space_time_displacement",
     "speed_against_gamma",
     "steady_displacement",
+    "steady_elsewhere",
     "stress_pulses",
+    "undamped_pulses",
 ]
 
 
