@@ -9,21 +9,23 @@ import slippulse as sp
 from slippulse.theory import Rupture
 
 LEVEL = 0.5
-# Profile, gamma, damping ratio, duration, positions.
+# Profile, gamma, damping ratio, duration, positions; rate strengthening, where there is any.
 SCENES = {
     "undamped": (sp.Prestress(0.5, 0.5), 2.0 / 3.0, 0.0, 7.0, [0.0, 1.0, 2.4, 4.0]),
     "damped": (sp.Prestress(0.25, 0.25), 0.55, 0.1, 7.0, [0.0, 1.0, 2.0, 3.2]),
     "more damped": (sp.Prestress(0.4, 0.4), 0.65, 0.3, 7.0, [0.0, 1.0, 2.4, 4.0]),
     "asymmetric": (sp.Prestress(0.2, 0.6), 0.65, 0.1, 6.0, [-2.0, -1.0, 0.0, 1.0, 2.4, 4.0]),
+    "strengthening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], 0.4),
+    "weakening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], -0.3),
     "across a step": (sp.Prestress(0.3, 0.3, steps=((4.0, 0.6),)), 0.65, 0.1, 7.0, [0.0, 2.4, 3.6, 4.4, 5.0]),
 }
 ORDER = (0.9, 1.1)
 RICHARDSON = 1e-4
 
 
-def lattice_run(profile, gamma, ratio, duration, dx, samples=None):
+def lattice_run(profile, gamma, ratio, duration, dx, samples=None, alpha=0.0):
     boundary = "displacement" if gamma else "stress"
-    values = {"gamma": gamma, "beta": ratio * dx, "max_step": 0.5, "order": 8}
+    values = {"gamma": gamma, "beta": ratio * dx, "max_step": 0.5, "order": 8, "rate_strengthening": alpha}
     return sp.simulate(sp.Scene(boundary, profile, duration, dx, **values), samples=samples)
 
 
@@ -35,12 +37,13 @@ def at(run, x, *quantities):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
-    profile, gamma, ratio, duration, positions = SCENES[name]
+    *scene, positions, alpha = (*SCENES[name], 0.0)[:6]
+    profile, gamma, ratio, duration = scene
     x = np.array(positions)
-    exact = Rupture(profile, gamma, ratio, "total", duration)
+    exact = Rupture(profile, gamma, ratio, "total", duration, rate_strengthening=alpha)
     truth = np.array([exact.release_time(x), exact.stick_time(x), exact.final_slip(x)])
     assert np.all(np.isfinite(truth))
-    runs = (lattice_run(profile, gamma, ratio, duration, dx) for dx in (0.02, 0.01, 0.005))
+    runs = (lattice_run(*scene, dx, alpha=alpha) for dx in (0.02, 0.01, 0.005))
     errors = [at(run, x, "release_time", "stick_time", "slip") - truth for run in runs]
     coarse, middle, fine = errors
     for quantity in range(3):
@@ -51,15 +54,17 @@ def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
     assert np.max(np.abs(8.0 * fine - 6.0 * middle + coarse)) / 3.0 < RICHARDSON
 
 
-@pytest.mark.parametrize("gamma", [0.65, 0.0])
-def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma):
+@pytest.mark.parametrize(
+    ("gamma", "alpha"), [(0.65, 0.0), (0.0, 0.0), (0.65, 0.5), (0.65, -0.3), (0.0, 0.5), (0.65, 1.7)]
+)
+def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma, alpha):
     scene = sp.Prestress(-LEVEL, LEVEL), gamma, 0.1
-    exact = Rupture(*scene, "total", 5.0)
+    exact = Rupture(*scene, "total", 5.0, rate_strengthening=alpha)
     times, x, slow = np.array([1.5, 2.5, 3.3]), np.array([-2.0, -1.0, 0.0, 1.5]), np.array([-3.0, -2.4, -1.8])
     fields = exact.map(times, x, ("slip_velocity", "slip"))
     errors, arrival = [], []
     for dx in (0.02, 0.01):
-        run = lattice_run(*scene, 5.0, dx, sp.Samples(times, x))
+        run = lattice_run(*scene, 5.0, dx, sp.Samples(times, x), alpha)
         pairs = (("sample_velocity", "slip_velocity"), ("sample_slip", "slip"))
         errors.append([np.max(np.abs(run[sampled].values - fields[name])) for sampled, name in pairs])
         arrival.append(np.max(np.abs(at(run, slow, "release_time") - exact.release_time(slow))))

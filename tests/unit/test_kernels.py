@@ -11,7 +11,7 @@ import pytest
 import tolerances as tol
 from numpy.polynomial.polynomial import polyfromroots
 
-from slippulse.solver import arrays, foresight, polynomials, segments, stencils
+from slippulse.solver import arrays, events, foresight, polynomials, segments, stencils
 
 
 @cache
@@ -119,6 +119,22 @@ def test_a_stuck_block_is_released_when_its_stress_passes_the_threshold(
     when, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
     assert when == pytest.approx(release, abs=tol.ROOT)
     assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.3])
+def test_a_released_block_gets_every_derivative_of_its_neighbours_force(damping):
+    """Neighbours move by polynomials of the highest degree kept: their force at the release, to the last derivative."""
+    top, now, dx = 5, 0.3, 0.5
+    motion, own = arrays.make_motion(top + 1, 3), np.zeros(top + 3)
+    motion.w[1:, [0, 2]] = np.random.default_rng(0).standard_normal((top, 2))
+    medium = arrays.make_medium(dx, 0.0, damping * dx**2, False, True)
+    from_python(events.start)(own, medium, motion, 1, now, top)
+    factorials = [math.factorial(k) for k in range(top + 1)]
+    slip = np.polynomial.Polynomial(motion.w[:, [0, 2]].sum(axis=1) / factorials)
+    # The strain holds the slip at the start of the step.
+    force = (slip + damping * dx**2 * slip.deriv()) / dx**2
+    expected = [force.deriv(m)(now) if m else force(now) for m in range(top - 1)]
+    np.testing.assert_allclose(own[2 : top + 1], expected, rtol=tol.STENCIL, atol=tol.STENCIL)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -25,6 +25,7 @@ class Run(NamedTuple):
     gamma: float
     dx: float | None
     damping: tuple[str, float]
+    alpha: float
 
 
 def promise_of(simulation: Mapping) -> float | None:
@@ -58,7 +59,8 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
             gamma=run.gamma,
             beta=beta,
             release=run.release,
-            max_step=_step(simulation, run.gamma * dx**2, beta / dx),
+            rate_strengthening=run.alpha,
+            max_step=_step(simulation, run.gamma * dx**2, beta / dx, run.alpha * dx),
             order=simulation["accuracy"]["order"],
             **{key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")},
         )
@@ -73,8 +75,10 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     count, chunk = run_count(simulation), simulation.get("chunk")
     for run in runs_of(chunk[0], chunk[1], count) if chunk else range(count):
         places = np.unravel_index(run, [len(axis) for axis in axes])
-        release, *shape, gamma, dx, damping = (axis[int(at)] for axis, at in zip(axes, places, strict=True))
-        yield Run(release, profile_of(*shape), gamma, dx, damping)
+        release, *shape, gamma, dx, damping, alpha = (
+            axis[int(at)] for axis, at in zip(axes, places, strict=True)
+        )
+        yield Run(release, profile_of(*shape), gamma, dx, damping, alpha)
 
 
 def run_count(simulation: Mapping) -> int:
@@ -98,6 +102,7 @@ def _axes(simulation: Mapping) -> list[Sequence]:
         simulation.get("gamma", [0.0]),
         simulation.get("dx", [None]),
         [(kind, value) for value in simulation[kind]],
+        simulation.get("rate_strengthening", [0.0]),
     ]
 
 
@@ -120,9 +125,9 @@ def _spacing(simulation: Mapping, run: Run, place: int) -> float:
     return float(f"{simulation['coarser'] * dx:.12g}")
 
 
-def _step(simulation: Mapping, gamma_dx2: float, ratio: float) -> float:
+def _step(simulation: Mapping, gamma_dx2: float, ratio: float, alpha_dx: float) -> float:
     """The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less."""
-    bound = largest_step(simulation["scheme"], simulation["accuracy"]["order"], ratio, gamma_dx2)
+    bound = largest_step(simulation["scheme"], simulation["accuracy"]["order"], ratio, gamma_dx2, alpha_dx)
     step = simulation.get("max_step", min(simulation["accuracy"]["max_step"], MARGIN * bound))
     if "promise" in simulation["accuracy"]:
         step = min(step, simulation["accuracy"]["max_step"])

@@ -11,6 +11,8 @@ from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
 # Samples of a map and of an animation.
 TIMES, POSITIONS = 241, 801
+# Numbers of a scene that are lists of a simulation.
+LISTED = ("gamma", "damping_ratio", "beta", "dx", "rate_strengthening")
 
 
 def accuracy_of(config: Configuration) -> dict[str, Any]:
@@ -57,7 +59,7 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """
     given = scene.plain()
     given["profiles"] = [{key: given.pop(key) for key in Profile.model_fields}]
-    given |= {key: [given[key]] for key in ("gamma", "damping_ratio", "beta", "dx") if key in given}
+    given |= {key: [given[key]] for key in LISTED if key in given}
     given["duration"] = {"time": given["duration"]}
     given["record"] = ["fronts", "fields", "samples"]
     given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": _reach(scene, model)}

@@ -181,6 +181,10 @@ class Simulation(Physics):
     )
     damping_ratio: Distinct[NonNegative] | None = Field(None, description="beta/dx; by default the model's")
     beta: Distinct[NonNegative] | None = Field(None, description="damping, instead of `damping_ratio` [H]")
+    rate_strengthening: Distinct[float] | None = Field(
+        None,
+        description="alpha, friction that grows (> 0) or weakens (< 0) with slip rate; by default 0 [c/H]",
+    )
     duration: Duration = Field(
         description="how long each run is, in one of three units, below", json_schema_extra=allowed(UNITS)
     )
@@ -233,6 +237,7 @@ class NamedScene(Profile, Physics):
     gamma: Positive | None = Field(None, description="as under `simulations` (paper: near 2/3)")
     damping_ratio: NonNegative | None = Field(None, description="beta/dx; by default the model's")
     beta: NonNegative | None = Field(None, description="damping, instead of `damping_ratio` [H]")
+    rate_strengthening: float | None = Field(None, description="alpha, as under `simulations` [c/H]")
     dx: Spacing | None = Field(None, description="block spacing; by default the preset's [H]")
     release: Release | None = Field(None, description="by default the model's")
     duration: Positive = Field(description="how long the run is [H/c]")

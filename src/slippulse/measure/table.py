@@ -19,7 +19,7 @@ PARAMETERS = (
     "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx", "max_step",
     "duration", "release", "scheme", "order", "half_lattice", "friction_ratio", "resolved_blocks", "run_flags", "steps",
     "block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases",
-    "end_time",
+    "end_time", "rate_strengthening",
 )  # fmt: skip
 
 
@@ -36,7 +36,9 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
     its parameters, then what the recorded data allow, NaN where a quantity does not apply; and its leading pulse, where
     slip velocity is recorded
     """
-    row = {name: run.attrs[name] for name in PARAMETERS}
+    # A file from before the last of them opens as the paper's model.
+    row = {name: run.attrs[name] for name in PARAMETERS[:-1]}
+    row[PARAMETERS[-1]] = run.attrs.get(PARAMETERS[-1], 0.0)
     steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]
     for side in ("right", "left"):

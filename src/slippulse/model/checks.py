@@ -83,6 +83,20 @@ def check_domains(**values: Any) -> None:
         check_number(key, value, **DOMAINS[key])
 
 
+def check_runaway(gamma: float, alpha: float) -> None:
+    """Refuse a rate weakening so strong that uniform slip, d2u/dt2 = tau - gamma u - alpha du/dt, grows for ever.
+
+    Raises ValueError: where alpha < 0 and alpha^2 >= 4 gamma; then no velocity ever returns to 0.
+    """
+    if alpha < 0.0 and alpha * alpha >= 4.0 * gamma:
+        bound = (
+            f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}"
+            if gamma > 0.0
+            else ">= 0 without leaf springs"
+        )
+        raise ValueError(f"rate_strengthening: {alpha!r}; allowed: {bound}, or slip runs away")
+
+
 def _finite(value: Any) -> bool:
     try:
         return math.isfinite(value)

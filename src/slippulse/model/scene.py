@@ -10,7 +10,7 @@ from html import escape
 from numbers import Real
 from typing import Any
 
-from .checks import check_choice, check_kind, check_number, short_repr
+from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
 from .prestress import Prestress, prestress_from
 from .stability import largest_step
 
@@ -34,7 +34,8 @@ class Scene:
 
     The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
 
-        dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2.
+        dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2
+                  - alpha v_i.
 
     A block is released when its stress reaches 1 and sticks when its velocity reaches 0.
 
@@ -67,6 +68,9 @@ class Scene:
         mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio).
     resolved_blocks : int
         A pulse of fewer sliding blocks is flagged as unresolved.
+    rate_strengthening : float
+        alpha (units of wave speed / H), by which friction grows with slip rate; 0 in the paper, below 0 where friction
+        weakens. Refused where no sliding state could slow down: alpha <= -2 sqrt(gamma), alpha < 0 under "stress".
 
     Raises ValueError: one line naming the key, the value and what is allowed.
 
@@ -86,6 +90,7 @@ class Scene:
     half_lattice: bool = True
     friction_ratio: float = 5.0
     resolved_blocks: int = RESOLVED_BLOCKS
+    rate_strengthening: float = 0.0
 
     def __post_init__(self) -> None:
         check_choice("boundary", self.boundary, BOUNDARIES)
@@ -113,6 +118,8 @@ class Scene:
                 )
         else:
             check_number("gamma", self.gamma, above=0.0)
+        check_number("rate_strengthening", self.rate_strengthening)
+        check_runaway(float(self.gamma), float(self.rate_strengthening))
         for centre, _, width in self.prestress.bumps:
             check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=FARTHEST_BUMP * self.dx)
         if self.prestress.width < self.dx:
@@ -122,12 +129,14 @@ class Scene:
         bound = self._largest_step()
         check_number("max_step", self.max_step, above=0.0)
         # Single-precision or integer parameters would be computed with as such, and compiled for.
-        for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio"):
+        for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio", "rate_strengthening"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if self.max_step > bound:
             raise ValueError(
                 f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
                 f" {self.scheme!r} at beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {self.gamma * self.dx**2:.4g}"
+                + f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
+                * bool(self.rate_strengthening)
             )
 
     def _largest_step(self) -> float:
@@ -159,7 +168,8 @@ class Scene:
     @property
     def largest_stable_step(self) -> float:
         """Largest stable time step in units of dx."""
-        return largest_step(self.scheme, self.order, self.damping_ratio, self.gamma * self.dx**2)
+        drag = self.rate_strengthening * self.dx
+        return largest_step(self.scheme, self.order, self.damping_ratio, self.gamma * self.dx**2, drag)
 
     def attributes(self) -> dict:
         """Every parameter as plain numbers and text, for attributes of a data file; inverse of `from_attributes`."""
@@ -188,6 +198,7 @@ class Scene:
             "half_lattice": int(self.half_lattice),
             "friction_ratio": self.friction_ratio,
             "resolved_blocks": self.resolved_blocks,
+            "rate_strengthening": self.rate_strengthening,
         }
 
     def _repr_html_(self) -> str:
@@ -222,6 +233,8 @@ class Scene:
                 half_lattice=bool(whole["half_lattice"]),
                 order=int(whole["order"]),
                 resolved_blocks=int(whole["resolved_blocks"]),
+                # Data files of the paper's model need not name it.
+                rate_strengthening=attributes.get("rate_strengthening", 0.0),
                 **{
                     name: attributes[name]
                     for name in (

@@ -18,7 +18,9 @@ MARGIN = 0.9
 ROUNDS, PARTS = 4, 32
 
 
-def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float) -> float:
+def largest_step(
+    scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
+) -> float:
     """Largest stable time step in units of dx.
 
     Parameters
@@ -27,28 +29,31 @@ def largest_step(scheme: str, order: int, damping_ratio: float, gamma_dx2: float
     order : order of the Taylor step (used by "localised" alone)
     damping_ratio : beta/dx, >= 0
     gamma_dx2 : gamma dx^2, >= 0 (0 under a stress boundary)
+    alpha_dx : alpha dx, the rate strengthening of friction; below 0 as 0, since slip that grows by itself may grow
 
-    A mode of the lattice has stiffness s in [0, 4] + gamma dx^2 and damping rate b s', s' in [0, 4], in units of dx.
-    "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + b^2) - b with dt_c = 2/sqrt(4 + gamma dx^2). "localised":
-    the largest h at which one step, slip to one order more than velocity, amplifies no mode; 0 where the polynomials
-    cannot be computed.
+    A mode of the lattice has stiffness s + gamma dx^2 and damping rate b s + alpha dx, s in [0, 4], in units of dx.
+    "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + c^2) - c with dt_c = 2/sqrt(4 + gamma dx^2) and
+    c = b + alpha dx/4. "localised": the largest h at which one step, slip to one order more than velocity, amplifies
+    no mode; 0 where the polynomials cannot be computed.
     """
     if scheme == "continuum":
         return math.inf
+    drag = max(alpha_dx, 0.0)
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         # The difference of nearly equal numbers at large damping, rewritten.
-        return critical**2 / (math.sqrt(critical**2 + damping_ratio**2) + damping_ratio)
-    if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2)):
+        damping = damping_ratio + 0.25 * drag
+        return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
+    if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2) and math.isfinite(drag)):
         return 0.0
-    return _taylor_bound(order, float(f"{damping_ratio:.6g}"), float(f"{gamma_dx2:.6g}"))
+    return _taylor_bound(order, *(float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)))
 
 
 @lru_cache(maxsize=4096)
 @np.errstate(over="ignore", invalid="ignore")
-def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float) -> float:
+def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
-    derivatives = _derivatives(order, modes + gamma_dx2, damping_ratio * modes)
+    derivatives = _derivatives(order, modes + gamma_dx2, damping_ratio * modes + drag)
     allowed = 1.0 + (WEAK_GROWTH if order in WEAK_ORDERS else ROUNDING)
 
     def unstable(steps: np.ndarray) -> np.ndarray:
@@ -57,7 +62,7 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float) -> float:
         return ~(np.max(largest, axis=-1) <= allowed)
 
     # From small steps on, a few at a time: the first that is unstable is what counts.
-    smallest = 0.01 / (1.0 + damping_ratio) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
+    smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     steps = np.geomspace(smallest, 8.0, 160)
     for start in range(0, steps.size, PARTS):
         found = np.flatnonzero(unstable(steps[start : start + PARTS]))
@@ -106,7 +111,8 @@ def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
     velocity = np.tensordot(powers[:, :-1], derivatives[1:], 1)
     half_trace = 0.5 * (slip[:, 0] + velocity[:, 1])
     product = slip[:, 0] * velocity[:, 1] - slip[:, 1] * velocity[:, 0]
-    difference = half_trace**2 - product
+    # As half_trace^2 - product, which would cancel for a mode that drag alone slows down.
+    difference = (0.5 * (slip[:, 0] - velocity[:, 1])) ** 2 + slip[:, 1] * velocity[:, 0]
     # Two real eigenvalues, or two complex ones of one size.
     real = np.abs(half_trace) + np.sqrt(np.maximum(difference, 0.0))
     return np.where(difference >= 0.0, real, np.sqrt(np.maximum(product, 0.0)))

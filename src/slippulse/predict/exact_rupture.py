@@ -20,7 +20,10 @@ LAYER = 0.4
 def exact_rupture(run: xr.Dataset | Mapping) -> Rupture:
     """The exact solution of a run's scene, as `scene_of` takes it."""
     scene = scene_of(run)
-    return Rupture(scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration)
+    return Rupture(
+        scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration,
+        rate_strengthening=scene.rate_strengthening,
+    )  # fmt: skip
 
 
 def compared_positions(rupture: Rupture) -> np.ndarray:

@@ -15,8 +15,8 @@ from ..model.roots import root_between
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_law import front_speed, lattice_front_speed
-from ..theory.pulse import SteadyPulse, front_speed_undamped, paper_pulse, steady_pulse
+from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed
+from ..theory.pulse import SteadyPulse, paper_pulse, steady_pulse
 from .final_regime import UNDECIDED, final_regime, growth_beyond
 
 Found = TypeVar("Found")

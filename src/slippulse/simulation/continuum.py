@@ -46,7 +46,10 @@ def solve_scene(
     if not nucleations(scene.prestress):
         return _at_rest(scene, samples)
     gamma = scene.gamma if scene.boundary == "displacement" else 0.0
-    rupture = Rupture(scene.prestress, gamma, scene.damping_ratio, scene.release, scene.duration)
+    rupture = Rupture(
+        scene.prestress, gamma, scene.damping_ratio, scene.release, scene.duration,
+        rate_strengthening=scene.rate_strengthening,
+    )  # fmt: skip
     x = _positions(rupture, scene)
     release, stick = rupture.release_time(x), rupture.stick_time(x)
     slip, velocity = rupture.slip(x, scene.duration), rupture.slip_velocity(x, scene.duration)

@@ -42,6 +42,10 @@ TALLY = np.dtype(
             ("viscous_loss", np.float64),
             # Step whose viscous loss still lacks the part of the dissipation at its end.
             ("pending_step", np.float64),
+            # When the loss to rate strengthening was last added, its rate then, and the derivative of that.
+            ("rate_time", np.float64),
+            ("rate", np.float64),
+            ("rate_change", np.float64),
             ("stick_loss", np.float64),
             ("min_velocity", np.float64),
             ("min_stuck_stress", np.float64),
@@ -67,6 +71,7 @@ class Medium(NamedTuple):
     leaf: float  # Gamma gamma
     beta: float
     damping: float  # beta/dx^2
+    alpha: float  # rate strengthening of friction
     mirror: bool  # block 1 lies at x = 0 and block 0 is the mirror image of block 2
     total: bool  # the stress that is compared with 1 includes the damping force
 
@@ -191,6 +196,6 @@ def make_scratch(size: int, order: int) -> Scratch:
     )
 
 
-def make_medium(dx: float, leaf: float, beta: float, mirror: bool, total: bool) -> Medium:
+def make_medium(dx: float, leaf: float, beta: float, mirror: bool, total: bool, alpha: float = 0.0) -> Medium:
     """Constants of one run: ``leaf`` is Gamma gamma."""
-    return Medium(dx, 1.0 / dx, 1.0 / (dx * dx), leaf, beta, beta / (dx * dx), mirror, total)
+    return Medium(dx, 1.0 / dx, 1.0 / (dx * dx), leaf, beta, beta / (dx * dx), alpha, mirror, total)

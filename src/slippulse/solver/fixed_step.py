@@ -22,7 +22,7 @@ def forces(medium, motion, sliding, history, t):
     for i in range(1, tau.shape[0] - 1):
         stress = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - medium.leaf * slip[i] + tau[i]
         drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
-        force[i] = stress + drag
+        force[i] = stress + drag - medium.alpha * velocity[i]
         if not sliding[i]:
             if not medium.total:
                 drag = 0.0
@@ -62,12 +62,14 @@ def move(medium, motion, sliding, history, dt, end):
 
 @inner()
 def viscous_loss(medium, velocity, dt):
-    """Viscous loss of a step, from the velocities at its end."""
-    square = 0.0
+    """Viscous loss of a step and that to rate strengthening, from the velocities at its end."""
+    square, motion = 0.0, 0.0
     for i in range(1 if medium.mirror else 0, velocity.shape[0] - 1):
         dv = velocity[i + 1] - velocity[i]
         square += dv * dv
-    return (2.0 if medium.mirror else 1.0) * dt * medium.beta / medium.dx * square
+        motion += (0.5 if medium.mirror and i == 1 else 1.0) * velocity[i] * velocity[i]
+    loss = medium.beta / medium.dx * square + medium.alpha * medium.dx * motion
+    return (2.0 if medium.mirror else 1.0) * dt * loss
 
 
 @inner()
@@ -113,7 +115,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
             return UNSTABLE
         if medium.mirror:
             velocity[0] = velocity[2]
-        if medium.beta > 0.0:
+        if medium.beta > 0.0 or medium.alpha != 0.0:
             tally.viscous_loss += viscous_loss(medium, velocity, dt)
         tally.steps += 1
         tally.block_updates += moving

@@ -38,7 +38,11 @@ class Lattice:
         self.localised = scene.scheme == "localised"
         self.mirror = scene.symmetric
         leaf = scene.gamma if scene.boundary == "displacement" else 0.0
-        self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, scene.release == "total")
+        self.medium = arrays.make_medium(
+            scene.dx, leaf, beta, self.mirror, scene.release == "total", scene.rate_strengthening
+        )
+        # Slip velocity under a constant force grows by at most this more where friction weakens with it.
+        self.growth = float(np.exp(min(max(-scene.rate_strengthening, 0.0) * scene.duration, 600.0)))
         # The block at array position 0; block 0 lies at x = 0.
         self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
         size = _row_length(FIRST_BLOCKS + 2 if self.mirror else 2 * FIRST_BLOCKS + 3)
@@ -131,7 +135,8 @@ class Lattice:
     def _advance(self, steps: int) -> int:
         scene = self.scene
         step = scene.max_step * scene.dx
-        limits = arrays.Limits(scene.order, step, scene.duration, self.largest_force, steps)
+        largest = self.largest_force * self.growth
+        limits = arrays.Limits(scene.order, step, scene.duration, largest, steps)
         state = (self.medium, self.motion)
         if self.localised:
             return taylor.advance(*state, self.segments, self.scratch, self.history, self.recorder, limits)

@@ -68,6 +68,13 @@ def next_derivative(w, k, first, last, per_dx2, leaf, damping):
             w[k, i] = derivative(w, k, i, per_dx2, leaf, damping)
 
 
+@inner()
+def strengthen(w, k, first, last, alpha):
+    """Take from time derivative k of slip what friction gains with slip rate."""
+    for i in blocks(first, last):
+        w[k, i] -= alpha * w[k - 1, i]
+
+
 @inner(inline=True)
 def nest(inner, w, k, weight, lower_weight, first, last):
     """Two levels of a Taylor polynomial from the inside out, in place: w[k-1] + lower_weight (w[k] + weight inner)."""
@@ -149,4 +156,14 @@ def stretching(w, first, last):
         dv = w[1, i + ONE] - w[1, i]
         square += dv * dv
         product += dv * (w[2, i + ONE] - w[2, i])
+    return square, product
+
+
+@inner(reorder=True)
+def motion_of(w, first, last):
+    """Sums of v^2 and v a over blocks: dissipation by rate strengthening, and half its slope."""
+    square, product = 0.0, 0.0
+    for i in blocks(first, last):
+        square += w[1, i] * w[1, i]
+        product += w[1, i] * w[2, i]
     return square, product

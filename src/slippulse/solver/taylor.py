@@ -20,9 +20,24 @@ from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
 from .jit import entry, inner
-from .notes import dissipation, note_kink, note_release, note_stick, take_samples, viscous_loss
+from .notes import (
+    dissipation,
+    note_kink,
+    note_rate_loss,
+    note_release,
+    note_stick,
+    take_samples,
+    viscous_loss,
+)
 from .segments import holds, release_block, stick_block
-from .stencils import advance_slip, advance_strain, first_acceleration, next_derivative, velocity_after
+from .stencils import (
+    advance_slip,
+    advance_strain,
+    first_acceleration,
+    next_derivative,
+    strengthen,
+    velocity_after,
+)
 
 # Events closer than this fraction of the largest step are one: fronts of a symmetric scene that meet.
 SIMULTANEOUS = 1e-11
@@ -31,21 +46,32 @@ BLOW_UP = 100.0
 
 
 @inner(inline=True)
-def derivatives(medium, motion, segments, top):
-    """Fill w[2..top] with the time derivatives of slip on all segments."""
+def derivatives(medium, motion, segments, alpha, top):
+    """Fill w[2..top] with the time derivatives of slip on all segments; ``alpha`` is the rate strengthening."""
     w, mirror = motion.w, medium.mirror
     for r in range(segments.count.n):
         a, b = segments.starts[r], segments.ends[r]
         if mirror and a == 1:
             w[1, 0] = w[1, 2]
         first_acceleration(w, motion.strain, motion.tau, a, b, medium.per_dx, medium.leaf, medium.damping)
+        if alpha != 0.0:
+            strengthen(w, 2, a, b, alpha)
         for k in range(3, top + 1):
             if mirror and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
             next_derivative(w, k, a, b, medium.per_dx2, medium.leaf, medium.damping)
+            if alpha != 0.0:
+                strengthen(w, k, a, b, alpha)
     if mirror:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
+
+
+@inner()
+def strengthened_derivatives(medium, motion, segments, tally, top):
+    """The same where friction depends on slip rate, out of the way of other runs; and the loss to it."""
+    derivatives(medium, motion, segments, medium.alpha, top)
+    note_rate_loss(medium, motion, segments, tally)
 
 
 @inner(inline=True)
@@ -163,7 +189,10 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
     kinks = changed.kinks
     for _ in range(limits.steps):
         t = tally.time
-        derivatives(medium, motion, segments, top)
+        if medium.alpha == 0.0:
+            derivatives(medium, motion, segments, 0.0, top)
+        else:
+            strengthened_derivatives(medium, motion, segments, tally, top)
         rate, change = 0.0, 0.0
         if medium.beta > 0.0:
             rate, change = dissipation(medium, motion, segments)

@@ -25,7 +25,8 @@ from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed as exact_speed
-from ..theory.pulse import front_speed_undamped, steady_pulse
+from ..theory.front_law import front_speed_undamped
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 

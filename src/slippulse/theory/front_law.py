@@ -10,9 +10,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.checks import DOMAINS, as_numbers, check_choice, check_domains, check_number, of_one_shape
+from ..model.checks import (
+    DOMAINS,
+    as_numbers,
+    check_choice,
+    check_domains,
+    check_number,
+    check_runaway,
+    of_one_shape,
+)
 from ..model.scene import RELEASES
-from .pulse import front_speed_undamped
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
@@ -22,10 +29,24 @@ NEARLY_ONE = {"total": 1e-10, "elastic": 1e-13}
 NEARLY_ONE_WITH_SPRINGS = 1e-7
 # ln(v - 1) where v is 1 to all digits, and beyond any speed in the domain.
 SLOWEST, FASTEST = -80.0, 280.0
+# How far, relative, above the speed at which slip runs away a front is.
+SLOWEST_MARGIN = 1e-6
 # Elements solved at once: bounds memory.
 CHUNK = 128
 # Where the pre-stress is looked at for its least, and how often the range is narrowed.
 SCAN, NARROWINGS = 64, 6
+
+
+def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
+    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
+
+    Parameters
+    ----------
+    tau0 : float or array, in [0, 1)
+
+    Raises ValueError: outside the domain.
+    """
+    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
@@ -83,9 +104,10 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
 
 
 def lattice_front_speed(
-    tau0: float, gamma: float, dx: float, damping_ratio: float = 0.0, release: str = "total"
-) -> float:
-    """Exact front speed at finite spacing with leaf springs and damping.
+    tau0: float, gamma: float, dx: float, damping_ratio: float = 0.0, release: str = "total",
+    rate_strengthening: float = 0.0,
+) -> float:  # fmt: skip
+    """Exact front speed at finite spacing with leaf springs, damping and friction that depends on slip rate.
 
     Parameters
     ----------
@@ -94,8 +116,10 @@ def lattice_front_speed(
     dx : block spacing (units of H), > 0; 1 is the Burridge-Knopoff model
     damping_ratio : beta/dx, from 0 to 1e100
     release : "total" or "elastic"
+    rate_strengthening : alpha, of a term -alpha du/dt; as dx -> 0 it no longer matters
 
-    Raises ValueError: where no front outruns the waves: tau_0 not above the least pre-stress of any front faster than
+    Raises ValueError: where no front outruns the waves (or, where friction weakens with slip rate, outruns them by so
+    much that slip behind it does not run away): tau_0 not above the least pre-stress of any front faster than
     the waves (and than sqrt(4 + gamma dx^2)/pi, beyond 1 for gamma dx^2 > pi^2 - 4). Where that least lies at a speed
     above 1 (rule "total", strong damping), two speeds belong to one tau_0: the faster is returned, which grows with
     tau_0.
@@ -105,25 +129,29 @@ def lattice_front_speed(
     """
     check_domains(tau0=tau0, gamma=gamma, dx=dx, damping_ratio=damping_ratio)
     check_choice("release", release, RELEASES)
-    springs = float(gamma) * float(dx) * float(dx)
+    check_number("rate_strengthening", rate_strengthening)
+    check_runaway(float(gamma), float(rate_strengthening))
+    springs, drag = float(gamma) * float(dx) * float(dx), float(rate_strengthening) * float(dx)
     # Outside these there is no difference to no springs, or no front for any tau_0 below 1.
-    if springs < 1e-30:
+    if springs < 1e-30 and abs(drag) < 1e-15:
         return float(front_speed(tau0, damping_ratio, release))
     if springs <= 1e30 and 1.0 - tau0 < NEARLY_ONE_WITH_SPRINGS and damping_ratio > 0.0:
         speed = front_speed(tau0, damping_ratio, release)
-        if springs * (1.0 + damping_ratio) < 1e-5 * speed**2:
+        if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
             return _nearly_free(speed, springs, damping_ratio if release == "total" else 0.0)
     ratio = np.array([float(damping_ratio)])
-    low, least = _least_prestress(ratio[0], springs, release) if springs <= 1e30 else (0.0, 1.0)
+    low, least = _least_prestress(ratio[0], springs, release, drag) if springs <= 1e30 else (0.0, 1.0)
     if tau0 <= least:
         raise ValueError(
             f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
             f" dx = {dx:g}, damping_ratio = {damping_ratio:g}"
+            + f", rate_strengthening = {rate_strengthening:g}"
+            * bool(drag)
         )
-    if damping_ratio == 0.0:
+    if damping_ratio == drag == 0.0:
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
         return float(np.sqrt(springs) / (2.0 * tau0 * np.arcsin(argument)))
-    return float(1.0 + np.exp(root(np.array([float(tau0)]), ratio, springs, release, low)[0]))
+    return float(1.0 + np.exp(root(np.array([float(tau0)]), ratio, springs, release, low, drag)[0]))
 
 
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
@@ -151,15 +179,18 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + springs)))
 
 
-def _least_prestress(ratio: float, springs: float, release: str) -> tuple[float, float]:
+def _least_prestress(ratio: float, springs: float, release: str, drag: float = 0.0) -> tuple[float, float]:
     """ln(v - 1) and tau_0 where the pre-stress of fronts faster than the waves is least, at the slowest or a fold."""
     slowest = max(1.0, np.sqrt(4.0 + springs) / np.pi)
+    if drag < 0.0:
+        # Behind slower fronts slip runs away.
+        slowest = max(slowest, (1.0 + SLOWEST_MARGIN) / np.sqrt(1.0 - 0.25 * drag**2 / springs))
     first = np.log(slowest - 1.0) if slowest > 1.0 else SLOWEST
     last = np.log(slowest * (1.0 + ratio) * (1.0 + springs)) + 5.0
     inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN - 1))
     x = np.concatenate([[first], inner])
     for _ in range(NARROWINGS + 1):
-        levels = log_prestress(np.exp(x), np.full(x.size, ratio), springs, release)
+        levels = log_prestress(np.exp(x), np.full(x.size, ratio), springs, release, drag)
         at = int(np.argmin(levels))
         if x[at] == first:
             break
@@ -216,7 +247,12 @@ def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
 
 
 def root(
-    tau: np.ndarray, ratio: np.ndarray, springs: float, release: str, slowest: float = SLOWEST
+    tau: np.ndarray,
+    ratio: np.ndarray,
+    springs: float,
+    release: str,
+    slowest: float = SLOWEST,
+    drag: float = 0.0,
 ) -> np.ndarray:
     """x = ln(v - 1) from the slowest on where the pre-stress is tau, by secants in ln(tau/(1 - tau)).
 
@@ -226,7 +262,7 @@ def root(
     target = np.log(tau) - np.log1p(-tau)
 
     def mismatch(x: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        level = log_prestress(np.exp(x), ratio[alive], springs, release)
+        level = log_prestress(np.exp(x), ratio[alive], springs, release, drag)
         # Beyond the floating range below 1 the stress is faster than any target.
         return level - np.log(np.maximum(-np.expm1(level), 1e-17)) - target[alive]
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..model.checks import check_kind, check_number
+from ..model.checks import check_kind, check_number, check_runaway
 from ..model.prestress import Prestress
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel
 from .profile import Piece, analytic, edges_of_features, mirrored, pieces
@@ -38,13 +38,18 @@ class FrontLaw:
     """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma."""
 
     def __init__(
-        self, prestress: Prestress, gamma: float, damping_ratio: float, release: str, refinement: int = 1
-    ) -> None:
+        self, prestress: Prestress, gamma: float, damping_ratio: float, release: str, refinement: int = 1,
+        alpha: float = 0.0,
+    ) -> None:  # fmt: skip
         check_kind("prestress", prestress, Prestress)
         check_number("gamma", gamma, at_least=0.0)
         check_law(damping_ratio, release)
         check_number("refinement", refinement, whole=True, at_least=1, at_most=FINEST)
-        self.prestress, self.gamma = prestress, float(gamma)
+        check_number("rate_strengthening", alpha)
+        check_runaway(gamma, alpha)
+        self.prestress, self.gamma, self.alpha = prestress, float(gamma), float(alpha)
+        # The fastest that a kernel changes.
+        self.rate = max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
         self.damping_ratio, self.release, self.refinement = float(damping_ratio), release, int(refinement)
         self.features = edges_of_features(prestress)
         levels = (prestress.left, prestress.right, *(level for _, level in prestress.steps))
@@ -54,9 +59,8 @@ class FrontLaw:
 
     def mirrored(self) -> FrontLaw:
         """The same at -x."""
-        return FrontLaw(
-            mirrored(self.prestress), self.gamma, self.damping_ratio, self.release, self.refinement
-        )
+        given = self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
+        return FrontLaw(mirrored(self.prestress), *given)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
         """1/v of each pre-stress; scenes that differ in gamma alone share most of their panels."""
@@ -67,11 +71,11 @@ class FrontLaw:
 
     def longest(self, level: float) -> float:
         """The longest panel: the leaf springs' phase changes by LONGEST along it."""
-        if self.gamma == 0.0:
+        if self.rate == 0.0:
             return LONGEST_WITHOUT_SPRINGS / self.refinement
         rate = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
         proper = float(np.sqrt(1.0 - rate**2)) if level > 0.0 else 1.0
-        return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / np.sqrt(self.gamma) / self.refinement
+        return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / self.rate / self.refinement
 
     def rightwards(
         self, start: float, time: float, stop: float, until: float

@@ -52,9 +52,10 @@ class Part:
 
     def __init__(
         self, curve: Curve, gamma: float, until: float, marks: Iterable[float] = (), refinement: int = 1,
-        one_side: bool = False,
+        one_side: bool = False, alpha: float = 0.0,
     ) -> None:  # fmt: skip
-        self.curve, self.gamma, self.until = curve, gamma, until
+        self.curve, self.gamma, self.until, self.alpha = curve, gamma, until, alpha
+        self.rate = max(float(np.sqrt(gamma)), 0.5 * abs(alpha))
         self.marks, self.refinement, self.one_side = np.array([*marks]), refinement, one_side
 
     @cached_property
@@ -62,13 +63,17 @@ class Part:
         """A state at rest, for slip and strain."""
         return Rest(self.curve, self.gamma)
 
+    def past(self, x: np.ndarray, time: np.ndarray) -> Past:
+        """Where points that slide depend on."""
+        return Past(self.curve, self.gamma, x, time, self.alpha)
+
     def velocity(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """du/dt at points that slide."""
-        return Past(self.curve, self.gamma, x, time).slip_velocity()
+        return self.past(x, time).slip_velocity()
 
     def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """A field at points that slide."""
-        past = Past(self.curve, self.gamma, x, time)
+        past = self.past(x, time)
         return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
 
     # Sticking
@@ -90,14 +95,14 @@ class Part:
         slopes = np.full((2, x.size), np.nan)
         stuck = np.isfinite(stick)
         if stuck.any():
-            slopes[:, stuck] = Past(self.curve, self.gamma, x[stuck], stick[stuck]).velocity_slopes()
+            slopes[:, stuck] = self.past(x[stuck], stick[stuck]).velocity_slopes()
         return Edge(x, stick, *slopes)
 
     def scan(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions, found without help from others."""
         out = np.full(x.shape, np.nan)
         release = self.curve.arrival(x)
-        step = SCAN / np.sqrt(self.gamma) if self.gamma > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
+        step = SCAN / self.rate if self.rate > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
         step = step / self.refinement
         alive = np.flatnonzero(release < self.until)
         # The last two times and velocities of each: a velocity that turns may have been below 0 in between.
@@ -216,7 +221,7 @@ class Part:
 
     def _slow(self, edge: Edge) -> np.ndarray:
         # Beside the point where a slow front has stopped, sliding lasts too short a time to tell.
-        brief = 1e-3 / (np.sqrt(self.gamma) if self.gamma > 0.0 else 1.0)
+        brief = 1e-3 / (self.rate or 1.0)
         lasting = edge.stick - self.curve.arrival(edge.x) > brief
         return ((edge.by_xi >= 0.0) | (edge.by_eta >= 0.0)) & lasting
 

@@ -10,18 +10,7 @@ import numpy as np
 from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_domains, check_number
 from ..model.prestress import Prestress
-
-
-def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
-
-    Parameters
-    ----------
-    tau0 : float or array, in [0, 1)
-
-    Raises ValueError: outside the domain.
-    """
-    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
+from .front_law import front_speed, front_speed_undamped
 
 
 @dataclass(frozen=True)
@@ -42,6 +31,7 @@ class SteadyPulse:
     stress_drop: float
     growth: float
     wavenumber: float
+    rate_strengthening: float = 0.0
 
     @property
     def peak_position(self) -> float:
@@ -68,33 +58,49 @@ class SteadyPulse:
         return slip, velocity, acceleration
 
 
-def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> SteadyPulse:
-    """Steady pulse in uniform pre-stress behind a front of given speed.
+def steady_pulse(
+    tau0: float, gamma: float, beta: float = 0.0, speed: float | None = None, *, damping_ratio: float | None = None,
+    release: str = "total", rate_strengthening: float = 0.0,
+) -> SteadyPulse:  # fmt: skip
+    """Steady pulse in uniform pre-stress behind a front whose speed is given, or follows from the damping ratio.
 
     Parameters
     ----------
     tau0 : pre-stress, in (0, 1)
     gamma : elasticity ratio, > 0
-    beta : damping, >= 0
-    speed : front speed, > 1 (see `front_speed`)
+    beta : damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
+    speed : front speed, > 1, or
+    damping_ratio, release : of `front_speed`, where the speed is left out
+    rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
 
     Raises ValueError: outside the domain.
-    Source: beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of roots; the real
-    root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. beta = 0 gives appendix C of the paper
-    before its last step, with any speed.
+    Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of
+    roots; the real root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. alpha = beta = 0 gives
+    appendix C of the paper before its last step, with any speed.
     """
     check_domains(tau0=tau0, gamma=gamma)
     check_number("beta", beta, at_least=0.0)
+    if (speed is None) == (damping_ratio is None):
+        raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
+    if speed is None:
+        speed = front_speed(tau0, damping_ratio, release)
     check_number("speed", speed, above=1.0)
-    given = float(tau0), float(gamma), float(beta), float(speed)
+    check_number("rate_strengthening", rate_strengthening)
+    given, alpha = (float(tau0), float(gamma), float(beta), float(speed)), float(rate_strengthening)
     try:
-        pulse = SteadyPulse(*given, *_shape(*given))
+        pulse = SteadyPulse(*given, *_shape(*given, alpha), alpha)
     except (ArithmeticError, ValueError):
         pulse = None
     # Floats of Python overflow without a word.
     if pulse is None or not all(
         0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)
     ):
+        critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
+        if abs(alpha) > 0.5 * critical:
+            raise ValueError(
+                f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size at gamma = {gamma:.4g},"
+                f" speed = {speed:.6g} without beta, or no pulse is steady"
+            )
         raise ValueError(
             f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}; allowed: numbers whose pulse can be"
             " computed"
@@ -103,13 +109,16 @@ def steady_pulse(tau0: float, gamma: float, beta: float, speed: float) -> Steady
 
 
 @np.errstate(over="raise", invalid="raise", divide="raise")
-def _shape(tau0: float, gamma: float, beta: float, speed: float) -> tuple[float, ...]:
+def _shape(
+    tau0: float, gamma: float, beta: float, speed: float, alpha: float
+) -> tuple[float, float, float, float, float, float]:
     """Width, slip, peak velocity, stress drop, growth and wavenumber."""
     stiffness = (speed - 1.0) * (speed + 1.0)
     if beta == 0.0:
-        p, q = 0.0, float(np.sqrt(gamma / stiffness))
+        p = 0.5 * alpha * speed / stiffness
+        q = float(np.sqrt(gamma / stiffness - p**2))
     else:
-        roots = np.roots([beta * speed, stiffness, 0.0, gamma])
+        roots = np.roots([beta * speed, stiffness, -alpha * speed, gamma])
         pair = roots[np.argmax(roots.imag)]
         p, q = float(pair.real), float(pair.imag)
     width = np.pi / q
@@ -117,6 +126,22 @@ def _shape(tau0: float, gamma: float, beta: float, speed: float) -> tuple[float,
     modulus = np.hypot(p, q)
     peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
     return float(width), float(slip), float(peak), float(gamma * slip), p, q
+
+
+def critical_rate_strengthening(gamma: float, speed: float) -> float:
+    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): from it on nothing sticks behind a front, and from -alpha_c slip grows.
+
+    Parameters
+    ----------
+    gamma : elasticity ratio, > 0
+    speed : front speed, > 1
+
+    Raises ValueError: outside the domain.
+    Source: where the wavenumber q of the steady pulse is 0 (beta -> 0); 2 tau_0 sqrt(gamma) without damping.
+    """
+    check_domains(gamma=gamma)
+    check_number("speed", speed, above=1.0)
+    return 2.0 * math.sqrt(gamma) * math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:

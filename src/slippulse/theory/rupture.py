@@ -23,6 +23,8 @@ from .spreading import Stretch, spread
 
 # The construction goes on this much beyond the duration, relative, so that the end is a time like any other.
 BEYOND = 1e-6
+# Of exponents, alpha times the duration, with room to the end of floating point.
+MOST_DECAY = 600.0
 FIELDS = ("slip_velocity", "slip", "strain")
 # Of a map, which takes 100 bytes each.
 MOST_POINTS = 10**7
@@ -52,6 +54,7 @@ class Rupture:
     release : "total" or "elastic"
     duration : time up to which the rupture is wanted, >= 1e-9
     refinement : panels are cut into so many more, to see what the result owes to them; 1 to 10
+    rate_strengthening : alpha, of a term -alpha du/dt; above where slip runs away, and at most 600/duration in size
 
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
     20000 panels. Of every method: if a position or a time is not a finite number (where arrays are taken, an array of
@@ -61,11 +64,12 @@ class Rupture:
 
     def __init__(
         self, prestress: Prestress, gamma: float, damping_ratio: float = 0.0, release: str = "total",
-        duration: float = 10.0, refinement: int = 1,
+        duration: float = 10.0, refinement: int = 1, rate_strengthening: float = 0.0,
     ) -> None:  # fmt: skip
         check_number("duration", duration, at_least=NARROWEST)
-        self.law = FrontLaw(prestress, gamma, damping_ratio, release, refinement)
-        self.prestress, self.gamma = prestress, self.law.gamma
+        self.law = FrontLaw(prestress, gamma, damping_ratio, release, refinement, rate_strengthening)
+        check_number("rate_strengthening", rate_strengthening, at_most=MOST_DECAY / duration)
+        self.prestress, self.gamma, self.rate_strengthening = prestress, self.law.gamma, self.law.alpha
         self.damping_ratio, self.release, self.duration = self.law.damping_ratio, release, float(duration)
         self.refinement = self.law.refinement
         until = self.duration * (1.0 + BEYOND)
@@ -73,7 +77,7 @@ class Rupture:
         kinks = [0.0, *(piece.right for piece in self.law.pieces if np.isfinite(piece.right))]
         rest = self.refinement, prestress.symmetric
         self._parts = [
-            Part(stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], *rest)
+            Part(stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], *rest, self.law.alpha)
             for stretch in self.stretches
         ]
 

@@ -3,7 +3,9 @@
 Slip, slip velocity and strain vanish on it, for it needs no fracture energy. The characteristic that ends on it at
 (X, t) entered the rupture at e, where T - x has the same value, and du/dt = 0 there reads
 
-    Int_e^X tau(x) J0( sqrt(gamma (xi - T + x) (eta - T - x)) ) dx = 0,   xi = T(e) - e,   eta = xi + 2 X.
+    Int_e^X tau(x) E J0( sqrt(k (xi - T + x) (eta - T - x)) ) dx = 0,   xi = T(e) - e,   eta = xi + 2 X,
+
+with E and k = gamma - alpha^2/4 as in `riemann`.
 
 X is marched as a function of e, in which it stays smooth where the front stops: there dX/de = 0.
 """
@@ -16,7 +18,7 @@ from numpy.polynomial import legendre
 from ..model.prestress import Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
 from .profile import analytic
-from .riemann import partial_weights, riemann
+from .riemann import decay, kernel_of, partial_weights
 
 RESOLVED = 1e-11
 # The shortest fraction of a panel of entries.
@@ -31,14 +33,16 @@ LOOK = 1e-11
 Advance = tuple[Panel | None, str | None]
 
 
-def advance(curve: Curve, prestress: Prestress, level: float, gamma: float, mark: float) -> Advance:
+def advance(
+    curve: Curve, prestress: Prestress, level: float, gamma: float, mark: float, alpha: float = 0.0
+) -> Advance:
     """Continue the right end of a curve into negative pre-stress, by the entries of one panel at most.
 
     level is the side level where the front is, mark where the negative piece ends (may be infinite). The stop is "mark"
     where the new panel ends there, "dead" where the front stops for good, "unknown" where its characteristic comes from
     beyond the curve's left end, and "unresolved" where no panel is short enough.
     """
-    front = _Chunk(curve, prestress, level, gamma)
+    front = _Chunk(curve, prestress, level, gamma, alpha)
     entry = front.entry()
     if entry is None:
         return None, "unknown"
@@ -86,8 +90,9 @@ def _roots_on(values: np.ndarray, limit: float) -> list[float]:
 class _Chunk:
     """One chunk of entries, from where the last one ended leftwards, and the front's positions for them."""
 
-    def __init__(self, curve: Curve, prestress: Prestress, level: float, gamma: float) -> None:
-        self.curve, self.prestress, self.level, self.gamma = curve, prestress, level, gamma
+    def __init__(self, curve: Curve, prestress: Prestress, level: float, gamma: float, alpha: float) -> None:
+        self.curve, self.prestress, self.level = curve, prestress, level
+        self.stiffness, self.alpha = gamma - 0.25 * alpha**2, alpha
         self.x0, self.t0 = float(curve.edges[-1]), float(curve.edge_times[-1])
 
     def tau(self, x: np.ndarray) -> np.ndarray:
@@ -109,30 +114,35 @@ class _Chunk:
 
     def solve(self, k: int, start: float, stop: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Positions at the nodes, and their derivative; None where the chunk is too long."""
-        curve, gamma = self.curve, self.gamma
+        curve, stiffness, alpha = self.curve, self.stiffness, self.alpha
         s = start + 0.5 * (stop - start) * (1.0 + NODES)
         same = np.full(COUNT, k)
         early = curve.at("early", same, s)
         cut = (WEIGHTS - partial_weights(s)) * curve.source[k]
         rest = np.tile((curve.source[k + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
         weight = np.concatenate([cut, rest], axis=1)
-        behind = gamma * (early[:, None] - curve.early[k:].ravel())
+        before = early[:, None] - curve.early[k:].ravel()
+        behind = stiffness * before
         late = curve.late[k:].ravel()
-        own = gamma * (early[:, None] - early)
+        own = early[:, None] - early
         x = self.guess(k, start, curve.at("x", same, s))
         change = np.inf
         for _ in range(60):
             eta = early + 2.0 * x
             z = behind * (eta[:, None] - late)
-            bounds = (float(z[:, :COUNT].min()), float(z.max()))
-            ahead = np.add.reduce(weight * riemann(z, bounds), axis=1)
-            growth = 2.0 * np.add.reduce(weight * riemann(z, bounds, 1) * behind, axis=1)
+            kernel = kernel_of(stiffness, z, z[:, :COUNT])
+            lasting = weight * decay(alpha, before + (eta[:, None] - late)) if alpha else weight
+            ahead = np.add.reduce(lasting * kernel(0), axis=1)
+            growth = 2.0 * np.add.reduce(lasting * kernel(1) * behind, axis=1) - 0.5 * alpha * ahead
             # From x0 to each position: with a kernel of 1 exactly, and the rest of the kernel at the nodes.
             half = 0.5 * (x - self.x0)
             area = half * (self.tau(self.x0 + half[:, None] * (1.0 + NODES)) @ WEIGHTS)
             tau = self.tau(x)
-            z = own * (eta[:, None] - eta)
-            beyond = riemann(z, (float(z.min()), float(z.max()))) - 1.0
+            z = stiffness * own * (eta[:, None] - eta)
+            beyond = kernel_of(stiffness, z, z)(0)
+            if alpha:
+                beyond = beyond * decay(alpha, own + (eta[:, None] - eta))
+            beyond = beyond - 1.0
             near = np.add.reduce(CUMULATIVE * (tau * (SLOPE @ x)) * beyond, axis=1)
             fall = tau + growth
             if not np.all(fall < 0.0):

@@ -127,7 +127,7 @@ def _step(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
     piece = law.piece_right_of(side * x)
     mark = min(piece.right, stretch.limits[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
-    panel, stop = advance(curve, law.prestress, piece.level, law.gamma, mark)
+    panel, stop = advance(curve, law.prestress, piece.level, law.gamma, mark, law.alpha)
     if panel is not None:
         stretch.add(side, [panel], panel.x_ends[1], panel.time_ends[1])
     if stop in ("dead", *UNKNOWN):

@@ -1,16 +1,17 @@
 """The Wiener-Hopf factor of a front on the lattice, leaf springs and damping included.
 
-In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2) the front has the symbol
+In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the front has the symbol
 
-    M(k) = 1 - [S(k) (1 + i b w) + g] / w^2 = M_+(k) M_-(k),   M_+ analytic and free of zeros for Im k > 0.
+    M(k) = 1 - [S(k) (1 + i b w) + g + i a w] / w^2 = M_+(k) M_-(k),   M_+ analytic and free of zeros for Im k > 0.
 
 The symbol is an exact product of an algebraic function and two factors that decay on opposite sides of the axis,
 
     M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),
-    r = sqrt(1 + i b w - (w^2 - g)/4),  q = (i/2) sqrt(w^2 - g),  rho = (r - q)/(r + q),
+    r = sqrt(1 + i b w - (w^2 - g - i a w)/4),  q = (i/2) sqrt(w^2 - g - i a w),  rho = (r - q)/(r + q),
 
-with the branch points of r and q above the contour: those of q, w = +-sqrt(g), and the radiated waves behind the front
-lie there by causality, since damping moves them up. Then every factor but 1 - rho e^{ik} is analytic and free of zeros
+with the branch points of r and q above the contour: those of q, w = +-sqrt(g) at a = 0, and the radiated waves behind
+the front lie there by causality, since damping moves them up. (For a < 0 waves grow behind the front, and the contour
+leaves 0 more steeply, below them.) Then every factor but 1 - rho e^{ik} is analytic and free of zeros
 below the contour C, which passes below all of them, and closing C downwards leaves
 
     ln M_+(k) = 1/(2 pi i) Int_C ln(1 - rho(z) e^{iz}) dz/(z - k).
@@ -42,20 +43,28 @@ SMALL = 0.5
 
 
 def log_prestress(
-    excess: np.ndarray, ratio: np.ndarray, springs: float = 0.0, release: str = "total"
+    excess: np.ndarray, ratio: np.ndarray, springs: float = 0.0, release: str = "total", drag: float = 0.0
 ) -> np.ndarray:
     """ln tau_0 of steady fronts at speeds v = 1 + excess.
 
-    excess and ratio are 1-d; excess > 0, or >= 0 with springs g = gamma dx^2, and v >= sqrt(4 + g)/pi. The release is
+    excess and ratio are 1-d; excess > 0, or >= 0 with springs g = gamma dx^2, and v >= sqrt(4 + g)/pi. drag is
+    a = alpha dx, with springs only, above -2 sqrt(g (1 - 1/v^2)). The release is
     "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0; both hold with springs as without: ahead of the
     front a block has not slipped, so its leaf spring pulls at nothing.
     """
     # Below this size no zero or branch point comes near 0, where the contour starts.
     nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
+    angle = ANGLE
+    if drag:
+        nearest = min(nearest, springs / abs(drag))
+    if drag < 0.0:
+        slowest = float(np.min(excess))
+        size = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
+        angle = max(ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
-    z, weight, bent, curved = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)))
-    f, origin = log_factor(z, bent, curved, excess[:, None], ratio[:, None], springs)
-    out = (0.5 - ANGLE / np.pi) * origin + (f @ (weight / z)).imag / np.pi
+    z, weight, bent, curved = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)), angle)
+    f, origin = log_factor(z, bent, curved, excess[:, None], ratio[:, None], springs, drag)
+    out = (0.5 - angle / np.pi) * origin + (f @ (weight / z)).imag / np.pi
     if springs == 0.0:
         out += np.log(excess / (1.0 + excess))
     if release == "elastic" and np.any(ratio > 0.0):
@@ -69,14 +78,20 @@ def log_prestress(
 
 
 def log_factor(
-    z: np.ndarray, bent: np.ndarray, curved: np.ndarray, excess: np.ndarray, ratio: np.ndarray, springs: float
+    z: np.ndarray,
+    bent: np.ndarray,
+    curved: np.ndarray,
+    excess: np.ndarray,
+    ratio: np.ndarray,
+    springs: float,
+    drag: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1, and its value at z = 0.
 
     bent and curved are e^{iz} - 1 and e^{iz} - 1 - iz at the nodes z, excess and ratio columns.
     """
     iw = 1j * z * (1.0 + excess)
-    q, r = roots(iw, ratio, springs)
+    q, r = roots(iw, ratio, springs, drag)
     both = r + q
     rho = (1.0 + ratio * iw) / both**2
     factor = 2.0 * q / both - rho * bent
@@ -93,7 +108,7 @@ def log_factor(
         shift = (ratio * iw[part] - 0.25 * size**2) / (r[part] + 1.0)
         lag = -excess * z[:last] + size * shift / r[part]
         if springs > 0.0:
-            lag = lag + springs / (-1j * iw[part] + size)
+            lag = lag + (springs + drag * iw[part]) / (-1j * iw[part] + size)
         exponent = np.where(close[part], 1j * lag - 2.0 * beyond, 0.0)
         factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
     if springs > 0.0:
@@ -103,9 +118,12 @@ def log_factor(
     return np.log(factor) - np.log(reference), 0.0 * excess[:, 0]
 
 
-def roots(iw: np.ndarray, ratio: np.ndarray, springs: float) -> tuple[np.ndarray, np.ndarray]:
+def roots(
+    iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
     """q and r (module docstring) with cuts that run straight up from their branch points."""
     four = 4.0 + springs
+    ratio = ratio + 0.25 * drag
     under = 4.0 * ratio**2 - four
     strong = under >= 0.0
     root = np.sqrt(np.abs(under))
@@ -114,18 +132,18 @@ def roots(iw: np.ndarray, ratio: np.ndarray, springs: float) -> tuple[np.ndarray
     r = 0.5 * np.sqrt(large + iw) * np.sqrt(small + iw)
     if springs == 0.0:
         return 0.5 * iw, r
-    side = 1j * np.sqrt(springs)
-    return 0.5 * np.sqrt(iw - side) * np.sqrt(iw + side), r
+    side = np.sqrt(complex(0.25 * drag**2 - springs))
+    return 0.5 * np.sqrt(iw + 0.5 * drag - side) * np.sqrt(iw + 0.5 * drag + side), r
 
 
 @lru_cache(maxsize=32)
-def nodes(panels: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def nodes(panels: int, angle: float = ANGLE) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The right half of the contour, its ray in so many panels: z, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
     leg, leg_weight = _panels(LEG_EDGES)
-    turn = np.exp(-1j * ANGLE)
+    turn = np.exp(-1j * angle)
     size = np.exp(ray)
     z = np.concatenate([inner * turn, size * turn, REACH * turn + leg * LEG_DIRECTION])
     weight = np.concatenate([inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION])

@@ -1,0 +1,108 @@
+"""Friction that depends on slip rate: numbers of the exact solution, and where pulses end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import tolerances as tol
+
+import slippulse as sp
+from slippulse import theory
+
+GAMMA, LEVEL, RATIO = 0.65, 0.5, 0.1
+SPEED = theory.front_speed(LEVEL, RATIO)
+CRITICAL = theory.critical_rate_strengthening(GAMMA, SPEED)
+
+
+def run(alpha, dx=0.04, duration=20.0, **values):
+    values = {"gamma": GAMMA, "beta": RATIO * dx, "rate_strengthening": alpha} | values
+    profile = sp.Prestress(LEVEL, LEVEL)
+    return sp.simulate(sp.Scene("displacement", profile, duration, dx, **values))
+
+
+@pytest.mark.parametrize(("alpha", "time"), [(0.4, 4.02063), (0.7, 4.4913), (0.9, 5.1196)])
+def test_first_sticks_are_those_derived_independently(alpha, time):
+    rupture = theory.Rupture(sp.Prestress(LEVEL, LEVEL), GAMMA, RATIO, duration=6.0, rate_strengthening=alpha)
+    assert rupture.transition_time == pytest.approx(time, rel=1e-5)
+
+
+def test_the_steady_pulse_and_its_end_are_those_derived_independently():
+    pulse = theory.steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO, rate_strengthening=0.4)
+    assert pulse.slip == pytest.approx(0.94727, abs=5e-6)
+    assert pulse.width / pulse.speed == pytest.approx(2.5255, abs=5e-5)
+    assert pytest.approx(0.9473, abs=5e-5) == CRITICAL
+    velocity = pulse.profile([-pulse.width, 0.5 * -pulse.width, 0.0])[1]
+    np.testing.assert_allclose(velocity[[0, 2]], 0.0, atol=tol.ALGEBRA)
+    for alpha in (CRITICAL, -CRITICAL):
+        with pytest.raises(ValueError, match=r"rate_strengthening: .*; allowed: less than 0.947322"):
+            theory.steady_pulse(LEVEL, GAMMA, 0.0, SPEED, rate_strengthening=1.01 * alpha)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("fraction", [0.9, 1.1])
+def test_pulses_end_between_nine_and_eleven_tenths_of_the_critical_rate_strengthening(fraction, sign):
+    """Below, the trailing edge follows the front at its speed; above, the sliding part becomes ever wider."""
+    found = run(sign * fraction * CRITICAL, duration=60.0, max_step=0.4)
+    sliding = np.isnan(found["stick_time"].values) & np.isfinite(found["release_time"].values)
+    width = found["x"].values[sliding & (found["x"].values > 0.0)]
+    pulse = theory.steady_pulse(LEVEL, GAMMA, RATIO * 0.04, SPEED, rate_strengthening=0.9 * sign * CRITICAL)
+    assert (width.max() - width.min() < 1.1 * pulse.width) == (fraction < 1.0)
+
+
+@pytest.mark.parametrize("options", [{}, {"order": 8, "half_lattice": False}, {"scheme": "fixed_step"}])
+def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
+    """Those that know the term and those that leave it out."""
+    plain, least = run(0.0, duration=9.0, **options), run(1e-300, duration=9.0, **options)
+    for name in ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration"):
+        assert plain[name].equals(least[name])
+
+
+@pytest.mark.parametrize("scheme", ["localised", "fixed_step"])
+def test_a_step_just_below_the_bound_is_stable_with_strong_strengthening(scheme):
+    """Drag alone sets it at alpha dx = 8."""
+    values = {"dx": 0.5, "beta": 0.0, "rate_strengthening": 16.0, "scheme": scheme, "duration": 200.0}
+    bound = run(1.0, **values | {"max_step": 1e-3, "duration": 0.1}).attrs
+    scene = sp.Scene.from_attributes(bound)
+    assert scene.largest_stable_step < 0.4
+    stable = run(1.0, **values, max_step=0.98 * scene.largest_stable_step)
+    assert float(stable["slip"].max()) < 1.2 / GAMMA
+    with pytest.raises(ValueError, match=r"max_step: .*rate_strengthening dx = 8"):
+        run(1.0, **values, max_step=1.03 * scene.largest_stable_step)
+
+
+@pytest.mark.parametrize("alpha", [0.9, -0.6])
+@pytest.mark.parametrize("release", ["total", "elastic"])
+def test_front_speeds_on_a_coarse_lattice_are_those_of_the_front_law(release, alpha):
+    """At dx = 0.4, where alpha dx moves the speed by percents."""
+    dx = 0.4
+    speed = theory.lattice_front_speed(LEVEL, GAMMA, dx, RATIO, release, alpha)
+    assert abs(speed / theory.lattice_front_speed(LEVEL, GAMMA, dx, RATIO, release) - 1.0) > 0.01
+    found = run(alpha, dx, 80.0, release=release, max_step=0.1)
+    x, time = (found[name].values for name in ("x", "release_time"))
+    late = (time > 40.0) & (x > 0.0)
+    assert np.polyfit(time[late], x[late], 1)[0] == pytest.approx(speed, rel=1e-3)
+
+
+def test_files_of_before_open_as_the_paper_has_it():
+    attributes = sp.Scene("stress", sp.Prestress(-0.5, 0.0), 1.0, 0.1).attributes()
+    del attributes["rate_strengthening"]
+    assert sp.Scene.from_attributes(attributes).rate_strengthening == 0.0
+
+
+@pytest.mark.parametrize(
+    ("boundary", "gamma", "alpha", "allowed"),
+    [
+        ("displacement", 0.65, -1.62, "> -2 sqrt(gamma) = -1.61245, or slip runs away"),
+        ("stress", 0.0, -0.01, ">= 0 without leaf springs, or slip runs away"),
+        ("displacement", 0.65, np.inf, "a finite number"),
+    ],
+)
+def test_weakening_by_which_slip_runs_away_is_refused(boundary, gamma, alpha, allowed):
+    profile = sp.Prestress(0.5, 0.5)
+    for call in (
+        lambda: sp.Scene(boundary, profile, 1.0, 0.1, gamma=gamma, rate_strengthening=alpha),
+        lambda: theory.Rupture(profile, gamma, rate_strengthening=alpha),
+    ):
+        with pytest.raises(ValueError) as error:
+            call()
+        assert str(error.value) == f"rate_strengthening: {alpha}; allowed: {allowed}"
