@@ -16,17 +16,23 @@ from slippulse.theory import Rupture, front_speed, steady_pulse
 # All by `make test-pages`, which opens the other pages too.
 pytestmark = pytest.mark.slow
 
-# Each with the ends of its range, within which the scenes below lie.
-SLIDERS = {
-    "beta": '"1e-4", "1e-2"', "dx": '"2e-3", "5e-2"', "left": '"0.05", "0.95"', "right": '"0.05", "0.95"',
-    "width": '"0.2", "5"', "gamma": '"0.02", "2"',
-}  # fmt: skip
+# In the order of the page.
+SLIDERS = ["beta", "dx", "left", "right", "width", "gamma", "alpha", "end"]
 RUN = {
     "boundary": "displacement", "left": 0.3, "right": 0.3, "width": 1.0, "peak": 1.0, "gamma": 0.5, "beta": 1e-3,
     "steps_and_bumps": '{"steps": [], "bumps": []}', "damping_ratio": 0.1, "release": "total",
     "front_speed_right": 1.1, "transition_time": 4.1, "transition_length": 10.1, "pulse_slip": 1.11,
     "pulse_state": "steady",
 }  # fmt: skip
+SCENE = {
+    "left": 0.5,
+    "right": 0.5,
+    "gamma": 0.65,
+    "width": 1.0,
+    "ratio": 0.1,
+    "release": "total",
+    "end": 20.0,
+}
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +55,7 @@ def settled(page) -> None:
 
 
 def random_scenes(count: int) -> list[dict]:
-    """Settings over the whole reach of the sliders, half of them symmetric, a fifth undamped, both rules."""
+    """Settings over the reach of the sliders with positive levels, half of them symmetric, both rules."""
     random = np.random.default_rng(16)
 
     def between(low: float, high: float) -> float:
@@ -75,7 +81,7 @@ def test_its_numbers_are_those_of_the_library(file, opened):
             """scenes => scenes.map((scene) => {
                 const rupture = new Rupture(scene, DATA.law);
                 const first = rupture.transition();
-                const pulse = rupture.pulse(MULTIPLE * first.transitionTime, first.firstStick);
+                const pulse = rupture.pulse(3 * first.transitionTime, first.firstStick);
                 return { ...first, ...pulse, slipCentre: rupture.slip(0, rupture.stick(0)) };
             })""",
             scenes,
@@ -97,64 +103,135 @@ def test_its_numbers_are_those_of_the_library(file, opened):
         assert {name: numbers[name] for name in exact} == pytest.approx(exact, rel=EXPLORER), scene
 
 
+def test_fronts_into_negative_pre_stress_are_those_of_the_library(file, opened):
+    levels = [
+        (-0.5, 0.5, 0.65),
+        (0.7, -0.3, 0.65),
+        (-0.2, -0.4, 0.65),
+        (-0.5, 0.0, 0.0),
+        (-0.3, -0.5, 0.0),
+        (-0.5, 0.2, 0.0),
+    ]
+    scenes = [
+        SCENE | {"left": left, "right": right, "gamma": gamma, "end": 12.0} for left, right, gamma in levels
+    ]
+    with opened(file) as page:
+        found = page.evaluate(
+            """scenes => scenes.map((scene) => {
+                const rupture = new Rupture(scene, DATA.law);
+                const stopped = [rupture.left, rupture.right].map((front) => Boolean(front.slow && front.slow.stopped));
+                return [[0.3, 0.6, 1].flatMap((part) => rupture.fronts(part * scene.end)), stopped];
+            })""",
+            scenes,
+        )
+    for scene, (fronts, stopped) in zip(scenes, found, strict=True):
+        exact = Rupture(Prestress(scene["left"], scene["right"]), scene["gamma"], 0.1, "total", scene["end"])
+        at = [x for part in (0.3, 0.6, 1.0) for x in exact.fronts_at(part * scene["end"])]
+        assert fronts == pytest.approx(at, rel=EXPLORER), scene
+        assert stopped == [end.reason == "stops" for end in exact.front_ends[0]]
+
+
+def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(file, opened):
+    # By the exact solution, as the study of the rate term has it.
+    exact = {0.0: 3.7795, 0.4: 4.0206, 0.7: 4.4913, 0.9: 5.1196}
+    with opened(file) as page:
+        found = page.evaluate(
+            "scenes => scenes.map((scene) => new Rupture(scene, DATA.law).transition().transitionTime)",
+            [SCENE | {"alpha": alpha} for alpha in exact],
+        )
+        slip, critical, *beyond = page.evaluate(
+            """scene => { const v = 1 / frontLaw(DATA.law, scene.ratio, scene.release)(0.5); return [
+                steadyPulse({ ...scene, beta: 0, alpha: 0.4 }, v).slip, criticalRate(scene.gamma, v),
+                ...[0.99, 1.01].map((part) => (
+                    steadyPulse({ ...scene, beta: 0, alpha: part * criticalRate(scene.gamma, v) }, v) !== null))]; }""",
+            SCENE,
+        )
+    assert found == pytest.approx(list(exact.values()), rel=2e-5)
+    assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5) and beyond == [True, False]
+
+
 def test_its_front_law_and_damped_pulse_are_those_of_the_library(file, opened):
     scenes = random_scenes(400)
     with opened(file) as page:
         found = page.evaluate(
             """scenes => scenes.map((s) => {
                 const v = 1 / frontLaw(DATA.law, s.ratio, s.release)(1 - s.right);
-                return [v, steadySlip({ ...s, beta: 0.1 * s.ratio }, v)];
+                const pulse = steadyPulse({ ...s, right: s.left, beta: 0.1 * s.ratio }, v);
+                return [v, pulse.slip, pulse.width];
             })""",
             scenes,
         )
-    for scene, (speed, slip) in zip(scenes, found, strict=True):
+    for scene, (speed, slip, width) in zip(scenes, found, strict=True):
         exact = front_speed(scene["right"], scene["ratio"], scene["release"])
         assert speed == pytest.approx(exact, rel=EXPLORER_SPEED), scene
         pulse = steady_pulse(scene["left"], scene["gamma"], 0.1 * scene["ratio"], speed)
-        assert slip == pytest.approx(pulse.slip, rel=EXPLORER_SPEED), scene
+        assert [slip, width] == pytest.approx([pulse.slip, pulse.width], rel=EXPLORER_SPEED), scene
 
 
-def test_beta_over_dx_alone_sets_the_speed(file, opened):
+def test_beta_over_dx_alone_sets_the_speed_and_axes_stand_still(file, opened):
     with opened(file) as page:
 
         def speed() -> str:
             settled(page)
             return page.locator("#exact tbody tr td").first.text_content()
 
-        first = speed()
-        finer, both = page.locator("[data-beta]").all()[1:3]
+        def axes() -> list[str]:
+            return page.locator("#map > text, #velocity > text, #slip > text").all_text_contents()
+
+        first, drawn = speed(), axes()
+        finer, both = page.locator("[data-story]").all()[1:]
         finer.press("Enter")
         assert float(speed()) > float(first)
+        assert page.locator("#map .ghost").count() == 1
         both.press("Enter")
         assert speed() == first
         assert page.locator("#ratio").text_content() == "0.1"
+        page.locator("#gamma").press("End")
+        settled(page)
+        assert [text for text in axes() if "trans" not in text] == [
+            text for text in drawn if "trans" not in text
+        ]
 
 
-def test_sliders_are_named_and_work_by_keyboard_in_order_and_the_nearest_run_sets_them(file, opened, project):
-    template = (project / "src/slippulse/report/templates/explorer.html").read_text("utf-8")
+def test_every_setting_is_named_works_by_keyboard_typed_and_by_address_and_the_nearest_run_sets_them(
+    file, opened
+):
     with opened(file) as page:
         reached = []
-        for _ in range(20):
+        for _ in range(40):
             page.keyboard.press("Tab")
             reached.append(page.evaluate("document.activeElement.id"))
-        assert [name for name in reached if name in SLIDERS] == list(SLIDERS)
-        for name, ends in SLIDERS.items():
-            assert ends in template
+        assert [name for name in reached if name in SLIDERS] == SLIDERS
+        for name in SLIDERS:
             page.reload()
-            slider, shown = page.locator(f"#{name}"), page.locator(f"#{name}-shown")
-            assert page.locator(f"label[for={name}]").text_content()
-            values, pictures = {shown.text_content()}, {page.locator("#map").inner_html()}
-            for key in ("ArrowRight", "End", "Home"):
+            slider, typed = page.locator(f"#{name}"), page.locator(f"#{name}-typed")
+            assert page.locator(f"label[for={name}]").text_content() and typed.get_attribute("aria-label")
+            values, pictures = {typed.input_value()}, {page.locator("#map").inner_html()}
+            for key in ("ArrowLeft", "End", "Home"):
                 slider.press(key)
                 settled(page)
-                assert slider.get_attribute("aria-valuetext") == shown.text_content()
-                values.add(shown.text_content())
+                values.add(typed.input_value())
                 pictures.add(page.locator("#map").inner_html())
+                assert f"{name}={float(typed.input_value()):g}" in page.url
             # Spacing and damping at the end of their range may give the b that there was.
             assert len(values) == 4 and len(pictures) >= 3, name
+            typed.fill("0.4")
+            typed.press("Enter")
+            settled(page)
+            assert slider.get_attribute("aria-valuetext") == typed.input_value()
+        address = "left=0.32&right=0.32&width=1&gamma=0.5&beta=0.001&dx=0.01&alpha=0&end=12"
+        page.goto(f"{file.as_uri()}#{address}&release=elastic&held=false")
+        page.reload()
+        settled(page)
+        assert page.locator("[name=held]:checked").get_attribute("value") == "false"
+        assert not page.locator("#simulated").is_visible()
+        page.locator("[name=held][value=true]").check()
+        page.locator("[name=release][value=total]").check()
+        settled(page)
+        assert "here 0.32" in page.locator("#nearest").text_content()
         page.locator("#visit").press("Enter")
         settled(page)
-        shown = [page.locator(f"#{name}-shown").text_content() for name in SLIDERS]
+        shown = [page.locator(f"#{name}-typed").input_value() for name in SLIDERS[:6]]
         assert shown == ["0.001", "0.01", "0.3", "0.3", "1", "0.5"]
 
 
@@ -164,14 +241,9 @@ def test_everybody_can_use_it(width, scheme, file, opened, violations):
     with opened(file, width, scheme) as page:
         settled(page)
         assert violations(page) == []
-
-
-def test_without_a_run_to_compare_with_there_is_no_comparison(law, tmp_path, opened):
-    (tmp_path / "explorer.html").write_text(explorer_page(law, []), encoding="utf-8")
-    with opened(tmp_path / "explorer.html") as page:
-        settled(page)
-        assert page.locator("#exact tbody tr").count() == 6
-        assert not page.locator("#simulated").is_visible()
+        page.locator("#end").scroll_into_view_if_needed()
+        box = page.locator("#map").bounding_box()
+        assert width > 700 or (box["y"] >= -1.0 and box["y"] + box["height"] < 844), "the map stays in view"
 
 
 def test_only_runs_that_the_page_can_compute_are_shown():

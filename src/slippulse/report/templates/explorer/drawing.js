@@ -1,7 +1,5 @@
 // Pictures as SVG: axes, curves, and the map of slip velocity as an image between them.
 
-const PARTS = 32;
-
 function format(value, digits = 4) {
   if (value === null || !Number.isFinite(value)) return "–";
   const short = Number(value.toPrecision(digits));
@@ -19,7 +17,9 @@ function ticks(low, high, count = 5) {
 
 // A picture with axes, as wide as the page leaves it so that its letters keep their size.
 class Picture {
-  constructor(element, { x, y, labels, height, top: above = 12, xTicks = ticks(...x), position = (value) => value }) {
+  constructor(element, {
+    x, y, labels, height, top: above = 12, xTicks = ticks(...x), yTicks = ticks(...y), position = (value) => value, shown = format,
+  }) {
     this.element = element;
     this.width = Math.max(element.parentElement.clientWidth - 24, 240);
     this.height = height;
@@ -32,7 +32,7 @@ class Picture {
     const marks = [
       ...xTicks.map((tick) => `<text x="${this.x(tick)}" y="${bottom + 16}" text-anchor="middle">${format(tick)}</text>`
         + `<line class="axis" x1="${this.x(tick)}" x2="${this.x(tick)}" y1="${bottom}" y2="${bottom - 4}"/>`),
-      ...ticks(...y).map((tick) => `<text x="${left - 6}" y="${this.y(tick) + 4}" text-anchor="end">${format(tick)}</text>`
+      ...yTicks.map((tick) => `<text x="${left - 6}" y="${this.y(tick) + 4}" text-anchor="end">${shown(tick)}</text>`
         + `<line class="axis" x1="${left}" x2="${left + 4}" y1="${this.y(tick)}" y2="${this.y(tick)}"/>`),
     ];
     this.outside = `<path class="axis" d="M${left} ${top}V${bottom}H${right}V${top}Z"/>${marks.join("")}`
@@ -54,8 +54,10 @@ class Picture {
     this.inside.push(`<circle class="${kind}" cx="${this.x(x)}" cy="${this.y(y)}" r="${kind ? 5 : 4}"/>`);
   }
 
+  // A symbol with its subscript after "_" set as one.
   write(x, y, text, anchor = "start") {
-    this.outside += `<text class="over" x="${x}" y="${y}" text-anchor="${anchor}">${text}</text>`;
+    const set = text.replace(/_(\w+)/g, '<tspan dy="4" font-size="9">$1</tspan><tspan dy="-4"></tspan>');
+    this.outside += `<text class="over" x="${x}" y="${y}" text-anchor="${anchor}">${set}</text>`;
   }
 
   // An image between two corners of the axes, cut along an outline.
@@ -70,10 +72,10 @@ class Picture {
   scale(colours, text) {
     const { left, right } = this.box;
     // On a phone there must be room for the text.
-    const wide = Math.min(4, 0.25 * (right - left) / colours.length);
-    this.outside += colours.map((colour, k) => `<rect x="${left + wide * k}" y="6" width="${wide + 0.5}" height="10"`
-      + ` fill="rgb(${colour})"/>`).join("");
-    this.write(left + wide * colours.length + 8, 15, text);
+    const wide = Math.min(128, 0.25 * (right - left)) / 64;
+    this.outside += Array.from({ length: 64 }, (_, k) => `<rect x="${left + wide * k}" y="6" width="${wide + 0.5}" height="10"`
+      + ` fill="rgb(${colours[Math.floor(colours.length * k / 64)]})"/>`).join("");
+    this.write(left + 64 * wide + 8, 15, text);
   }
 
   // Show it; what it says is its alternative text.
@@ -87,8 +89,8 @@ class Picture {
   }
 }
 
-// At even positions between the fronts of a time: arrival, end of sliding, and slip velocity at even steps between.
-function columns(rupture, end, count = 181) {
+// At even positions between the fronts of a time: arrival, times and slip velocities from there on, end of sliding.
+function columns(rupture, end, count = 121) {
   const [low, high] = rupture.fronts(end);
   const half = (count - 1) / 2;
   const found = [];
@@ -98,12 +100,8 @@ function columns(rupture, end, count = 181) {
       found.push({ ...found[count - 1 - k], y });
       continue;
     }
-    const start = rupture.arrival(y);
-    const stick = rupture.stick(y, end);
-    const stop = Math.min(stick, end);
-    const velocity = Array.from({ length: PARTS + 1 }, (_, n) => (
-      n === 0 || stop <= start ? 0 : Math.max(rupture.velocity(y, start + (stop - start) * n / PARTS), 0)));
-    found.push({ y, start, stick, stop, velocity });
+    const { times, values, stick } = rupture.history(y, end);
+    found.push({ y, start: times[0], stick, stop: Math.min(stick, end), times, values });
   }
   return found;
 }
@@ -115,17 +113,32 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
   const context = canvas.getContext("2d");
   const image = context.createImageData(pixels, found.length);
   const margin = 6 * end / pixels;
-  found.forEach(({ start, stop, velocity }, k) => {
+  found.forEach(({ start, stop, times, values }, k) => {
+    let m = 0;
+    // As far as the outline reaches towards the neighbours.
+    const beside = [found[k - 1], found[k + 1]].filter(Boolean);
+    const first = Math.min(start, ...beside.map((column) => column.start)) - margin;
+    const last = Math.max(stop, ...beside.map((column) => column.stop)) + margin;
     for (let n = 0; n < pixels; n++) {
       const time = (n + 0.5) * end / pixels;
-      if (time < start - margin || time > stop + margin) continue;
-      const fraction = PARTS * Math.min(Math.max((time - start) / (stop - start), 0), 0.999);
-      const low = Math.floor(fraction);
-      const value = velocity[low] + (fraction - low) * (velocity[low + 1] - velocity[low]);
-      const colour = colours[Math.min(Math.floor(colours.length * value / largest), colours.length - 1)];
-      image.data.set([...colour, 255], 4 * ((found.length - 1 - k) * pixels + n));
+      if (time < first || time > last) continue;
+      while (m < times.length - 2 && times[m + 1] < time) m++;
+      const fraction = Math.min(Math.max((time - times[m]) / (times[m + 1] - times[m]), 0), 1);
+      const value = times.length > 1 ? values[m] + fraction * (values[m + 1] - values[m]) : 0;
+      const at = 4 * ((found.length - 1 - k) * pixels + n);
+      const colour = colours[Math.min(Math.floor(colours.length * Math.max(value, 0) / largest), colours.length - 1)];
+      [image.data[at], image.data[at + 1], image.data[at + 2], image.data[at + 3]] = [...colour, 255];
     }
   });
   context.putImageData(image, 0, 0);
   return canvas.toDataURL();
+}
+
+// Colours between those given, so that none ends where another begins.
+function smoothed(colours, count = 256) {
+  return Array.from({ length: count }, (_, n) => {
+    const position = (colours.length - 1) * n / (count - 1);
+    const k = Math.min(Math.floor(position), colours.length - 2);
+    return colours[k].map((part, i) => Math.round(part + (position - k) * (colours[k + 1][i] - part)));
+  });
 }

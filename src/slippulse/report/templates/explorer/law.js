@@ -31,9 +31,18 @@ function hermite(fraction, length, value0, value1, slope0, slope1) {
     + fraction * fraction * ((1 + 2 * rest) * value1 - rest * length * slope1);
 }
 
+// Laws that were asked for, since they take longer to make than to use.
+const LAWS = new Map();
+
 // 1/v as a function of 1 - tau (which does not cancel near the peak), at one b under one release rule.
 function frontLaw(table, ratio, release) {
-  if (ratio === 0) return (rest) => Math.sqrt(rest * (2 - rest));
+  const key = `${release} ${ratio}`;
+  if (!LAWS.has(key)) LAWS.set(key, makeLaw(table, ratio, release));
+  return LAWS.get(key);
+}
+
+function makeLaw(table, ratio, release) {
+  if (ratio === 0) return (rest) => (rest >= 1 ? 1 : Math.sqrt(rest * (2 - rest)));
   const position = Math.asinh(ratio / table.ratio.scale) / table.ratio.step;
   const count = table[release][0].length;
   const { first, step } = table.excess;
@@ -46,12 +55,13 @@ function frontLaw(table, ratio, release) {
   const last = inner.length - 1;
   return (rest) => {
     if (rest <= 0) return 0;
+    if (rest >= 1) return 1;
     const target = Math.log((1 - rest) / rest);
     const k = cell(inner, target);
     const length = inner[k + 1] - inner[k];
     const low = first + (k + 2) * step;
-    const excess = target > inner[last]
-      ? low + step + (target - inner[last]) * slope[last + 2]
+    const excess = target > inner[last] ? low + step + (target - inner[last]) * slope[last + 2]
+      : target < inner[0] ? low + (target - inner[0]) * slope[2]
       : hermite((target - inner[k]) / length, length, low, low + step, slope[k + 2], slope[k + 3]);
     return 1 / (1 + Math.exp(excess));
   };

@@ -1,8 +1,9 @@
-// The exact rupture under a displacement boundary in the continuum limit dx -> 0 at fixed b = beta/dx.
+// The exact rupture in the continuum limit dx -> 0 at fixed b = beta/dx, held (gamma > 0) or under a stress (gamma = 0),
+// with a term -alpha du/dt of friction that strengthens (alpha > 0) or weakens with slip rate.
 //
-// Fronts are at t = T(x), the integral of 1/v(tau, b). Behind them, with J0 inside the past cone of (y, t),
-//   du/dt = 1/2 Int tau(x) J0( sqrt(gamma) sqrt((t - T(x))^2 - (x - y)^2) ) dx,
-// and y sticks at the first zero of du/dt. Both pre-stress levels must be positive.
+// Where tau > 0 fronts are at t = T(x), the integral of 1/v(tau, b). Behind them, with k^2 = gamma - alpha^2/4,
+//   du/dt = 1/2 Int tau(x) exp(-alpha (t - T(x))/2) J0( k sqrt((t - T(x))^2 - (x - y)^2) ) dx over the past of (y, t),
+// and y sticks at the first zero of du/dt. Where tau < 0 a front is slower than the waves and du/dt = 0 on it.
 
 // Nodes and weights of Gauss and Legendre on [-1, 1].
 function gauss(count) {
@@ -21,8 +22,9 @@ function gauss(count) {
   return nodes;
 }
 
-const NODES = gauss(12);
-const [FEW, MANY] = [gauss(4), gauss(40)];
+const NODES = gauss(10);
+const FEW = gauss(4);
+const MANY = gauss(32);
 
 function integral(integrand, low, high, nodes = NODES) {
   const half = 0.5 * (high - low);
@@ -42,34 +44,42 @@ function rootBetween(f, low, high, atLow = f(low), atHigh = f(high)) {
   return high;
 }
 
-// J0(sqrt z), tabulated with its slope by z: means over an angle, exact to rounding up to sqrt z = 60.
+// J0(sqrt z), for z < 0 I0(sqrt(-z)), tabulated with its slope by z: means over an angle, up to |z| = 60^2.
 const BESSEL = { step: 0.25, last: 3600, value: [], slope: [] };
-for (let z = 0; z <= BESSEL.last; z += BESSEL.step) {
-  const root = Math.sqrt(z);
+for (let z = -BESSEL.last; z <= BESSEL.last; z += BESSEL.step) {
+  const root = Math.sqrt(Math.abs(z));
+  const [even, odd] = z < 0 ? [Math.cosh, Math.sinh] : [Math.cos, Math.sin];
   let value = 0;
   let slope = 0;
   for (let k = 0; k < 64; k++) {
     const sine = Math.sin((k + 0.5) * Math.PI / 64);
-    value += Math.cos(root * sine) / 64;
-    slope -= (root > 0 ? Math.sin(root * sine) / root : sine) * sine / 128;
+    value += even(root * sine) / 64;
+    slope -= (root > 0 ? odd(root * sine) / root : sine) * sine / 128;
   }
   BESSEL.value.push(value);
   BESSEL.slope.push(slope);
 }
+const VALUES = Float64Array.from(BESSEL.value);
+const SLOPES = Float64Array.from(BESSEL.slope);
 
 function bessel(z) {
-  const position = Math.min(Math.max(z, 0), BESSEL.last - 1) / BESSEL.step;
+  const position = (Math.min(Math.max(z, -BESSEL.last), BESSEL.last - 1) + BESSEL.last) * 4;
   const k = Math.floor(position);
-  const { step, value, slope } = BESSEL;
-  return hermite(position - k, step, value[k], value[k + 1], slope[k], slope[k + 1]);
+  const f = position - k;
+  const rest = 1 - f;
+  return rest * rest * ((1 + 2 * f) * VALUES[k] + 0.25 * f * SLOPES[k])
+    + f * f * ((1 + 2 * rest) * VALUES[k + 1] - 0.25 * rest * SLOPES[k + 1]);
 }
 
-// The front on one side, seen going away from x = 0: T by distance, and where T + x or T - x has a value.
+// The front on one side, seen going away from x = 0: T by distance, and where T + x or T - x has a value. Its nodes reach
+// as far as it outruns the waves; where tau < 0 `Rupture.march` adds more.
 class Front {
   constructor(level, width, law) {
-    Object.assign(this, { level, width, cells: 240, extent: 7 * width });
-    this.rest = (x) => -(1 - level) * Math.expm1(-0.5 * (x / width) ** 2);
-    this.slowness = law(1 - level);
+    Object.assign(this, { level, width, cells: 240 });
+    this.rest = (x) => (1 - level) * -Math.expm1(-0.5 * (x / width) ** 2);
+    this.slowness = level > 0 ? law(1 - level) : 1;
+    // The zero of tau, or where tau is its level.
+    this.extent = level < 0 ? width * Math.sqrt(2 * Math.log((1 - level) / -level)) : 7 * width;
     const slowness = (x) => law(this.rest(x));
     // Nodes are denser near the peak, where the front is fastest.
     this.x = Array.from({ length: this.cells + 1 }, (_, k) => this.extent * (k / this.cells) ** 2);
@@ -79,6 +89,7 @@ class Front {
       this.time.push(this.time[k] + integral(slowness, this.x[k], this.x[k + 1], FEW));
     }
     this.sums = { 1: this.time.map((t, k) => t + this.x[k]), [-1]: this.time.map((t, k) => t - this.x[k]) };
+    this.slow = level < 0 ? { x: [this.extent], time: [this.time[this.cells]], stopped: false } : null;
   }
 
   within(k, x) {
@@ -88,8 +99,13 @@ class Front {
   }
 
   arrival(x) {
-    if (x >= this.extent) return this.time[this.cells] + this.slowness * (x - this.extent);
-    return this.within(Math.floor(this.cells * Math.sqrt(x / this.extent)), x);
+    if (x < this.extent) return this.within(Math.floor(this.cells * Math.sqrt(x / this.extent)), x);
+    if (!this.slow) return this.time[this.cells] + this.slowness * (x - this.extent);
+    const { x: at, time } = this.slow;
+    const last = at.length - 1;
+    if (last === 0 || x > at[last]) return x > at[last] ? Infinity : time[last];
+    const k = cell(at, x);
+    return time[k] + (time[k + 1] - time[k]) * (x - at[k]) / (at[k + 1] - at[k]);
   }
 
   // The distance x at which T + sign x has a value; with sign 0, at which T has it.
@@ -97,7 +113,21 @@ class Front {
     const sums = this.sums[sign] || this.time;
     const direction = sign < 0 ? -1 : 1;
     const beyond = target - sums[this.cells];
-    if (direction * beyond >= 0) return this.extent + beyond / (this.slowness + sign);
+    if (direction * beyond >= 0) {
+      if (!this.slow) return this.extent + (this.slowness + sign === 0 ? 0 : beyond / (this.slowness + sign));
+      const { x, time } = this.slow;
+      const last = x.length - 1;
+      if (sign < 0 || last === 0) return this.extent;
+      if (target >= time[last] + sign * x[last]) return x[last];
+      let [low, high] = [0, last];
+      while (high - low > 1) {
+        const middle = (low + high) >> 1;
+        if (time[middle] + sign * x[middle] <= target) low = middle;
+        else high = middle;
+      }
+      const [first, second] = [time[low] + sign * x[low], time[high] + sign * x[high]];
+      return x[low] + (x[high] - x[low]) * (target - first) / (second - first);
+    }
     const k = cell(sums, target, direction);
     const [low, high] = [this.x[k], this.x[k + 1]];
     let x = low + (high - low) * (target - sums[k]) / (sums[k + 1] - sums[k]);
@@ -105,24 +135,69 @@ class Front {
       const fraction = (x - low) / (high - low);
       const slope = this.slope[k] + fraction * (this.slope[k + 1] - this.slope[k]) + sign;
       if (slope === 0) break;
-      x = Math.min(Math.max(x - (this.within(k, x) + sign * x - target) / slope, low), high);
+      const change = (this.within(k, x) + sign * x - target) / slope;
+      x = Math.min(Math.max(x - change, low), high);
+      if (Math.abs(change) < 1e-12 * high) break;
     }
     return x;
   }
 }
 
 class Rupture {
-  // left, right: pre-stress levels in (0, 1); gamma > 0; width of the peak; ratio b; release "total" or "elastic".
-  constructor({ left, right, gamma, width, ratio, release }, table) {
+  // left, right: levels below 1; gamma, 0 under a stress; width of the peak; ratio b; release rule; alpha; until a time.
+  constructor({ left, right, gamma, width, ratio, release, alpha = 0, end = Infinity }, table) {
     const law = frontLaw(table, ratio, release);
-    this.gamma = gamma;
-    this.width = width;
+    Object.assign(this, { gamma, width, alpha, squared: gamma - 0.25 * alpha * alpha });
     this.right = new Front(right, width, law);
     this.left = left === right ? this.right : new Front(left, width, law);
     this.symmetric = left === right;
-    this.period = Math.PI / Math.sqrt(gamma);
+    this.period = gamma > 0 ? Math.PI / Math.sqrt(gamma) : Infinity;
+    this.end = Number.isFinite(end) ? end : 6 * this.period;
     const steps = [1, 2.5, 4.5].map((factor) => factor * width);
     this.breaks = [...steps.map((x) => -x).reverse(), 0, ...steps];
+    for (const [front, sign] of [[this.left, -1], [this.right, 1]]) {
+      if (front.slow) this.breaks.push(sign * front.extent);
+    }
+    this.breaks.sort((a, b) => a - b);
+    if (this.left.slow || this.right.slow) this.march();
+  }
+
+  // Where tau < 0: the positions at which du/dt = 0 at a time, from step to step; a front stops where nothing slides on.
+  march(count = 200) {
+    const sides = (this.symmetric ? [[this.right, 1]] : [[this.left, -1], [this.right, 1]]).filter(([front]) => front.slow);
+    const start = Math.min(...sides.map(([front]) => front.time[front.cells]));
+    for (let n = 1; n <= count; n++) {
+      // Short steps first, where a front still runs at the speed of the waves.
+      const time = start + (this.end - start) * (n / count) ** 1.5;
+      for (const [front, sign] of sides) {
+        const { slow } = front;
+        const last = slow.x.length - 1;
+        const step = time - slow.time[last];
+        if (slow.stopped || step <= 0) continue;
+        const from = slow.x[last];
+        const rate = (x) => {
+          slow.x[last + 1] = Math.max(x, from * (1 + 1e-13));
+          return this.velocity(sign * slow.x[last + 1], time);
+        };
+        slow.time.push(time);
+        // Secants from where it was, and from where it would be at its last speed.
+        let [x0, rate0] = [from, rate(from)];
+        if (rate0 <= 0) {
+          slow.stopped = true;
+          slow.x.length = slow.time.length = last + 1;
+          continue;
+        }
+        let x = from + step * (last ? (from - slow.x[last - 1]) / (slow.time[last] - slow.time[last - 1]) : 0.9);
+        for (let turn = 0; turn < 8; turn++) {
+          const rate1 = rate(x);
+          const next = rate1 === rate0 ? x : Math.min(Math.max(x - rate1 * (x - x0) / (rate1 - rate0), from), from + step);
+          [x0, rate0] = [x, rate1];
+          if (Math.abs(next - x) < 1e-7 * step) break;
+          x = next;
+        }
+        slow.x[last + 1] = Math.max(x, from * (1 + 1e-12));
+      }
+    }
   }
 
   side(x) {
@@ -142,77 +217,111 @@ class Rupture {
     const [behind, ahead] = [time - y, time + y];
     const from = behind >= 0 ? -this.left.where(1, behind) : this.right.where(-1, behind);
     const to = ahead >= 0 ? this.right.where(1, ahead) : -this.left.where(-1, ahead);
+    const { alpha, squared, breaks } = this;
+    // Without leaf springs and rate term the kernel is 1.
+    const flat = alpha === 0 && squared === 0;
+    // With a rate term the kernel is large near the ends alone.
+    const longest = alpha === 0 ? Infinity : Math.max(2 / Math.abs(alpha), 0.5);
     let sum = 0;
     let low = from;
-    for (const high of [...this.breaks.filter((x) => x > from && x < to), to]) {
-      const front = this.side(0.5 * (low + high));
-      const half = 0.5 * (high - low);
-      for (const node of NODES) {
-        const x = low + half * (1 + node.x);
-        const distance = Math.abs(x);
-        const late = time - front.arrival(distance);
-        sum += half * node.weight * (1 - front.rest(distance))
-          * bessel(this.gamma * (late - x + y) * (late + x - y));
+    for (let piece = 0; low < to;) {
+      const high = piece < breaks.length ? breaks[piece] : to;
+      if (high <= low) {
+        piece++;
+        continue;
       }
-      low = high;
+      const top = Math.min(high, to, low + longest);
+      const front = this.side(0.5 * (low + top));
+      const half = 0.5 * (top - low);
+      for (let n = 0; n < NODES.length; n++) {
+        const x = low + half * (1 + NODES[n].x);
+        const distance = Math.abs(x);
+        let kernel = 1;
+        if (!flat) {
+          const late = time - front.arrival(distance);
+          kernel = bessel(squared * (late - x + y) * (late + x - y));
+          if (alpha !== 0) kernel *= Math.exp(-0.5 * alpha * late);
+        }
+        sum += half * NODES[n].weight * (1 - front.rest(distance)) * kernel;
+      }
+      low = top;
     }
     return 0.5 * sum;
   }
 
-  // When y sticks; infinite if not until a time.
-  stick(y, until = 6 * this.period) {
-    const start = this.arrival(y);
+  // Slip velocity at y at rising times from its release on, until it sticks (infinite if not until a time).
+  history(y, until = this.end) {
+    const [times, values, start] = [[this.arrival(y)], [0], this.arrival(y)];
     const front = this.side(y);
     const slowness = y === 0 ? 0 : front.slope[Math.min(front.cells, cell(front.x, Math.abs(y)))];
-    let step = 0.06 * this.period * Math.max(Math.sqrt(1 - slowness * slowness), 0.01);
-    let [before, valueBefore] = [start, NaN];
-    while (before < until) {
-      const time = before + step;
+    const longest = Math.min(0.06 * this.period, (until - start) / 24 + 1e-9);
+    let step = longest * Math.max(Math.sqrt(1 - Math.min(slowness, 1) ** 2), 0.02);
+    let time = start;
+    // What the positions of a slow front are off by.
+    const error = front.slow && Math.abs(y) > front.extent ? 3e-4 * this.width : 0;
+    let slid = false;
+    while (time < until) {
+      time = Math.min(time + step, until);
       const value = this.velocity(y, time);
-      if (value <= 0) return rootBetween((t) => this.velocity(y, t), before, time, valueBefore, value);
-      [before, valueBefore] = [time, value];
-      step = Math.min(1.1 * step, 0.06 * this.period);
+      if (value <= -error && slid) {
+        const before = values.at(-1);
+        const stick = before > 0 ? rootBetween((t) => this.velocity(y, t), times.at(-1), time, before, value) : times.at(-1);
+        return { times: [...times, stick], values: [...values, 0], stick };
+      }
+      // Just behind a slow front velocities are as small as the error.
+      slid ||= value > 0;
+      times.push(time);
+      values.push(Math.max(value, 0));
+      step = Math.min(1.15 * step, longest);
     }
-    return Infinity;
+    // Where a front stops nothing slides.
+    return slid || !front.slow?.stopped ? { times, values, stick: Infinity } : { times: [start, start], values: [0, 0], stick: start };
   }
 
-  slip(y, time) {
+  stick(y, until = this.end) {
+    return this.history(y, until).stick;
+  }
+
+  slip(y, time, nodes = MANY) {
     const start = this.arrival(y);
-    return time <= start ? 0 : integral((t) => this.velocity(y, t), start, time, MANY);
+    return time <= start ? 0 : integral((t) => this.velocity(y, t), start, time, nodes);
   }
 
-  // The first sticking: at the centre of a symmetric scene, else where the stick time is least.
+  // The first sticking: at the centre of a symmetric scene, else where the stick time is least; null if there is none.
   firstStick() {
-    const centre = { x: 0, time: this.stick(0) };
-    if (this.symmetric) return centre;
-    const step = centre.time / 40;
-    const found = Array.from({ length: 41 }, (_, k) => ({ x: (k - 20) * step }));
-    for (const point of found) point.time = point.x === 0 ? centre.time : this.stick(point.x, 1.2 * centre.time);
-    const least = found.reduce((a, b) => (b.time < a.time ? b : a));
-    // Golden section between the neighbours.
-    const golden = 0.5 * (Math.sqrt(5) - 1);
-    let [low, high] = [least.x - step, least.x + step];
-    let best = least;
-    for (let turn = 0; turn < 18; turn++) {
-      const [a, b] = [high - golden * (high - low), low + golden * (high - low)]
-        .map((x) => ({ x, time: this.stick(x, 1.2 * centre.time) }));
-      for (const point of [a, b]) if (point.time < best.time) best = point;
-      if (a.time < b.time) high = b.x;
-      else low = a.x;
+    if (this.symmetric) {
+      const time = this.stick(0);
+      return Number.isFinite(time) ? { x: 0, time } : null;
     }
-    return best;
+    const [low, high] = this.fronts(this.end);
+    let step = (high - low) / 60;
+    let best = { x: 0, time: this.stick(0) };
+    for (let x = low + 0.5 * step; x < high; x += step) {
+      const time = this.stick(x, Math.min(best.time, this.end));
+      if (time < best.time) best = { x, time };
+    }
+    // Parabolas through three neighbours.
+    for (let turn = 0; turn < 4 && Number.isFinite(best.time); turn++, step *= 0.35) {
+      const [before, after] = [best.x - step, best.x + step].map((x) => this.stick(x));
+      const bend = before - 2 * best.time + after;
+      if (!(bend > 0)) continue;
+      const x = best.x + 0.5 * step * (before - after) / bend;
+      const time = this.stick(x);
+      if (time < best.time) best = { x, time };
+    }
+    return Number.isFinite(best.time) ? best : null;
   }
 
-  // Speeds, the first sticking, and how far apart the fronts are then.
+  // Speeds, the first sticking, and how far apart the fronts are then; no times where nothing sticks.
   transition() {
     const first = this.firstStick();
-    const [left, right] = this.fronts(first.time);
+    const [left, right] = first ? this.fronts(first.time) : [NaN, NaN];
     return {
       speed: 1 / this.right.slowness,
       speedLeft: 1 / this.left.slowness,
-      transitionTime: first.time,
+      transitionTime: first ? first.time : NaN,
       transitionLength: right - left,
-      firstStick: first.x,
+      firstStick: first ? first.x : 0,
     };
   }
 
@@ -225,14 +334,29 @@ class Rupture {
   }
 }
 
-// Slip of the steady pulse at finite damping: (tau_0/gamma)(1 + exp(-pi p/q)), where p +- i q are the complex roots of
-// beta v z^3 + (v^2 - 1) z^2 + gamma = 0.
-function steadySlip({ left, gamma, beta }, speed) {
-  const [damping, stiffness] = [beta * speed, speed * speed - 1];
-  if (damping === 0) return 2 * left / gamma;
-  const cubic = (z) => (damping * z + stiffness) * z * z + gamma;
-  const real = rootBetween(cubic, -stiffness / damping - Math.cbrt(gamma / damping), -stiffness / damping);
-  const growth = -0.5 * (stiffness / damping + real);
-  const wavenumber = Math.sqrt(-gamma / (damping * real) - growth * growth);
-  return left / gamma * (1 + Math.exp(-Math.PI * growth / wavenumber));
+// The steady pulse at finite damping, u = (tau/gamma) (1 - exp(p xi) (cos q xi - p/q sin q xi)) behind its front, where p +- i q
+// are the complex roots of beta v z^3 + (v^2 - 1) z^2 - alpha v z + gamma = 0; null where there are none.
+function steadyPulse({ right: tau, gamma, beta, alpha = 0 }, speed) {
+  const [damping, stiffness, rate] = [beta * speed, speed * speed - 1, alpha * speed];
+  let [p, squared] = [0.5 * rate / stiffness, gamma / stiffness];
+  if (damping > 0) {
+    const cubic = (z) => ((damping * z + stiffness) * z - rate) * z + gamma;
+    const reach = (stiffness + Math.sqrt(Math.abs(rate * damping))) / damping + Math.cbrt(gamma / damping);
+    const real = rootBetween(cubic, -2 * reach, Math.min(0, 0.5 * rate / stiffness));
+    [p, squared] = [-0.5 * (stiffness / damping + real), -gamma / (damping * real)];
+  }
+  if (!(squared > p * p)) return null;
+  const q = Math.sqrt(squared - p * p);
+  const scale = tau / gamma;
+  return {
+    width: Math.PI / q,
+    slip: scale * (1 + Math.exp(-Math.PI * p / q)),
+    velocityAt: (distance) => speed * scale * (squared / q) * Math.exp(-p * distance) * Math.sin(q * distance),
+    slipAt: (distance) => scale * (1 - Math.exp(-p * distance) * (Math.cos(q * distance) + p / q * Math.sin(q * distance))),
+  };
+}
+
+// The rate term at which steady pulses end: q = 0 without damping.
+function criticalRate(gamma, speed) {
+  return 2 * Math.sqrt(gamma * (1 - 1 / (speed * speed)));
 }
