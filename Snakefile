@@ -59,7 +59,9 @@ include: "workflow/rules/targets.smk"
 
 onsuccess:
     say_outdated()
+    end_timers()
 
 
 onerror:
     say_outdated()
+    end_timers()

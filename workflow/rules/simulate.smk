@@ -25,7 +25,7 @@ rule simulate:
         data="results/data/{simulation}.nc",
     log:
         "results/logs/simulate/{simulation}.log",
-    # Before what only draws: the claims wait for the last of the measurements.
+    # Before what only draws, as all that the claims wait for: the report waits for them.
     priority: 1
     threads: job_threads
     resources:
@@ -63,6 +63,7 @@ rule predict:
         predicted="results/predictions/{simulation}.csv",
     log:
         "results/logs/predict/{simulation}.log",
+    priority: 1
     params:
         step="predict",
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),

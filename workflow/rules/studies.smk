@@ -21,6 +21,7 @@ for study in ALL_STUDIES:
             table=f"results/studies/{study}.csv",
         log:
             f"results/logs/studies/{study}.log",
+        priority: 1
         resources:
             runtime=20,
         params:

@@ -4,6 +4,7 @@
 import json
 import math
 import shlex
+import threading
 import time
 from contextlib import suppress
 from types import SimpleNamespace
@@ -174,6 +175,13 @@ def say_outdated():
         )
 
 
+def end_timers():
+    """Of Snakemake, which would look for jobs again: its process would last until each is due."""
+    for thread in threading.enumerate():
+        if isinstance(thread, threading.Timer):
+            thread.cancel()
+
+
 def renewal():
     """The command that makes everything as this run was called."""
     if "MAKELEVEL" not in os.environ:
@@ -213,6 +221,8 @@ try:
             for name in FAULTY:
                 Path("results", name).unlink()
             settle_times(WANTED)
+            if not all(Path("results", name).exists() for name in WANTED):
+                JOBS.begin()
             write_text(json.dumps({"options": OPTIONS, "targets": targets}), Path("results", CALL))
 except ConfigError as error:
     refuse(str(error))

@@ -60,6 +60,11 @@ class Jobs:
         # A process that starts looks after those that have ended: not while another thread does.
         self._turn = Lock()
 
+    def begin(self) -> None:
+        """Load the libraries while Snakemake still plans."""
+        if sys.platform == "linux":
+            Thread(target=self._wait_for, args=(self._processes.Process(),), daemon=True).start()
+
     def run(self, *job) -> None:
         """Run a job, given as `run_job` takes it.
 
@@ -67,7 +72,9 @@ class Jobs:
         ------
         JobFailed
         """
-        process: BaseProcess = self._processes.Process(target=run_job, args=job)
+        self._wait_for(self._processes.Process(target=run_job, args=job))
+
+    def _wait_for(self, process: BaseProcess) -> None:
         try:
             with self._turn:
                 process.start()

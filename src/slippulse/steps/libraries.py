@@ -13,10 +13,12 @@ import h5netcdf  # noqa: F401
 import matplotlib.backends.backend_pdf
 import matplotlib.pyplot  # noqa: F401
 import numba
+import scipy.optimize
 import scipy.special  # noqa: F401
-import xarray  # noqa: F401
+import xarray
 
-# The first function compiled loads most of numba.
+# The first function compiled loads most of numba, the first file written most of xarray.
 numba.njit(lambda: 0)()
+xarray.Dataset().to_netcdf(engine="h5netcdf")
 # Memory that nobody touches is shared with every job.
 gc.freeze()
