@@ -91,20 +91,23 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
     if len(kept) > 2:
         out["row_size"] = ("point", np.array([result.sizes["x"] for result in results]))
         for name in kept:
-            out[name] = ("block", np.concatenate([result[name].values for result in results]))
+            out[name] = ("block", np.concatenate([result.variables[name].values for result in results]))
     if "samples" in record:
         out["sample_time"] = (
             ("point", "time"),
-            np.stack([result["sample_time"].values for result in results]),
+            np.stack([result.variables["sample_time"].values for result in results]),
         )
         out["sample_position"] = (
             ("point", "position"),
-            np.stack([result["sample_position"].values for result in results]),
+            np.stack([result.variables["sample_position"].values for result in results]),
         )
         for name in ("sample_slip", "sample_velocity"):
-            out[name] = (("point", "time", "position"), np.stack([result[name].values for result in results]))
-    for name in out.variables:
-        out[name].attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
+            out[name] = (
+                ("point", "time", "position"),
+                np.stack([result.variables[name].values for result in results]),
+            )
+    for name, variable in out.variables.items():
+        variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
     out.attrs = FILE | {"versions": first.attrs["versions"]}
     if "row_size" in out:
         # CF's contiguous ragged array: the profiles of the runs over x, one after the other.

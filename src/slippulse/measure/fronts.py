@@ -19,7 +19,7 @@ def path(run: xr.Dataset, side: str = "right", edge: str = "release_time") -> tu
     -------
     times, distances : shape (n,), in order of distance; blocks without the event are left out
     """
-    x, time = run["x"].values, run[edge].values
+    x, time = run.variables["x"].values, run.variables[edge].values
     sign = 1.0 if side == "right" else -1.0
     chosen = np.isfinite(time) & (sign * x >= 0.0)
     distance, time = sign * x[chosen], time[chosen]

@@ -45,8 +45,8 @@ def leading_pulse(run: xr.Dataset, window: float) -> LeadingPulse:
     speed, _, _ = front_speed(run, window)
     release, distance = path(run)
     front = float(distance[-1] + speed * (end - release[-1])) if distance.size else NAN
-    right = run["x"].values >= 0.0
-    r, velocity, slip = (run[name].values[right] for name in ("x", "slip_velocity", "slip"))
+    right = run.variables["x"].values >= 0.0
+    r, velocity, slip = (run.variables[name].values[right] for name in ("x", "slip_velocity", "slip"))
     peak, at = parabola_peak(r, velocity)
 
     stick, stuck = path(run, edge="stick_time")
@@ -83,9 +83,11 @@ def comoving(run: xr.Dataset, pulse: LeadingPulse) -> dict[str, np.ndarray]:
     -------
     dict of xi = distance - front <= 0 behind it, slip, slip_velocity, slip_acceleration
     """
-    right = run["x"].values >= 0.0
+    right = run.variables["x"].values >= 0.0
     names = ("slip", "slip_velocity", "slip_acceleration")
-    return {"xi": run["x"].values[right] - pulse.front} | {name: run[name].values[right] for name in names}
+    return {"xi": run.variables["x"].values[right] - pulse.front} | {
+        name: run.variables[name].values[right] for name in names
+    }
 
 
 def acceleration_amplitude(run: xr.Dataset, pulse: LeadingPulse) -> float:

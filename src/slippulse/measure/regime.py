@@ -42,18 +42,18 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or *decaying* by the change of its largest
     velocity over the last third.
     """
-    times, velocity = run["sample_time"].values, run["sample_velocity"].values
+    times, velocity = run.variables["sample_time"].values, run.variables["sample_velocity"].values
     before = velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))]
     largest_before = float(np.max(before))
     change = float(np.max(velocity[-1])) / largest_before - 1.0 if largest_before > 0.0 else -1.0
     if "slip_velocity" in run:
-        x, now = run["x"].values, run["slip_velocity"].values
+        x, now = run.variables["x"].values, run.variables["slip_velocity"].values
     else:
-        x, now = run["sample_position"].values, velocity[-1]
+        x, now = run.variables["sample_position"].values, velocity[-1]
     largest_now = float(np.max(now))
     largest_ever = max(largest_now, float(np.max(velocity)))
     centre = float(now[int(np.argmin(np.abs(x)))])
-    release = run["release_time"].values
+    release = run.variables["release_time"].values
     released = release[np.isfinite(release)]
     latest = float(np.max(released)) if released.size else 0.0
 

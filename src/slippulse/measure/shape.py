@@ -35,7 +35,9 @@ def lattice_noise(run: xr.Dataset) -> float:
 
     Over the blocks that slide, without the two at each end, where the velocity has corners.
     """
-    moving = run["slip_velocity"].values[(run["x"].values >= 0.0) & (run["slip_velocity"].values > 0.0)]
+    moving = run.variables["slip_velocity"].values[
+        (run.variables["x"].values >= 0.0) & (run.variables["slip_velocity"].values > 0.0)
+    ]
     if moving.size < FEWEST:
         return NAN
     # Gain 1 for waves of two blocks, sin^4(pi/n) for waves of n.
@@ -46,8 +48,8 @@ def lattice_noise(run: xr.Dataset) -> float:
 def sliding_at_once(run: xr.Dataset) -> float:
     """Largest number of blocks on the right that slide at once, over the second half of a run."""
     start = 0.5 * run.attrs["end_time"]
-    chosen = (run["x"].values > 0.0) & np.isfinite(run["release_time"].values)
-    release, stick = run["release_time"].values[chosen], run["stick_time"].values[chosen]
+    chosen = (run.variables["x"].values > 0.0) & np.isfinite(run.variables["release_time"].values)
+    release, stick = run.variables["release_time"].values[chosen], run.variables["stick_time"].values[chosen]
     # The number rises at a release only, so that it is largest right after one, or at the start. NaN is sorted last.
     times = np.append(start, release[release > start])
     released, stuck = (np.searchsorted(np.sort(when), times, side="right") for when in (release, stick))
@@ -71,10 +73,10 @@ def far_field(run: xr.Dataset) -> dict[str, float]:
     start = max(
         [FAR * run.attrs["width"], *(abs(position) for position, _ in prestress_from(run.attrs).steps)]
     )
-    times, x = run["sample_time"].values, run["sample_position"].values
+    times, x = run.variables["sample_time"].values, run.variables["sample_position"].values
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     moved = float(times[-1] - times[early])
-    velocity, slip = run["sample_velocity"].values, run["sample_slip"].values
+    velocity, slip = run.variables["sample_velocity"].values, run.variables["sample_slip"].values
     far = x >= start
     if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
         return out

@@ -46,8 +46,8 @@ def slip_time(run: xr.Dataset, slip: float) -> float:
     """When slip at the sampled position nearest x = 0 reaches a value; NaN if never or if nothing was sampled."""
     if "sample_slip" not in run:
         return NAN
-    centre = int(np.argmin(np.abs(run["sample_position"].values)))
-    history, times = run["sample_slip"].values[:, centre], run["sample_time"].values
+    centre = int(np.argmin(np.abs(run.variables["sample_position"].values)))
+    history, times = run.variables["sample_slip"].values[:, centre], run.variables["sample_time"].values
     beyond = np.flatnonzero(history >= slip)
     if beyond.size == 0:
         return NAN

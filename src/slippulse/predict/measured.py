@@ -68,7 +68,9 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
     if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
     _, distance = path(run)
-    tau = float(run["prestress"].values[np.argmin(np.abs(run["x"].values - distance[-1]))])
+    tau = float(
+        run.variables["prestress"].values[np.argmin(np.abs(run.variables["x"].values - distance[-1]))]
+    )
     if not 0.0 < tau < 1.0:
         return "none"
     if pulse.speed <= 1.0:

@@ -34,8 +34,8 @@ def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dat
         data["sample_slip"] = (("sample_time", "sample_position"), run.sample_slip)
         data["sample_velocity"] = (("sample_time", "sample_position"), run.sample_velocity)
     dataset = xr.Dataset(data, coords=coordinates)
-    for name in dataset.variables:
-        dataset[name].attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
+    for name, variable in dataset.variables.items():
+        variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
     dataset.attrs = scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()}
     return dataset
 
