@@ -95,7 +95,7 @@ lock:
 
 # The JSON Schema and the tables of config/README.md, from the definition of the configuration's keys.
 describe: $(READY)
-	@"$(BIN)/python" -m slippulse.configuration.describe
+	@"$(BIN)/python" docs/describe.py
 
 # The reference of the Python interface, from its docstrings.
 reference: $(READY)

@@ -9,7 +9,7 @@ import sys
 import pytest
 import yaml
 
-from slippulse.configuration import describe
+from docs import describe
 from slippulse.configuration.overlay import read_overlay
 
 

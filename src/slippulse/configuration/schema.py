@@ -1,6 +1,6 @@
 """Every key of the configuration, once: type, range, default, meaning with unit (in brackets) and origin.
 
-From these come the refusals (`problems`), and through `python -m slippulse.configuration.describe` the JSON Schema in
+From these come the refusals (`problems`), and through docs/describe.py the JSON Schema in
 workflow/schemas and the tables of config/README.md.
 """
 

@@ -1,6 +1,6 @@
 """Writes what follows from the definition of the keys: the JSON Schema, and the tables of config/README.md.
 
-python -m slippulse.configuration.describe      in the folder of the project, or with its path
+python docs/describe.py      in the folder of the project, or with its path
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from typing import Any
 
 import yaml
 
-from .overlay import read_overlay
-from .problems import json_schema, resolved, words
+from slippulse.configuration.overlay import read_overlay
+from slippulse.configuration.problems import json_schema, resolved, words
 
 README, SCHEMA, SHIPPED = "config/README.md", "workflow/schemas/config.schema.yaml", "config/config.yaml"
 # A table stands between these two lines; the first names the model, and where its values stand in config/config.yaml.
