@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -104,6 +105,7 @@ def test_what_no_number_is_is_refused(name):
         (lambda: sp.Scene.from_attributes(ATTRIBUTES | {"dx": "0.1"}), "dx: '0.1'; allowed: a finite number"),
         (lambda: sp.Scene.from_attributes(ATTRIBUTES | {"steps_and_bumps": "{"}), "steps_and_bumps: '{'; allowed"),
         (lambda: sp.Scene.from_attributes(3), "attributes: 3; allowed: a mapping"),
+        (lambda: sp.Prestress(0.5, 0.6, steps=np.array(0.5)), "prestress.steps: array(0.5); allowed: a list of"),
         (lambda: theory.front_speed([0.1, 0.2], [0.1, 0.2, 0.3]), "shapes (2,) and (3,); allowed"),
         (lambda: theory.slip_velocity(FRONTS, 0.65, 0.0, math.nan), "time: nan; allowed"),
         (lambda: theory.slip_velocity(FRONTS, -1, 0.0, 1.0), "gamma: -1; allowed"),

@@ -66,7 +66,13 @@ def test_a_draft_is_the_figures_and_what_is_ones_own(folder):
 @pytest.mark.slow
 def test_one_figure_needs_only_its_own_simulations(folder):
     jobs = planned(snakemake(folder, "--dry-run", "--", "results/figures/fig04_space_time.png"))
-    assert jobs == {"compile_kernels": 1, "simulate": 2, "measure": 2, "fig04_space_time": 1}
+    assert jobs == {
+        "compile_kernels": 1,
+        "simulate": 2,
+        "measure": 2,
+        "fig04_space_time": 1,
+        "study_of_exact_space_time": 1,
+    }
 
 
 @pytest.mark.slow

@@ -67,7 +67,7 @@ rule predict:
     params:
         step="predict",
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
-        share=config["measure"]["share"],
+        share=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]])["share"],
         still=config["measure"]["still"],
     message:
         "Predicting {wildcards.simulation}"

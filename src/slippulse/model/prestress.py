@@ -173,7 +173,11 @@ def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> f
 
 def _tuples(key: str, rows: object, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:
     allowed = f"a list of [{', '.join(names)}]"
-    if isinstance(rows, str | bytes | Mapping) or not hasattr(rows, "__iter__"):
+    if (
+        isinstance(rows, str | bytes | Mapping)
+        or not hasattr(rows, "__iter__")
+        or getattr(rows, "ndim", 1) == 0
+    ):
         raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     out = []
     for row in rows:
