@@ -11,7 +11,7 @@ import yaml
 from PIL import Image
 from report.conftest import read
 
-from slippulse.claims.entries import WHY_NONE, claims_of, coverage
+from slippulse.claims.entries import AS_PRINTED, WHY_NONE, claims_of, coverage
 from slippulse.claims.rules import KINDS
 from slippulse.report.gallery import NAMED, Gallery
 from slippulse.report.manuscript import DOCUMENTS
@@ -64,6 +64,7 @@ def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentenc
     for sentence in statements:
         why = str(sentence.get("why_none", ""))
         assert bool(claims_of(tests, sentence)) != bool(why), sentence
+        assert sentence.get("as_printed") in (AS_PRINTED if not why else (None,)), sentence
         assert not why or why in WHY_NONE or why.removeprefix("repeats ") in ids, sentence
         assert len(sentence["paraphrase"].split()) <= 25, sentence
     for id, entry in tests.items():

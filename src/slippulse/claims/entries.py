@@ -13,6 +13,9 @@ from ..model.checks import nearest
 # Why a sentence has no claim of its own; a repetition names the sentence that it repeats.
 WHY_NONE = ("background", "definition", "other work", "no model")
 
+# Whether a sentence that is tested holds itself, whatever the claim that it led to.
+AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold")
+
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
     """Claims, algebra and findings, the claims with other tolerances where the configuration has them.

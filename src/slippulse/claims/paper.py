@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from types import SimpleNamespace
 
 from scipy.special import chdtrc
 
-from ..data.numerals import rounded
+from ..data.numerals import number, rounded
 from . import rules
 from .entries import positions
 from .evidence import Claim, Evidence
@@ -18,6 +19,8 @@ from .reading import why_text
 from .regimes import regime_claims
 from .transition import transition_claims
 
+# The claims about the two panels of the published figure.
+LEFT, RIGHT = "published_space_time_figure", "published_space_time_figure_right"
 # Fitted parameters of the left panel of the published figure.
 FITTED = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
 # Whose measured numbers, grid studies and coarser tables the claims are computed from.
@@ -82,30 +85,64 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
         If the entries and what is computed are not about the same claims.
     """
     claims = [*pulse_claims(evidence), *transition_claims(evidence), *regime_claims(evidence)]
-    found = {claim["id"]: claim for claim in [*claims, published_figure(evidence, readings)]}
+    found = {claim["id"]: claim for claim in [*claims, *published_figure(evidence, readings)]}
     if odd := sorted({*evidence.entries} ^ {*found}):
         raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
     where = positions(evidence.entries, sentences)
     return [written(found[id], entry, where[id]) for id, entry in evidence.entries.items()]
 
 
-def published_figure(evidence: Evidence, readings: Mapping) -> Claim:
-    """The published space-time figure, all its readings as one claim: is there a run of this model that it may show?"""
-    id, study = "published_space_time_figure", evidence.tables["published_figure"]
+def published_figure(evidence: Evidence, readings: Mapping) -> list[Claim]:
+    """The published space-time figure, a claim a panel: is there a run of this model that it may show?
+
+    The left one at the best fit of its readings, with the arrows that are drawn in it; the right one without a fit.
+    """
+    study = evidence.tables["published_figure"]
     left, right = inference(study)["best"], right_panel(study)
-    chi_square, degrees = left["chi2"] + right["chi2"], left["dof"] + right["dof"]
-    p = float(chdtrc(degrees, chi_square)) if degrees > 0 else float("nan")
+    arrows = arrow_pulls(left["pulls"], readings, evidence.entries[LEFT].get("arrows", {}))
     fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
-    ours = {
-        entry["statement"]: float(evidence.lattices(entry["simulation"])[0][entry["quantity"]].iloc[0])
-        for entry in readings.values()
-    }
+    alone = f"without its drawn arrows p is {number(left['p_value'], 2)}"
+
+    def claim(id: str, sweep: str, chi2: float, degrees: int, note: str, why: str) -> Claim:
+        p, run = float(chdtrc(degrees, chi2)), evidence.lattices(sweep)[0].iloc[0]
+        of_panel = [entry for entry in readings.values() if entry["simulation"] == sweep]
+        return {
+            "id": id, "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
+            "measured": chi2, "deviation": p, "note": f"chi-square of {note}; then the readings in our own figure",
+            "further": {entry["statement"]: float(run[entry["quantity"]]) for entry in of_panel},
+            "why": why, "at": partial(rules.reading, p, degrees),
+        }  # fmt: skip
+
+    pulled = " and ".join(number(pull, 2) for pull in arrows.values())
+    note = f"all readings of the panel, and its arrows, at their best fit without these, {fit}, release rule"
+    whole = left["chi2"] + sum(pull**2 for pull in arrows.values()), left["dof"] + len(arrows)
+    found = claim(
+        LEFT, "space_time_displacement", *whole, f"{note} `{left['release']}`",
+        f"Its arrows are off by {pulled} reading errors; {alone}.",
+    )  # fmt: skip
+    one = (
+        "its one reading, the pre-stress being read off",
+        "One reading is left when its pre-stress is read off.",
+    )
+    right_claim = claim(RIGHT, "space_time_stress", right["chi2"], right["dof"], *one)
+    return [found | {"further": found["further"] | arrows}, right_claim]
+
+
+def arrow_pulls(pulls: Mapping, readings: Mapping, arrows: Mapping) -> dict[str, float]:
+    """How far the drawn arrows are from what the best fit has, in their reading errors."""
+
+    def fitted(name: str) -> float:
+        return readings[name]["value"] + pulls[name] * readings[name]["reading_error"]
+
+    if not arrows:
+        return {}
+    time = fitted("centre_stick")
+    length = 2.0 * (fitted("front_speed") * time + fitted("intercept"))
+    names = {"time": time, "length": length}
     return {
-        "id": id, "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
-        "measured": chi_square, "deviation": p, "further": ours,
-        "note": f"chi-square of all readings of both panels at the best fit of the left one, {fit}, release rule"
-        f" `{left['release']}`; then the readings in our own figure",
-    }  # fmt: skip
+        f"pull of the arrow of the {name}": (value - arrows[name]) / arrows["error"]
+        for name, value in names.items()
+    }
 
 
 def written(claim: Claim, entry: Mapping, where: str) -> dict:

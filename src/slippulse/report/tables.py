@@ -132,7 +132,8 @@ def algebra_checked(algebra: Mapping[str, Mapping], sentences: Sequence[Mapping]
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
     """Numbers read off the published figure next to ours, with the reading error."""
-    ours = ledger("published_space_time_figure").further
+    panels = ("published_space_time_figure", "published_space_time_figure_right")
+    ours = {name: value for id in panels for name, value in ledger(id).further.items()}
     rows = [
         [
             each["statement"],
