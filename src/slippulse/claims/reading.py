@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from types import SimpleNamespace
 from typing import Any
 
 from ..data.numerals import number, percent, rounded, setting, with_uncertainty
-from .rules import EXCLUDED, KINDS, VERDICTS, WORST_FIRST
+from .rules import VERDICTS, WORST_FIRST
 
 # What a reader looks for first.
 FAILURES_FIRST = WORST_FIRST
@@ -83,18 +82,6 @@ class Ledger:
         rest = f" {self.following()} more follow from these." if self.following() else ""
         return f"{self.count()} claims: {listed}.{rest}"
 
-    def by_kind(self) -> list[tuple[str, list[str]]]:
-        """Of each kind how many claims have each verdict, counted ones and, behind a plus, those that follow."""
-        found = []
-        for kind in KINDS:
-            counts = Counter((claim.verdict, claim.counted) for claim in self if claim.kind == kind)
-            row = [
-                f"{counts[name, True]}" + (f" + {counts[name, False]}" if counts[name, False] else "")
-                for name in FAILURES_FIRST
-            ]
-            found += [(kind, row)] if counts else []
-        return found
-
 
 def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
     if id not in entries:
@@ -102,15 +89,15 @@ def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
     return entries[id]
 
 
+# By kind, what the paper has and what was measured; others have numbers.
+PREDICTED = {"qualitative": "all of {:.0f}", "reading": "{:.0f} degrees of freedom"}
+
+
 def predicted_text(claim: SimpleNamespace) -> str:
     """What the paper has, as its kind says it."""
     if claim.predicted is None:
         return number(None)
-    if claim.kind == "qualitative":
-        return f"all of {claim.predicted:.0f}"
-    if claim.kind == "reading":
-        return f"{claim.predicted:.0f} degrees of freedom"
-    return number(claim.predicted, 5)
+    return PREDICTED.get(claim.kind, number(claim.predicted, 5)).format(claim.predicted)
 
 
 def measured_text(claim: SimpleNamespace) -> str:
@@ -151,37 +138,19 @@ def why_text(claim: SimpleNamespace) -> str:
         return claim.why
     if claim.verdict == "not testable":
         return "This run leaves no number to judge by."
-    match claim.kind:
-        case "arithmetic":
-            return f"Printed over derived is {number(claim.measured, 4)}."
-        case "reading" if claim.verdict == "inconclusive":
-            return "The best fit is not known."
-        case "reading":
-            least = claim.tolerance if claim.verdict == "reproduced with caveat" else EXCLUDED
-            return f"At the best fit p is {number(claim.deviation, 2)}, below {setting(least)}."
-        case "qualitative" if claim.failed:
-            return f"{claim.failed} of {claim.runs} runs contradict it."
-        case "qualitative" if claim.undecided:
-            return f"In {claim.undecided} of {claim.runs} runs the lattices disagree."
-        case "qualitative":
-            return "It needs a condition that the paper does not state."
+    if claim.kind == "qualitative" and not claim.failed + claim.undecided:
+        return "It needs a condition that the paper does not state."
+    words = {
+        "qualitative": "It holds in {}",
+        "arithmetic": "Printed over derived is {}",
+        "reading": "At the best fit {} is asked",
+    }
+    if claim.kind in words:
+        text = compared_text(claim) if claim.kind == "reading" else measured_text(claim)
+        return words[claim.kind].format(text) + "."
     write, scale = (percent, abs(claim.predicted)) if claim.predicted else (number, 1.0)
-    off, allowed, blur = map(write, (claim.deviation, claim.tolerance, claim.uncertainty / scale))
-    median = claim.kind == "approximate"
-    if claim.deviation > claim.tolerance if median else claim.verdict == "not reproduced":
-        return f"{'The median run' if median else 'It'} is off by {off}, where {allowed} is allowed."
-    if median:
-        most = claim.exponent is not None and abs(claim.exponent - 1.0) + claim.exponent_uncertainty
-        if most and most > claim.tolerance_exponent:
-            exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
-            within = setting(claim.tolerance_exponent)
-            return f"The exponent is {exponent}, where 1 within {within} is allowed."
-        return f"The median run is off by {off}, and the tolerance of {allowed} lies within the uncertainty."
-    if claim.verdict == "inconclusive":
-        return f"Its uncertainty, {blur}, exceeds the tolerance of {allowed}."
-    return (
-        f"It is off by {off} with an uncertainty of {blur}, so that the tolerance of {allowed} lies within."
-    )
+    blur = write(claim.uncertainty / (1.0 if claim.kind == "approximate" else scale))
+    return f"It is off by {compared_text(claim)}; its uncertainty is {blur}."
 
 
 def evidence_text(claim: SimpleNamespace) -> str:
