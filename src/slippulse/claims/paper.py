@@ -25,50 +25,20 @@ LEFT, RIGHT = "published_space_time_figure", "published_space_time_figure_right"
 FITTED = {"tau0": r"$\tau_0$", "gamma": r"$\gamma$", "damping_ratio": r"$\beta/\Delta x$"}
 # Whose measured numbers, grid studies and coarser tables the claims are computed from.
 SIMULATIONS = [
-    "any_prestress",
-    "arrest_profiles",
-    "burridge_knopoff_chain",
-    "burridge_knopoff_speed",
-    "burridge_knopoff_stress",
-    "damping_displacement",
-    "damping_stress",
-    "front_speed_undamped",
-    "nucleation_widths",
-    "pulses_across_a_step",
-    "pulses_across_wide_steps",
-    "pulses_perturbed_elsewhere",
-    "regimes_beyond",
-    "regimes_displacement",
-    "regimes_displacement_asymmetric",
-    "regimes_stress",
-    "scaling_displacement",
-    "scaling_stress",
-    "space_time_displacement",
-    "space_time_stress",
-    "speed_against_gamma",
-    "steady_displacement",
-    "steady_elsewhere",
-    "stress_pulses",
-    "undamped_pulses",
-]
+    "any_prestress", "arrest_profiles", "burridge_knopoff_chain", "burridge_knopoff_speed",
+    "burridge_knopoff_stress", "damping_displacement", "damping_stress", "front_speed_undamped",
+    "nucleation_widths", "pulses_across_a_step", "pulses_across_wide_steps", "pulses_perturbed_elsewhere",
+    "regimes_beyond", "regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress",
+    "scaling_displacement", "scaling_stress", "space_time_displacement", "space_time_stress",
+    "speed_against_gamma", "steady_displacement", "steady_elsewhere", "stress_pulses", "undamped_pulses",
+]  # fmt: skip
 # Of these and of front speeds at one level, the predictions are compared.
 PREDICTED = [
-    "any_prestress",
-    "burridge_knopoff_speed",
-    "front_speed",
-    "front_speed_undamped",
-    "regimes_displacement",
-    "regimes_displacement_asymmetric",
-    "regimes_stress",
-    "scaling_displacement",
-    "scaling_stress",
-    "space_time_displacement",
-    "speed_against_gamma",
-    "steady_displacement",
-    "steady_elsewhere",
-    "stress_pulses",
-    "undamped_pulses",
-]
+    "any_prestress", "burridge_knopoff_speed", "front_speed", "front_speed_undamped", "regimes_displacement",
+    "regimes_displacement_asymmetric", "regimes_stress", "scaling_displacement", "scaling_stress",
+    "space_time_displacement", "speed_against_gamma", "steady_displacement", "steady_elsewhere",
+    "stress_pulses", "undamped_pulses",
+]  # fmt: skip
 
 
 def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mapping]) -> list[dict]:

@@ -175,17 +175,20 @@ def zero_net_stress_change(evidence: Evidence) -> Claim:
 
 def changes(table: pd.DataFrame) -> pd.Series:
     """Of each run that meets another level: 1 if its pulse grows, -1 if it decays, by more than at level 0; else 0."""
-    at_rest = table[table["beyond"] == 0.0].set_index("left")[CHANGE].abs()
-    grown = table[CHANGE].abs() > table["left"].map(at_rest)
+    grown = table[CHANGE].abs() > at_rest(table, CHANGE).abs()
     signs = np.sign(table[CHANGE]).where(grown, 0.0)
     return signs.where(table["regime"] != "arrested", -1.0).astype(int)
 
 
 def widens(table: pd.DataFrame) -> pd.Series:
     """Of each run that meets another level: 1 if its pulse ends wider than at level 0, -1 if narrower or gone."""
-    at_rest = table[table["beyond"] == 0.0].set_index("left")["pulse_half_width"]
-    signs = np.sign(table["pulse_half_width"] - table["left"].map(at_rest))
+    signs = np.sign(table["pulse_half_width"] - at_rest(table, "pulse_half_width"))
     return signs.where(table["regime"] != "arrested", -1.0).fillna(0.0).astype(int)
+
+
+def at_rest(table: pd.DataFrame, quantity: str) -> pd.Series:
+    """A number of the run that began alike and meets level 0."""
+    return table["left"].map(table[table["beyond"] == 0.0].set_index("left")[quantity])
 
 
 def not_unique(evidence: Evidence) -> Claim:
