@@ -106,3 +106,10 @@ def test_weakening_by_which_slip_runs_away_is_refused(boundary, gamma, alpha, al
         with pytest.raises(ValueError) as error:
             call()
         assert str(error.value) == f"rate_strengthening: {alpha}; allowed: {allowed}"
+
+
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+@pytest.mark.parametrize("fraction", [0.8, 1.2])
+def test_a_run_in_which_nothing_sticks_any_more_is_flagged(fraction, scheme):
+    flags = run(fraction * CRITICAL, duration=16.0, scheme=scheme).attrs["run_flags"]
+    assert ("nothing_sticks" in flags) == (fraction > 1.0)

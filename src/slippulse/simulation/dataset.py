@@ -45,12 +45,10 @@ def judge(scene: Scene, run: LatticeRun) -> dict:
     pulse_blocks = narrowest_pulse(scene, run)
     if run.numbers["releases"] == 0:
         return {"pulse_blocks": pulse_blocks, "run_flags": "nothing_released"}
+    flags = ["nothing_sticks"] if nothing_sticks(scene, run) else []
     if scene.scheme == "continuum":
-        return {
-            "pulse_blocks": pulse_blocks,
-            "run_flags": "construction_ended" if run.numbers["limit_reason"] else "",
-        }
-    flags = []
+        flags += ["construction_ended"] if run.numbers["limit_reason"] else []
+        return {"pulse_blocks": pulse_blocks, "run_flags": ",".join(flags)}
     if run.numbers["min_stuck_stress"] <= scene.reverse_threshold:
         flags.append("reverse_sliding")
     if 0 < pulse_blocks < scene.resolved_blocks:
@@ -66,6 +64,14 @@ def judge(scene: Scene, run: LatticeRun) -> dict:
     if scene.scheme == "fixed_step" and locked_front(run):
         flags.append("locked_front")
     return {"pulse_blocks": pulse_blocks, "run_flags": ",".join(flags)}
+
+
+def nothing_sticks(scene: Scene, run: LatticeRun) -> bool:
+    """Whether friction that depends on slip rate has let nothing stick for two of the paper's pi/sqrt(gamma)."""
+    if scene.rate_strengthening == 0.0 or scene.gamma == 0.0 or not np.any(run.slip_velocity > 0.0):
+        return False
+    last = np.max(run.stick_time, initial=0.0, where=np.isfinite(run.stick_time))
+    return scene.duration - last > 2.0 * math.pi / math.sqrt(scene.gamma)
 
 
 def locked_front(run: LatticeRun) -> bool:
