@@ -1,0 +1,111 @@
+"""Friction that depends linearly on slip rate: where pulses end, the pulses, maps of both sides, and Gamma = 0."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, new_panels
+
+NEEDS = {"studies": ["rate_dependence"]}
+
+REGIMES = {"pulse": (BLUE, "o"), "crack": (ORANGE, "s")}
+LINES: Look = {"color": BLACK, "linewidth": 1.0}
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """The study rate_dependence as it is."""
+    return tables["rate_dependence"]
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """(a) regimes, (b) width and slip of pulses, (c) maps on both sides of the line, (d) the stress held."""
+    figure, (plane, pulses, maps, arrest) = new_panels(PAGE, 5.4, 2, 2)
+    parts = dict(list(table.groupby("role")))
+    scale = float(np.sqrt(table["gamma"].iloc[0]))
+    _draw_plane(plane, parts["lattice"], parts["limit"], scale)
+    shown = parts["lattice"]["level"] == parts["map"]["level"].iloc[0]
+    _draw_pulses(pulses, parts["lattice"][shown], parts["steady"], scale)
+    _draw_maps(figure, maps, parts["map"], scale)
+    _draw_arrest(arrest, parts["arrest"], parts["asymptote"])
+    return figure
+
+
+def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame, scale: float) -> None:
+    critical = limit["rate_strengthening"] / scale
+    axes.fill_betweenx(limit["level"], -critical, critical, color=BLUE, alpha=0.12, linewidth=0.0)
+    for sign, label in ((1.0, "exact"), (-1.0, None)):
+        axes.plot(sign * critical, limit["level"], label=label, gid=f"limit {sign:g}", **LINES)
+    for (regime, flagged), rows in runs.groupby(["regime", runs["run_flags"].fillna("") != ""]):
+        colour, marker = REGIMES[str(regime)]
+        look: Look = {
+            "color": colour,
+            "markersize": 4.0,
+            "gid": f"{regime} {'flagged' if flagged else ''}".strip(),
+        }
+        look |= {"markerfacecolor": "white" if flagged else colour, "linestyle": "none", "marker": marker}
+        axes.plot(rows["rate_strengthening"] / scale, rows["level"], **look)
+    for regime, (colour, marker) in REGIMES.items():
+        axes.plot([], [], marker, color=colour, markersize=4.0, label=f"{regime}, lattice")
+    axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
+    axes.set(
+        xlabel=r"$\alpha/\sqrt{\gamma}$", ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 1.25), xlim=(-2.0, 2.7)
+    )
+    axes.set_title(r"$\Gamma = 1$", loc="right")
+    axes.legend(loc="upper center", ncols=3, columnspacing=0.8, handletextpad=0.4)
+
+
+def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame, scale: float) -> None:
+    for column, colour, marker, label in (
+        ("pulse_width", BLUE, "o", r"width $W_\mathrm{p}$"),
+        ("pulse_slip", ORANGE, "s", r"slip $u$"),
+    ):
+        axes.plot(
+            steady["rate_strengthening"] / scale,
+            steady[column],
+            color=colour,
+            label=label,
+            gid=f"exact {column}",
+        )
+        look: Look = {
+            "color": colour,
+            "markersize": 4.0,
+            "markerfacecolor": "white",
+            "gid": f"lattice {column}",
+        }
+        axes.plot(runs["rate_strengthening"] / scale, runs[column], marker, **look)
+    axes.set(xlabel=r"$\alpha/\sqrt{\gamma}$", yscale="log")
+    axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {runs['level'].iloc[0]:g}$; points: lattice", loc="right")
+    axes.legend(loc="upper center")
+
+
+def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame, scale: float) -> None:
+    look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": rows["slip_velocity"].max()}
+    for regime, half in rows.groupby("regime"):
+        grid = half.pivot(index="time", columns="position", values="slip_velocity")
+        grid = grid.where(grid > 0.0)
+        image = axes.pcolormesh(grid.index, grid.columns, grid.T, shading="nearest", rasterized=True, **look)
+        name = rf"{regime}, $\alpha/\sqrt{{\gamma}} = {half['rate_strengthening'].iloc[0] / scale:.2f}$"
+        axes.text(0.04, 0.92 if regime == "crack" else 0.04, name, transform=axes.transAxes)
+    axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
+    figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
+    axes.set(xlabel=r"time $t$", ylabel=r"position $x$")
+    axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {rows['level'].iloc[0]:g}$, exact", loc="right")
+
+
+def _draw_arrest(axes: Axes, rows: pd.DataFrame, theory: pd.DataFrame) -> None:
+    rows = rows[rows["dx"] == rows["dx"].min()]
+    for colour, (alpha, line) in zip(CYCLE, rows.groupby("rate_strengthening"), strict=False):
+        look: Look = {"markersize": 3.0, "markerfacecolor": "white", "label": rf"$\alpha = {alpha:g}$"}
+        axes.plot(
+            line["time"], line["largest_velocity"], "o", color=colour, gid=f"velocity {alpha:g}", **look
+        )
+    line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
+    axes.plot(line["time"], line["largest_velocity"], "--", label="diffusion", gid="diffusion", **LINES)
+    axes.set(xscale="log", yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity")
+    axes.set_title(rf"$\Gamma = 0$, lattice, $\Delta x = {rows['dx'].iloc[0]:g}$", loc="right")
+    axes.legend(loc="lower left")

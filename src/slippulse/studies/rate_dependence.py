@@ -1,0 +1,147 @@
+"""Friction that depends linearly on slip rate: where pulses end, and what becomes of them without leaf springs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ..model.balance import prestress_balance_position
+from ..model.prestress import Prestress
+from ..model.samples import Samples
+from ..model.scene import Scene
+from ..simulation.simulate import simulate
+from ..theory.front_law import front_speed
+from ..theory.pulse import critical_rate_strengthening, steady_pulse
+from ..theory.rupture import Rupture
+
+NEEDS = {}  # type: dict[str, list[str]]
+
+GAMMA, RATIO = 0.65, 0.1
+# Rate strengthening of the lattices, over the critical one at each pre-stress.
+LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
+FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5)
+# Spacing over pre-stress, to which the width of a pulse is proportional; and a step so short and of such an order that
+# rounding alone ends the exponential decay behind a crack.
+SPACING, ORDER, MAX_STEP = 0.12, 8, 0.25
+# Long enough for the trailing edge to be steady: it learns of the front at the rate by which that outruns the waves.
+SHORTEST, MEMORIES = 30.0, 5.0
+# A sliding part that grows by more than this over the second half of a run, or whose velocity decays below this
+# fraction of the largest before it ends, is a crack.
+GROWTH, QUIET = 1.1, 1e-9
+# The level at which widths, slips and maps are shown; the maps' fractions, end and samples.
+LEVEL, MAPPED, END, MAP = 0.5, {"pulse": 0.6, "crack": 1.5}, 14.0, (57, 96)
+# Without leaf springs: rate strengthening, pre-stress, spacings and times.
+ALPHAS, ARRESTING, SPACINGS, TIMES = (
+    (0.0, 0.5, 2.0),
+    Prestress(-0.5, 0.0),
+    (0.1, 0.05),
+    np.geomspace(2.0, 100.0, 21),
+)
+
+
+def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """Lattices of both boundaries, and the exact theory.
+
+    Returns
+    -------
+    DataFrame of role: lattice (level, rate_strengthening, over_critical: over the critical one, regime, run_flags, and
+    of pulses pulse_width, pulse_slip), limit (level, rate_strengthening: the critical one), steady (rate_strengthening,
+    pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx, rate_strengthening, time,
+    largest_velocity, gap: distance of the left front from the balance of the pre-stress) and asymptote (the same)
+    """
+    rows = [_lattice(level, fraction) for level in LEVELS for fraction in FRACTIONS]
+    parts = [pd.DataFrame([row for row in rows if row]).assign(role="lattice")]
+    levels = np.linspace(0.05, 0.9, 60)
+    parts.append(
+        pd.DataFrame({"level": levels, "rate_strengthening": [_critical(level) for level in levels]})
+    )
+    parts[-1]["role"] = "limit"
+    alphas = _critical(LEVEL) * np.linspace(-0.97, 0.97, 80)
+    pulses = [steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO, rate_strengthening=alpha) for alpha in alphas]
+    columns = {"rate_strengthening": alphas, "pulse_width": [pulse.width for pulse in pulses]}
+    parts.append(
+        pd.DataFrame(columns | {"pulse_slip": [pulse.slip for pulse in pulses]}).assign(role="steady")
+    )
+    parts += [_map(regime, fraction * _critical(LEVEL)) for regime, fraction in MAPPED.items()]
+    parts += [_arrest(alpha, dx) for alpha in ALPHAS for dx in SPACINGS]
+    parts += [_asymptote(alpha) for alpha in ALPHAS if alpha]
+    return pd.concat(parts, ignore_index=True).assign(gamma=GAMMA, damping_ratio=RATIO)
+
+
+def _critical(level: float) -> float:
+    return critical_rate_strengthening(GAMMA, float(front_speed(level, RATIO)))
+
+
+def _lattice(level: float, fraction: float) -> dict | None:
+    """One run, its regime and its pulse; None where the model refuses it, since slip runs away."""
+    alpha, dx = fraction * _critical(level), SPACING * level
+    if alpha <= -2.0 * np.sqrt(GAMMA):
+        return None
+    duration = SHORTEST + MEMORIES / (float(front_speed(level, RATIO)) - 1.0)
+    scene = Scene(
+        "displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx, order=ORDER,
+        max_step=MAX_STEP, rate_strengthening=alpha,
+    )  # fmt: skip
+    run = simulate(scene)
+    run = run.sel(x=slice(0.5 * dx, None))
+    halfway, end = (_sliding_part(run, time) for time in (0.5 * duration, duration))
+    velocity = run["slip_velocity"].values
+    # From the front backwards, the last that slides.
+    slowest = velocity[velocity > 0.0][0] / velocity.max()
+    pulse = end[1] - end[0] < GROWTH * (halfway[1] - halfway[0]) and slowest > QUIET
+    row: dict[str, float | str] = {
+        "level": level,
+        "rate_strengthening": alpha,
+        "over_critical": fraction,
+        "dx": dx,
+    }
+    row |= {"regime": "pulse" if pulse else "crack", "run_flags": run.attrs["run_flags"]}
+    if pulse:
+        row |= {
+            "pulse_width": end[1] - end[0],
+            "pulse_slip": float(run["slip"].sel(x=end[0], method="nearest")),
+        }
+    return row
+
+
+def _sliding_part(run: xr.Dataset, time: float) -> tuple[float, float]:
+    """Its ends at a time: the outermost blocks that have stuck and that have been released."""
+    x = run["x"].values
+    stuck, released = (x[run[name].values <= time] for name in ("stick_time", "release_time"))
+    return float(np.max(stuck, initial=0.0)), float(np.max(released, initial=0.0))
+
+
+def _map(regime: str, alpha: float) -> pd.DataFrame:
+    """The exact rupture; to the left the pulse, to the right the crack."""
+    rupture = Rupture(Prestress(LEVEL, LEVEL), GAMMA, RATIO, duration=END, rate_strengthening=alpha)
+    times, x = np.linspace(0.0, END, MAP[0]), np.linspace(0.0, rupture.front_ends[0][1].x, MAP[1])
+    velocity = rupture.map(times, x, ("slip_velocity",))["slip_velocity"]
+    time, position = np.meshgrid(times, x if regime == "crack" else -x, indexing="ij")
+    values = {"time": time.ravel(), "position": position.ravel(), "slip_velocity": velocity.ravel()}
+    return pd.DataFrame(values).assign(role="map", regime=regime, rate_strengthening=alpha, level=LEVEL)
+
+
+def _arrest(alpha: float, dx: float) -> pd.DataFrame:
+    scene = Scene(
+        "stress", ARRESTING, float(TIMES[-1]), dx, beta=RATIO * dx, rate_strengthening=alpha, max_step=0.4
+    )
+    x = np.arange(-8.0, TIMES[-1] + 10.0, 0.25)
+    run = simulate(scene, Samples(TIMES, x))
+    left = run.where(run["x"] < 0.0, drop=True)
+    front = np.array([float(left["x"].values[left["release_time"].values <= time].min()) for time in TIMES])
+    values = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}
+    values["gap"] = front - prestress_balance_position(ARRESTING)
+    return pd.DataFrame(values).assign(role="arrest", rate_strengthening=alpha, dx=dx)
+
+
+def _asymptote(alpha: float) -> pd.DataFrame:
+    """What diffusion makes of it: slip U erfc(y sqrt(alpha/t)/2) at y from the balance of the pre-stress."""
+    balance = prestress_balance_position(ARRESTING)
+    x = np.linspace(balance, 12.0, 20_001)
+    slip = float(np.trapezoid((x - balance) * ARRESTING(x), x))
+    values = {"time": TIMES, "largest_velocity": slip / (np.sqrt(2.0 * np.pi * np.e) * TIMES)}
+    values["gap"] = -slip / ARRESTING.left * np.sqrt(alpha / (np.pi * TIMES))
+    return pd.DataFrame(values).assign(role="asymptote", rate_strengthening=alpha)
