@@ -122,7 +122,7 @@ def test_a_barrier_leaves_the_transition_without_theory(drawn):
     ("number", "text"),
     [
         ((1.23456, 0.0123, 1.25), "1.235(12) (theory 1.2500)"),
-        ((-2.0, np.nan, np.nan), "−2(?)"),
+        ((-2.0, np.nan, np.nan), "−2"),
         ((3.5, 0.0, 3.5), "3.5000 (theory 3.5000)"),
     ],
 )
@@ -178,4 +178,10 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     # Of each line, theory and markers full and open.
     assert len(speeds.lines) == 3 * lines
     assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
-    assert bool(drawn.legends) is (lines > 1)
+    (legend,) = drawn.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert {"simulation", "exact theory"} <= {*texts} and len(texts) >= 2 + (lines if lines > 1 else 0)
+    shown = [axes for axes in drawn.axes if axes.get_visible()]
+    values = [tuple(np.round(axes.lines[1].get_ydata(), 9)) for axes in shown]
+    assert len({*values}) == len(values), "no panel twice"
+    assert len({axes.get_xlabel() for axes in shown}) == 1

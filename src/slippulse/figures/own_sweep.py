@@ -6,10 +6,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.numbers import main_numbers, with_symbols
-from .style import CYCLE, GREY, PAGE, Look, legend_below, new_panels
+from .style import CYCLE, GREY, PAGE, Look, entry, legend_below, new_panels
 
 # What may vary in a sweep, with its symbol.
 AXES = {
+    "tau_0": r"$\tau_0$",
     "left": r"$\tau_{0,l}$",
     "right": r"$\tau_{0,r}$",
     "gamma": r"$\gamma$",
@@ -31,10 +32,13 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    `main_numbers` of each run with its flags, the axis that takes most values, x (its value) and the series by all
-    others that vary, empty where none does
+    `main_numbers` of each run with its flags, the axis that takes most values (tau_0 for a level on both sides), x (its
+    value) and the series by all others that vary, empty where none does; a number that equals another one in every run
+    is left out
     """
     varying: list[str] = []
+    alike = (runs["left"] == runs["right"]).all()
+    runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
     for name in AXES:
         # A level that follows another one is no axis of its own.
         if runs[name].nunique() > 1 and not any((runs[name] == runs[other]).all() for other in varying):
@@ -47,7 +51,13 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
         series = ", ".join(f"{AXES[name]} = {value}" for name, value in values.items())
         found = main_numbers(run)
         parts.append(found.assign(run_flags=run["run_flags"], axis=axis, x=run[axis], series=series))
-    return pd.concat(parts, ignore_index=True)
+    found = pd.concat(parts, ignore_index=True)
+    groups = [group.reset_index(drop=True) for _, group in found.groupby("quantity", sort=False)]
+    new = [
+        group for k, group in enumerate(groups)
+        if not any(group["value"].equals(other["value"]) for other in groups[:k])
+    ]  # fmt: skip
+    return pd.concat(new, ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -72,7 +82,8 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in grid[len(quantities) :]:
         axes.set_visible(False)
-    handles, _ = grid[0].get_legend_handles_labels()
-    if handles:
-        legend_below(figure, handles, 5)
+    handles = [entry("simulation", marker="o", color=GREY), entry("exact theory", color=GREY, linewidth=0.8)]
+    if table["run_flags"].notna().any():
+        handles.append(entry("flagged", marker="o", color=GREY, markerfacecolor="none"))
+    legend_below(figure, [*grid[0].get_legend_handles_labels()[0], *handles], 5)
     return figure

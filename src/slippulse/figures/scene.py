@@ -52,8 +52,8 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
 
 
 def number_text(value: float, uncertainty: float, theory: float) -> str:
-    """A number with its uncertainty, "?" where the grid study has none, and the theory's beside it."""
-    text = with_uncertainty(value, uncertainty, "(?)")
+    """A number with its uncertainty, where the grid study has one, and the theory's beside it."""
+    text = with_uncertainty(value, uncertainty)
     return f"{text} (theory {number(theory, MOST)})" if math.isfinite(theory) else text
 
 

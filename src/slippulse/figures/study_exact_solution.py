@@ -40,8 +40,8 @@ def plot(table: pd.DataFrame) -> Figure:
     looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"lattice, $\Delta x = {dx:g}$"}
     for look, label in looks.items():
         edge_axes.plot([], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label)
-    edge_axes.set(xlabel=r"position $x$", ylabel=r"time $t$", ylim=(0.0, 1.3 * edge_axes.get_ylim()[1]))
-    edge_axes.legend(loc="upper center", ncols=2)
+    edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
+    edge_axes.legend(loc="upper left", fontsize=7.0)
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
     _finish_differences(difference_axes, table[table["role"] == "difference"])
     lines = [entry(names[scene], color=colour) for scene, colour in SCENES.items()]
@@ -60,17 +60,17 @@ def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": samples["slip_velocity"].max()}
     for _, half in samples.groupby("role"):
         # What does not slide stays white.
-        grid = half.pivot(index="time", columns="position", values="slip_velocity")
+        grid = half.pivot(index="position", columns="time", values="slip_velocity")
         image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
     exact = rows[rows["role"] == "exact"]
     for quantity, style in (("release", "-"), ("stick", "--")):
         look = {"color": BLACK, "linewidth": 0.9, "gid": f"exact {quantity}"}
-        axes.plot(exact["position"], exact[quantity], style, **look)
-    axes.axvline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
-    axes.text(0.04, 0.04, "exact", transform=axes.transAxes)
-    axes.text(0.96, 0.04, "lattice", transform=axes.transAxes, ha="right")
+        axes.plot(exact[quantity], exact["position"], style, **look)
+    axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
+    for height, half in ((0.05, "exact"), (0.91, "lattice")):
+        axes.text(0.03, height, half, transform=axes.transAxes)
     figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
-    axes.set(xlabel=r"position $x$", ylabel=r"time $t$", ylim=(0.0, None))
+    axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
 
 
 def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
@@ -79,7 +79,9 @@ def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> No
     styles = ("--", "s") if quantity == "stick" else ("-", "o")
     for role, style in zip(("exact", "lattice"), styles, strict=True):
         line, gid = rows[rows["role"] == role], f"{role} {quantity} {rows['scene'].iloc[0]}"
-        axes.plot(line["position"], line[quantity], style, color=colour, gid=gid, **look)
+        # Space-time has time on the horizontal axis, as in every figure.
+        across = ("position", "slip") if quantity == "slip" else (quantity, "position")
+        axes.plot(line[across[0]], line[across[1]], style, color=colour, gid=gid, **look)
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame, colour: str) -> None:
@@ -97,5 +99,5 @@ def _finish_differences(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     few_ticks(axes.xaxis, np.unique(rows["dx"]))
-    axes.set_ylim(None, 4.0 * axes.get_ylim()[1])
-    axes.legend(loc="upper left", ncols=2)
+    axes.set_ylim(0.35 * axes.get_ylim()[0], None)
+    axes.legend(loc="lower right", ncols=2, columnspacing=0.8)

@@ -13,23 +13,15 @@ from .style import BLACK, GREY, PAGE, Look, colour_scale, few_ticks, legend_abov
 
 NEEDS = {
     "measured": [
-        "front_speed",
-        "front_speed_slow",
-        "front_speed_springs",
-        "continuum_fixed_ratio",
-        "continuum_fixed_beta",
+        "front_speed", "front_speed_slow", "front_speed_springs", "continuum_fixed_ratio", "continuum_fixed_beta",
         "front_speed_fixed_beta",
     ],
     "predicted": [
-        "front_speed",
-        "front_speed_slow",
-        "front_speed_springs",
-        "continuum_fixed_ratio",
-        "continuum_fixed_beta",
+        "front_speed", "front_speed_slow", "front_speed_springs", "continuum_fixed_ratio", "continuum_fixed_beta",
         "front_speed_fixed_beta",
     ],
     "studies": ["front_law"],
-}
+}  # fmt: skip
 
 RULES = ("total", "elastic")
 # Narrower pulses stick within the layer of lattice waves at their front, which theory leaves out.

@@ -78,5 +78,5 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")
     left, ratio = rows[["left", "damping_ratio"]].iloc[0]
     axes.set_title(rf"refining, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right")
-    axes.legend(loc="lower right")
-    axes.set_ylim(1e-7, None)
+    axes.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
+    axes.set_ylim(1e-6, None)

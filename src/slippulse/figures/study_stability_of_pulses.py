@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import matplotlib
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -15,12 +14,14 @@ from matplotlib.figure import Figure
 from ..data.numerals import setting
 from ..data.points import point
 from ..model.prestress import prestress_from
-from .style import GREY, PAGE, Look, colour_scale, new_panels
+from .style import GREEN, GREY, PAGE, PURPLE, YELLOW, Look, colour_scale, legend_below, new_panels
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
 # Points of a lattice, how many there are to a mark, and what rounding leaves of the exact distance.
 POINTS, MARKED, ROUNDING = 100, 5, 2e-9
+# The smallest velocity drawn.
+LEAST = 0.03
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -64,14 +65,13 @@ def plot(table: pd.DataFrame) -> Figure:
     for level, rows in slip.groupby("level"):
         colour = colour_scale("tau_0").to_rgba(level)
         _draw_level(slip_axes, rest_axes, rows.sort_values("x"), colour, f"{level:g}")
-    slip_axes.axvline(0.0, 0.0, 0.65, color=GREY, linewidth=0.6, linestyle=":")
+    slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     slip_axes.plot([], [], "|", color=GREY, markersize=7.0, label="finite memory")
     label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
     slip_axes.plot([], [], "o", color=GREY, markersize=2.0, label=label)
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
-    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
-    slip_axes.set_ylim(None, 1.5 * slip["slip"].max())
-    slip_axes.legend(title=r"exact, $\tau_0$ beyond", loc="upper right", ncols=2, columnspacing=0.8)
+    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before, beyond:", loc="right")
+    legend_below(figure, slip_axes.get_legend_handles_labels()[0], 7)
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     for style, label in (("-", "exact"), (":", "lattice")):
         rest_axes.plot([], [], style, color=GREY, label=label)
@@ -86,7 +86,13 @@ def plot(table: pd.DataFrame) -> Figure:
 def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str) -> None:
     exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    slip_axes.plot(exact["x"], exact["slip"], color=colour, label=level, gid=f"exact {level}")
+    slip_axes.plot(
+        exact["x"],
+        exact["slip"],
+        color=colour,
+        label=rf"exact, $\tau_0 = {level}$",
+        gid=f"exact {level}",
+    )
     marks = lattice.iloc[::MARKED]
     look: Look = {
         "markersize": 1.8,
@@ -104,20 +110,19 @@ def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: An
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
+    """One line a level, in the colour of what the pulse does, with the level at its end."""
     rows = rows[rows["largest_velocity"] > 0.0]
-    levels = np.unique(rows["level"])
-    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.92, levels.size))
-    for colour, level in zip(colours, levels, strict=True):
-        line = rows[rows["level"] == level]
-        look: Look = {
-            "markersize": 2.0,
-            "linewidth": 0.6,
-            "label": setting(level),
-            "gid": f"velocity {level:g}",
-        }
+    for level, line in rows.groupby("level"):
+        colour = GREEN if level < 0.0 else PURPLE if level > 0.0 else YELLOW
+        look: Look = {"markersize": 2.0, "linewidth": 0.8, "gid": f"velocity {level:g}"}
         axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, **look)
-    axes.axvline(rows["step"].iloc[0], 0.0, 0.75, color=GREY, linewidth=0.6, linestyle=":")
+        last = line[line["largest_velocity"] > LEAST].iloc[-1]
+        at = (last["time"], last["largest_velocity"])
+        look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 7.0}
+        axes.annotate(setting(level), at, color=colour, **look)
+    axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
-    axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
-    axes.set_ylim(1e-2, 60.0 * rows["largest_velocity"].max())
-    axes.legend(title=r"$\tau$ beyond", ncols=3, fontsize=7.0, loc="upper right", columnspacing=0.6)
+    axes.set(xlim=(None, 1.14 * rows["time"].max()), ylim=(LEAST, None))
+    axes.set_title(
+        rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before, beyond:", loc="right", fontsize=8.0
+    )
