@@ -9,16 +9,15 @@ import os
 # Jobs run side by side: the linear algebra of each keeps to one core.
 os.environ["OMP_NUM_THREADS"] = "1"
 
-import h5netcdf  # noqa: F401
+import h5py  # noqa: F401
 import matplotlib.backends.backend_pdf
 import matplotlib.pyplot  # noqa: F401
 import numba
 import scipy.optimize
 import scipy.special  # noqa: F401
-import xarray
+import xarray  # noqa: F401
 
-# The first function compiled loads most of numba, the first file written most of xarray.
+# The first function compiled loads most of numba.
 numba.njit(lambda: 0)()
-xarray.Dataset().to_netcdf(engine="h5netcdf")
 # Memory that nobody touches is shared with every job.
 gc.freeze()
