@@ -18,6 +18,8 @@ from pathlib import Path
 
 # How the last run was called.
 CALL = Path("results/records/.call")
+# Without the log of a run.
+LOOK = ("--workflow-profile", "none", "--quiet", "all")
 SHOW_CURSOR = "\x1b[?25h"
 
 
@@ -31,25 +33,14 @@ def arguments(what: str) -> list[str]:
     )
     if what == "rulegraph":
         targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
-        return ["--workflow-profile", "none", "--quiet", "all", "--rulegraph", "mermaid-js", "--", *targets]
+        return [*LOOK, "--rulegraph", "mermaid-js", "--", *targets]
     if what == "verify":
         if not options:
             # As the last run was called.
             with suppress(OSError, ValueError, KeyError):
                 called = json.loads(CALL.read_text(encoding="utf-8"))
                 options, targets = called["options"], [*{"everything"} & {*called["targets"]}]
-        return [
-            "--workflow-profile",
-            "none",
-            "--quiet",
-            "all",
-            "--cores",
-            "1",
-            *options,
-            "--",
-            "verify",
-            *targets,
-        ]
+        return [*LOOK, "--cores", "1", *options, "--", "verify", *targets]
     return ["--cores", os.environ.get("CORES", "2"), *options, "--", *targets]
 
 

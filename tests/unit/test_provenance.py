@@ -15,7 +15,6 @@ from slippulse.data.provenance import (
     manifest,
     provenance,
     source_files,
-    tree_digest,
 )
 from slippulse.data.records import Origin, write_record
 
@@ -32,16 +31,6 @@ def test_an_overlay_is_marked_value_by_value():
     assert changes(shipped, shipped) == []
 
 
-def test_the_digest_sees_content_and_names_and_no_order(tmp_path):
-    for name in ("a", "b"):
-        (tmp_path / name).write_text(name)
-    paths = [tmp_path / "a", tmp_path / "b"]
-    digest = tree_digest(tmp_path, paths)
-    assert digest == tree_digest(tmp_path, paths[::-1])
-    (tmp_path / "b").write_text("c")
-    assert digest != tree_digest(tmp_path, paths)
-
-
 def test_sources_are_the_library_and_the_workflow(project):
     names = {str(path.relative_to(project)) for path in source_files(project)}
     assert {"Snakefile", "src/slippulse/model/scene.py", "workflow/rules/common.smk"} <= names
@@ -56,7 +45,7 @@ def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
         origin = Origin(name, "simulate", "", "", frozenset())
         write_record(origin, {"made": f"{results}/{name}"}, {"seconds": seconds})
     assert job_times(results) == {"simulate": 1.75}
-    facts = provenance(project, config | {"preset": "draft"}, config, results)
+    facts = provenance(project, "", config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]
     assert set(facts) == {
         "paper", "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine",

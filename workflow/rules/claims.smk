@@ -27,10 +27,9 @@ rule write_claims:
         "results/logs/write_claims.log",
     priority: 1
     params:
-        step="write_claims",
-        claims=plain(config["claims"]),
-        published=plain(config["published"]),
-        measure=plain(config["measure"]),
+        claims=config["claims"],
+        published=config["published"],
+        measure=config["measure"],
         damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
     message:

@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+from copy import deepcopy
 from functools import cache
 from pathlib import Path
 
@@ -101,13 +102,6 @@ wildcard_constraints:
     **{name: "|".join(map(re.escape, values)) or "(?!)" for name, values in VALUES.items()},
 
 
-def plain(value):
-    """Plain dicts and lists, whose changes Snakemake sees."""
-    if isinstance(value, dict):
-        return {key: plain(entry) for key, entry in value.items()}
-    return [plain(entry) for entry in value] if isinstance(value, list) else value
-
-
 # Snakemake asks for the parameters of every waiting job again whenever a job has ended: they are found once.
 @cache
 def sweep_of(name, coarser=1.0):
@@ -135,20 +129,20 @@ def coarser_sweeps(job):
 
 def selected(keys, own={}):
     """The values of some dotted keys of the configuration, nested as there, beside what is a result's own."""
-    found = plain(own)
+    found = deepcopy(dict(own))
     for key in keys:
         inside, value = found, config
         *parents, last = key.split(".")
         for parent in parents:
             inside, value = inside.setdefault(parent, {}), value[parent]
-        inside[last] = plain(value[last])
+        inside[last] = value[last]
     return found
 
 
 def measure_of(simulations):
     """How they are measured: a share of the way to the arrest counts under a stress boundary only."""
     stressed = any(sweep_of(name)["boundary"] == "stress" for name in simulations)
-    return plain(config["measure"] if stressed else {**config["measure"], "share": None})
+    return config["measure"] if stressed else {**config["measure"], "share": None}
 
 
 def figure_files(names):

@@ -9,8 +9,6 @@ rule write_explorer:
         html="results/explorer.html",
     log:
         "results/logs/write_explorer.log",
-    params:
-        step="write_explorer",
     message:
         "Writing results/explorer.html"
     run:

@@ -48,9 +48,8 @@ rule write_provenance:
     log:
         "results/logs/write_provenance.log",
     params:
-        step="write_provenance",
-        config=plain(config),
-        shipped=plain(SHIPPED),
+        config=config,
+        shipped=SHIPPED,
     message:
         "Noting what the results were made from"
     run:
@@ -74,7 +73,6 @@ rule write_index:
     log:
         "results/logs/write_index.log",
     params:
-        step="write_index",
         galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES}
         | ({"Sweeps of your own": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
         scenes={name: scene["title"] for name, scene in SCENES.items()},

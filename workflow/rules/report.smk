@@ -33,9 +33,8 @@ rule write_report:
     log:
         "results/logs/write_report.log",
     params:
-        step="write_report",
         figures=list(NEEDS),
-        config=plain(config),
+        config=config,
     message:
         "Writing the replication report"
     run:

@@ -27,7 +27,6 @@ rule draw_scene:
     wildcard_constraints:
         scene="|".join(SCENES) or "(?!)",
     params:
-        step="draw_scene",
         scene=lambda wildcards: wildcards.scene,
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
     message:
@@ -46,7 +45,6 @@ rule animate_scene:
     wildcard_constraints:
         scene="|".join(SCENES) or "(?!)",
     params:
-        step="animate_scene",
         title=lambda wildcards: SCENES[wildcards.scene]["title"],
     message:
         "Animating scene {wildcards.scene}"
@@ -62,7 +60,6 @@ rule write_scenes_page:
     log:
         "results/logs/write_scenes_page.log",
     params:
-        step="write_scenes_page",
         scenes={name: scene["title"] for name, scene in SCENES.items()},
     message:
         "Writing the list of scenes"
@@ -82,8 +79,6 @@ rule draw_sweep:
         "results/logs/draw_sweep/{sweep}.log",
     wildcard_constraints:
         sweep="|".join(CONFIG.simulations),
-    params:
-        step="draw_sweep",
     message:
         "Drawing sweep {wildcards.sweep}"
     run:

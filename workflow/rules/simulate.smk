@@ -10,8 +10,6 @@ rule compile_kernels:
         "results/logs/compile_kernels.log",
     # Everything waits for it.
     priority: 2
-    params:
-        step="compile_kernels",
     message:
         "Compiling the lattice kernels (once)"
     run:
@@ -50,7 +48,6 @@ rule measure:
         "results/logs/measure/{simulation}.log",
     priority: 1
     params:
-        step="measure",
         measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
     message:
         "Measuring {wildcards.simulation}"
@@ -65,7 +62,6 @@ rule predict:
         "results/logs/predict/{simulation}.log",
     priority: 1
     params:
-        step="predict",
         sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
         share=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]])["share"],
         still=config["measure"]["still"],
@@ -112,7 +108,6 @@ rule join:
         runtime=lambda wildcards, attempt: attempt * 30,
         mem_mb=joining_megabytes,
     params:
-        step="join",
         kind=lambda wildcards: Path(wildcards.joined).parent.as_posix(),
         record=lambda wildcards: SIMULATIONS[Path(wildcards.joined).stem].record,
     message:

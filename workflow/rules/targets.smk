@@ -44,9 +44,9 @@ NAMES = [
 RULES = {name: getattr(rules, name) for name in NAMES if rules.has(name)}
 
 
-def jobs_of(rule):
+def jobs_of(name, rule):
     """The jobs that a rule stands for, one for each value of its wildcard."""
-    wildcard = next((name for name in VALUES if f"{{{name}}}" in rule.output[0]), None)
+    wildcard = next((key for key in VALUES if f"{{{key}}}" in rule.output[0]), None)
     for value in VALUES[wildcard] if wildcard else [""]:
         values = {wildcard: value} if wildcard else {}
         wildcards = SimpleNamespace(**values)
@@ -59,10 +59,11 @@ def jobs_of(rule):
         inputs, outputs = (
             tuple(path for item in items for path in filled(item)) for items in (rule.input, rule.output)
         )
-        yield Job(settings.pop("step"), inputs, outputs, settings)
+        # A rule without another step has that of its own name.
+        yield Job(settings.pop("step", name), inputs, outputs, settings)
 
 
-ALL_JOBS = [job for rule in RULES.values() if "step" in rule.params.keys() for job in jobs_of(rule)]
+ALL_JOBS = [job for name, rule in RULES.items() if rule.output for job in jobs_of(name, rule)]
 ORIGINS = origins_of(ALL_JOBS)
 MADE = [f"results/{name}" for name in ORIGINS]
 

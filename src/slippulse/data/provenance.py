@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import platform
 import subprocess
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import yaml
@@ -23,14 +22,6 @@ PAPER = {
     "journal": "Physical Review E 103, 052802 (2021)",
     "doi": "https://doi.org/10.1103/PhysRevE.103.052802",
 }
-
-
-def tree_digest(root: str | Path, paths: Iterable[str | Path]) -> str:
-    """SHA-256 over names and contents of files, independent of their order."""
-    root, digest = Path(root), hashlib.sha256()
-    for path in sorted(Path(path) for path in paths):
-        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes() + b"\0")
-    return digest.hexdigest()
 
 
 def source_files(root: str | Path) -> list[Path]:
@@ -87,12 +78,15 @@ def job_times(results: str | Path) -> dict[str, float]:
     return seconds
 
 
-def provenance(root: str | Path, config: Mapping, shipped: Mapping, results: str | Path) -> dict:
+def provenance(
+    root: str | Path, sources: str, config: Mapping, shipped: Mapping, results: str | Path
+) -> dict:
     """Everything that a result depends on.
 
     Parameters
     ----------
     root : folder of the project
+    sources : digest of `source_files`
     config, shipped : the configuration with and without overlays
     results : folder of the results, with the records of their jobs
     """
@@ -102,7 +96,7 @@ def provenance(root: str | Path, config: Mapping, shipped: Mapping, results: str
         "paper": PAPER,
         "overlay": changes(shipped, config),
         "config": dict(config),
-        "source_digest": tree_digest(root, source_files(root)),
+        "source_digest": sources,
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
         "versions": {"python": platform.python_version()}

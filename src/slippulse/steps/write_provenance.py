@@ -7,14 +7,15 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ..data.files import write_text
-from ..data.provenance import checksums, manifest, provenance
+from ..data.provenance import checksums, manifest, provenance, source_files
 from ..report.texts import read_captions
+from .reach import digest_of_files
 
 
 def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
     """Files: results, captions. Outputs: provenance, checksums, manifest. Settings: config, shipped."""
     base = Path(outputs["provenance"]).parent
-    facts = provenance(".", settings["config"], settings["shipped"], base)
+    facts = provenance(".", digest_of_files(source_files(".")), settings["config"], settings["shipped"], base)
     comments = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, comments), outputs["manifest"])
