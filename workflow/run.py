@@ -66,6 +66,9 @@ def main(what: str) -> int:
     )  # fmt: skip
     os.close(leash)
     code = process.wait()
+    # Jobs of a server that has died go on by themselves.
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
     os.close(held)
     return code if code >= 0 else 128 - code
 

@@ -18,7 +18,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from faults import TARGETS, Report, digests, fault_run, prepare, start_by_make, stop_at
+from faults import TARGETS, Report, at_work, digests, fault_run, prepare, start_by_make, stop_at
 from pipeline_copy import copy_project, snakemake
 
 from slippulse.data.records import Origin
@@ -104,6 +104,28 @@ def test_a_signal_ends_a_run_at_once_and_the_next_gives_the_same(tmp_path, each)
             shutil.rmtree(harmed / "results", ignore_errors=True)
     assert start_by_make(harmed, targets).wait(timeout=600) == 0
     assert digests(harmed) == expected
+
+
+@pytest.mark.slow
+def test_a_run_ends_with_the_server_of_its_jobs(tmp_path):
+    folder = prepare(tmp_path / "run")
+    run, servers = start_by_make(folder, (SCENE,)), []
+    # It and a job.
+    while len(servers) < 2:
+        assert run.poll() is None
+        servers = [
+            number
+            for number in at_work(folder)
+            if b"forkserver" in Path(f"/proc/{number}/cmdline").read_bytes()
+        ]
+        time.sleep(0.02)
+    os.kill(min(servers), signal.SIGKILL)
+    assert run.wait(timeout=60) != 0
+    said = (folder / "said.txt").read_text(encoding="utf-8")
+    assert "Traceback" not in said, said
+    time.sleep(0.5)
+    assert not at_work(folder)
+    assert start_by_make(folder, (SCENE,)).wait(timeout=600) == 0
 
 
 @pytest.mark.slow
