@@ -10,9 +10,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -26,7 +28,7 @@ SHOW_CURSOR = "\x1b[?25h"
 def arguments(what: str) -> list[str]:
     """Of Snakemake, for a target of the Makefile."""
     given = {name: os.environ.get(name, "") for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")}
-    targets = os.environ.get("TARGET", "").split()
+    targets = [meant(target) for target in os.environ.get("TARGET", "").split()]
     values = [f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if given[name]]
     options = (["--config", *values] if values else []) + (
         ["--configfile", given["OVERLAY"]] if given["OVERLAY"] else []
@@ -44,8 +46,36 @@ def arguments(what: str) -> list[str]:
     return ["--cores", os.environ.get("CORES", "2"), *options, "--", *targets]
 
 
+def meant(target: str) -> str:
+    """A figure by less than its path, as fig5, fig05.png or study_arrest.pdf, as Snakemake knows it; else the same."""
+    name, dot, ending = target.removeprefix("results/figures/").partition(".")
+    short = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
+    start = f"fig{int(short[1]):02d}_" if short else None
+    for path in sorted(Path("src/slippulse/figures").glob("*_*.py")):
+        if path.stem == name or (start and path.stem.startswith(start)):
+            return f"results/figures/{path.stem}.{ending}" if dot else path.stem
+    return target
+
+
+def answer(seconds: float) -> str:
+    """What to open when a run has ended, with the verdicts if it made or kept them, and how long it took."""
+    took = f"{seconds // 60:.0f} min {seconds % 60:.0f} s" if seconds >= 60 else f"{seconds:.0f} s"
+    called = json.loads(CALL.read_text(encoding="utf-8"))
+    if called["page"]:
+        from slippulse.claims.reading import Ledger
+
+        ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
+        return f"{ledger.summary()}\nOpen results/index.html. It took {took}."
+    if called["targets"] == ["all"]:
+        return (
+            f"Open results/figures; TARGET=everything makes studies, ledger and report too. It took {took}."
+        )
+    return f"Made: {', '.join(called['targets'])}. It took {took}."
+
+
 def main(what: str) -> int:
     """Run it in a group of processes of its own; returns the exit code."""
+    began = time.monotonic()
     # When this process ends, however that happens, the other end of this pipe tells Snakemake.
     leash, held = os.pipe()
     process = None
@@ -70,6 +100,8 @@ def main(what: str) -> int:
     with suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
     os.close(held)
+    if code == 0 and what == "replicate":
+        print(answer(time.monotonic() - began))
     return code if code >= 0 else 128 - code
 
 

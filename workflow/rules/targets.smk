@@ -10,6 +10,7 @@ from contextlib import suppress
 from types import SimpleNamespace
 
 from snakemake.cli import get_argument_parser
+from snakemake.logging import logger
 
 from slippulse.configuration.problems import format_problems
 from slippulse.data.files import write_text
@@ -19,7 +20,7 @@ from slippulse.data.verify import problems_of
 from slippulse.steps.origins import Job, is_result, origins_of
 from slippulse.steps.targets import check_places, check_targets
 
-# How this run was called, which `make verify` asks for.
+# How this run was called, which `make verify` and the last line of a run ask for.
 CALL = "records/.call"
 CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
 # With these Snakemake only looks.
@@ -203,6 +204,16 @@ def verify(complete):
     raise SystemExit(1 if problems else 0)
 
 
+def heard(record):
+    """Of what Snakemake logs: without a bar on a terminal one line a job; not that it has finished when it has failed."""
+    if getattr(record, "done", None) and not sys.stderr.isatty():
+        print(f"{record.done} of {record.total}", file=sys.stderr)
+    return "Complete log" not in str(record.msg)
+
+
+logger.addFilter(heard)
+
+
 try:
     if workflow.is_main_process:
         refuse_unknown_targets()
@@ -224,7 +235,8 @@ try:
             settle_times(WANTED)
             if not all(Path("results", name).exists() for name in WANTED):
                 JOBS.begin()
-            write_text(json.dumps({"options": OPTIONS, "targets": targets}), Path("results", CALL))
+            called = {"options": OPTIONS, "targets": targets, "page": "index.html" in WANTED}
+            write_text(json.dumps(called), Path("results", CALL))
 except ConfigError as error:
     refuse(str(error))
 except OSError as error:
