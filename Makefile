@@ -38,7 +38,7 @@ CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
     case "$$PRESET" in *[!A-Za-z0-9_-]*) echo "PRESET: $$PRESET; allowed: the name of a preset, such as draft" >&2; exit 1;; esac; \
     case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe reference replicate rulegraph verify test test-pages test-slow test-all faults slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify test test-pages test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
@@ -53,6 +53,7 @@ help:
 	@echo "make slurm-test  the draft through a Slurm of one node, started for it here, against the draft without"
 	@echo "make check       format and lint"
 	@echo "make describe    the tables of config/README.md and the JSON Schema, from the definition of the keys"
+	@echo "make tutorial    docs/tutorial.md from top to bottom, its pictures into results/tutorial"
 	@echo "make reference   the reference of the Python interface, from its docstrings, into results/reference"
 	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
 	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
@@ -96,6 +97,10 @@ lock:
 # The JSON Schema and the tables of config/README.md, from the definition of the configuration's keys.
 describe: $(READY)
 	@"$(BIN)/python" docs/describe.py
+
+# The tutorial as a script; its pictures go to results/tutorial.
+tutorial: $(READY)
+	@"$(BIN)/python" docs/run_tutorial.py results/tutorial
 
 # The reference of the Python interface, from its docstrings.
 reference: $(READY)
