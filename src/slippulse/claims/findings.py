@@ -148,6 +148,17 @@ def best_fit(evidence: Evidence, _: float) -> dict[str, float | str]:
     }  # fmt: skip
 
 
+def published_scheme(evidence: Evidence, _: float) -> dict[str, float]:
+    """How far numbers of the authors' published scheme, and of ours on the same lattice, are from the exact ones."""
+    study = evidence.tables["published_scheme"].set_index("quantity")
+    names = {"front_speed": "speed", "first_stick_time": "time", "pulse_slip": "slip"}
+    return {
+        f"{name}_{who}": abs(float(study.loc[quantity, who] / study.loc[quantity, "exact"]) - 1.0)
+        for quantity, name in names.items()
+        for who in ("published", "localised")
+    }
+
+
 FINDINGS: dict[str, Callable[[Evidence, float], Mapping[str, float | str]]] = {
     "pulse_at_figure_damping": damped_pulse,
     "third_parameter": third_parameter,
@@ -159,5 +170,6 @@ FINDINGS: dict[str, Callable[[Evidence, float], Mapping[str, float | str]]] = {
     "speed_exact_at_every_gamma": every_gamma,
     "chain_front_speed": chain_front_speed,
     "published_figure_made_with": best_fit,
+    "published_scheme": published_scheme,
     "duration_criterion": lambda *_: {"factor": float(np.pi / np.sqrt(2.0))},
 }
