@@ -6,7 +6,14 @@ from types import SimpleNamespace
 
 import pytest
 
-from slippulse.claims.reading import Ledger, compared_text, measured_text, predicted_text, why_text
+from slippulse.claims.reading import (
+    Ledger,
+    compared_text,
+    evidence_text,
+    measured_text,
+    predicted_text,
+    why_text,
+)
 
 CLAIM = {
     "id": "one", "kind": "exact", "verdict": "not reproduced", "predicted": 1.0, "measured": 1.25, "uncertainty": 0.01,
@@ -74,6 +81,13 @@ def test_numbers_are_written_as_their_kind_has_them(fields, predicted, measured,
         measured,
         compared,
     )
+
+
+def test_a_verdict_that_hangs_on_the_tolerance_says_so():
+    sides = {"below": "inconclusive", "above": "reproduced"}
+    flips = [sides | {"tolerance": tolerance} for tolerance in (0.1, 0.15, 0.29)]
+    found = evidence_text(claim(**ALWAYS, flips_at=flips))
+    assert found == "with a tolerance below 0.150: inconclusive; with a tolerance above 0.290: reproduced"
 
 
 def test_what_follows_is_not_counted_again():

@@ -13,6 +13,8 @@ from .rules import VERDICTS, WORST_FIRST
 FAILURES_FIRST = WORST_FIRST
 # A tolerance below this is for rounding alone.
 SLIGHT = 1e-6
+# Whether a tolerance that is this much larger or smaller would change a verdict is said with the claim.
+BAND = 1.5
 
 
 class Numbers(SimpleNamespace):
@@ -169,6 +171,13 @@ def evidence_text(claim: SimpleNamespace) -> str:
     if estimate and claim.exact_largest is not None:
         median, largest = percent(claim.exact_median), percent(claim.exact_largest)
         parts.append(f"runs off the exact theory by {median} (median) to {largest}")
+    for flip in getattr(claim, "flips_at", []):
+        larger = flip["tolerance"] > claim.tolerance
+        if 1.0 / BAND <= flip["tolerance"] / claim.tolerance <= BAND:
+            other = flip["above" if larger else "below"]
+            parts.append(
+                f"with a tolerance {'above' if larger else 'below'} {number(flip['tolerance'], 3)}: {other}"
+            )
     if claim.follows_from:
         names = ", ".join(f"`{id}`" for id in claim.follows_from)
         parts.append(f"follows from {names} and is not counted again")
