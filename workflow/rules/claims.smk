@@ -16,7 +16,9 @@ rule write_claims:
         coarser=tables("uncertainties/coarser", CLAIM_SIMULATIONS),
         uncertainties=tables("uncertainties", CLAIM_SIMULATIONS),
         predicted=tables("predictions", declared("claims.paper", "PREDICTED")),
-        studies=tables("studies", ["exact_pulses", "open_choices", "published_figure", "published_scheme"]),
+        studies=tables(
+            "studies", ["exact_pulses", "open_choices", "published_figure", "published_scheme", "rate_dependence"]
+        ),
         texts="manuscript/claims.yaml",
         statements="manuscript/statements.yaml",
     output:

@@ -15,6 +15,7 @@ from .entries import positions
 from .evidence import Claim, Evidence
 from .inference import inference, right_panel
 from .pulses import pulse_claims
+from .rate import rate_claims
 from .reading import why_text
 from .regimes import regime_claims
 from .transition import transition_claims
@@ -55,6 +56,7 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
         If the entries and what is computed are not about the same claims.
     """
     claims = [*pulse_claims(evidence), *transition_claims(evidence), *regime_claims(evidence)]
+    claims += rate_claims(evidence)
     found = {claim["id"]: claim for claim in [*claims, *published_figure(evidence, readings)]}
     if odd := sorted({*evidence.entries} ^ {*found}):
         raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
