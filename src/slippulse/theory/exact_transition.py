@@ -50,7 +50,9 @@ class Fronts:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
         self.prestress = prestress
         right, end, _ = law.rightwards(0.0, 0.0, float(reach), np.inf)
-        left, start, _ = law.mirrored().rightwards(0.0, 0.0, float(reach), np.inf)
+        left, start = right, end
+        if not prestress.symmetric:
+            left, start, _ = law.mirrored().rightwards(0.0, 0.0, float(reach), np.inf)
         self.ends = {side: x if x < reach else np.inf for side, x in ((-1.0, start), (1.0, end))}
         self.curve = Curve(seen(left, -1.0) + right)
 
