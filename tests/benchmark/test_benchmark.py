@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import tolerances as tol
 
 import slippulse as sp
 from benchmarks import __main__ as command
-from benchmarks import measure, stencils
+from benchmarks import critical_path, measure, stencils
 from slippulse.data.records import Origin, write_record
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
@@ -99,3 +100,17 @@ def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatc
         total = scene["textbook_steps"] * scene["textbook_seconds_a_step"][kind]
         assert scene["times_faster_than_textbook"][kind] == pytest.approx(total / scene["seconds"])
     assert "twice the duration" in capsys.readouterr().out
+
+
+def test_the_critical_path_is_of_the_inputs_that_came_last(tmp_path):
+    # Name: seconds taken, when it ended, what it is made from.
+    run = {"a": (4.0, 4.0, []), "b": (1.0, 1.0, []), "c": (2.0, 6.5, ["a", "b"]), "d": (1.0, 3.0, ["b"])}
+    for name, (seconds, ended, inputs) in run.items():
+        path = tmp_path / f"records/{name}.json"
+        path.parent.mkdir(exist_ok=True)
+        record = {"outputs": {name: ""}, "inputs": dict.fromkeys(inputs, ""), "used": {"seconds": seconds}}
+        path.write_text(json.dumps(record), encoding="utf-8")
+        os.utime(path, (ended, ended))
+    jobs = critical_path.jobs_in(tmp_path)
+    assert [(job.name, job.began) for job in critical_path.critical_path(jobs)] == [("a", 0.0), ("c", 4.5)]
+    assert critical_path.at_once(jobs) == {0: 0.5, 1: 4.0, 2: 2.0}
