@@ -104,16 +104,13 @@ def test_its_numbers_are_those_of_the_library(file, opened):
 
 
 def test_fronts_into_negative_pre_stress_are_those_of_the_library(file, opened):
-    levels = [
-        (-0.5, 0.5, 0.65),
-        (0.7, -0.3, 0.65),
-        (-0.2, -0.4, 0.65),
-        (-0.5, 0.0, 0.0),
-        (-0.3, -0.5, 0.0),
-        (-0.5, 0.2, 0.0),
-    ]
+    cases = [
+        (-0.5, 0.5, 0.65, 0.0), (0.7, -0.3, 0.65, 0.0), (-0.2, -0.4, 0.65, 0.0), (-0.5, 0.5, 0.65, 0.5),
+        (-0.5, 0.0, 0.0, 0.0), (-0.3, -0.5, 0.0, 0.0), (-0.5, 0.2, 0.0, 0.5),
+    ]  # fmt: skip
     scenes = [
-        SCENE | {"left": left, "right": right, "gamma": gamma, "end": 12.0} for left, right, gamma in levels
+        SCENE | {"left": left, "right": right, "gamma": gamma, "alpha": alpha, "end": 12.0}
+        for left, right, gamma, alpha in cases
     ]
     with opened(file) as page:
         found = page.evaluate(
@@ -125,19 +122,26 @@ def test_fronts_into_negative_pre_stress_are_those_of_the_library(file, opened):
             scenes,
         )
     for scene, (fronts, stopped) in zip(scenes, found, strict=True):
-        exact = Rupture(Prestress(scene["left"], scene["right"]), scene["gamma"], 0.1, "total", scene["end"])
+        exact = Rupture(
+            Prestress(scene["left"], scene["right"]),
+            scene["gamma"],
+            0.1,
+            "total",
+            scene["end"],
+            1,
+            scene["alpha"],
+        )
         at = [x for part in (0.3, 0.6, 1.0) for x in exact.fronts_at(part * scene["end"])]
         assert fronts == pytest.approx(at, rel=EXPLORER), scene
         assert stopped == [end.reason == "stops" for end in exact.front_ends[0]]
 
 
 def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(file, opened):
-    # By the exact solution, as the study of the rate term has it.
-    exact = {0.0: 3.7795, 0.4: 4.0206, 0.7: 4.4913, 0.9: 5.1196}
+    rates = [-0.3, 0.0, 0.4, 0.7, 0.9]
     with opened(file) as page:
         found = page.evaluate(
             "scenes => scenes.map((scene) => new Rupture(scene, DATA.law).transition().transitionTime)",
-            [SCENE | {"alpha": alpha} for alpha in exact],
+            [SCENE | {"alpha": alpha} for alpha in rates],
         )
         slip, critical, *beyond = page.evaluate(
             """scene => { const v = 1 / frontLaw(DATA.law, scene.ratio, scene.release)(0.5); return [
@@ -146,7 +150,8 @@ def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(fi
                     steadyPulse({ ...scene, beta: 0, alpha: part * criticalRate(scene.gamma, v) }, v) !== null))]; }""",
             SCENE,
         )
-    assert found == pytest.approx(list(exact.values()), rel=2e-5)
+    ruptures = [Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 20.0, 1, alpha) for alpha in rates]
+    assert found == pytest.approx([rupture.transition_time for rupture in ruptures], rel=EXPLORER_SPEED)
     assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5) and beyond == [True, False]
 
 
