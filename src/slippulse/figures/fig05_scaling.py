@@ -41,6 +41,7 @@ def plot(table: pd.DataFrame) -> Figure:
             draw_collapse(axes, runs, quantity)
             axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
             inset = axes.inset_axes((0.09, 0.58, 0.36, 0.33))
+            inset.set_in_layout(False)
             inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
             draw_ratio(inset, runs[runs[other].isin(chosen(runs[other], 3))], quantity, "left", other, "o")
             inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
