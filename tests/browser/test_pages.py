@@ -14,7 +14,8 @@ import pytest
 
 RESULTS = os.environ.get("PAGES", "")
 PAGES = (
-    "index.html", "claims.html", "manuscript/replication.html", "explorer.html", "scenes/barrier.html",
+    "index.html", "claims.html", "manuscript/replication.html", "manuscript/supplement.html", "explorer.html",
+    "scenes/barrier.html",
 )  # fmt: skip
 # What the explorer may weigh, and the report with all its figures inside.
 LARGEST = {"explorer.html": 300e3, "manuscript/replication.html": 3.5e6}
@@ -87,5 +88,5 @@ def test_a_figure_of_the_report_enlarges(results, opened):
 def test_print_unfolds_what_is_folded(results, opened):
     with opened(results / "index.html") as page:
         page.emulate_media(media="print")
-        hidden = page.locator("details:not([open]) table").first
+        hidden = page.locator("details:not([open]) p").first
         assert hidden.bounding_box()["height"] > 0

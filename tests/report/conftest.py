@@ -81,8 +81,6 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     def row(variable: str) -> dict[str, float]:
         return {name: 1.0 + 0.01 * i for i, name in enumerate(re.findall(rf"\b{variable}\.(\w+)", texts))}
 
-    steady = {"left": 0.5, "damping_ratio": 0.1, "front_speed_right": 1.25, "pulse_peak_velocity": 0.8}
-    steady |= {f"{who}_{name}": 1.1 for who in ("exact", "paper") for name in [*steady][2:]}
     quoted = [{"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()]
     for name in ("release_time", "stick_time", "final_slip"):
         quoted += [{"quantity": name, "x": x, "value": 1.0 + x} for x in (0.0, 1.0)]
@@ -92,7 +90,7 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     )  # fmt: skip
     rows = {
         "space_time_displacement": [row("scene")], "space_time_stress": [row("crack")],
-        "steady_displacement": [steady] * 2, "scaling_displacement": [scaling],
+        "scaling_displacement": [scaling],
         "derivations": quoted, "extremes": [EDGE],
     }  # fmt: skip
     studied = write_report.NEEDS["uncertainties"]

@@ -190,34 +190,6 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
     return table(head, rows, [40, 10, 12, 20, 18], "lrrrr")
 
 
-def presets(config: Mapping) -> str:
-    """The presets of the configuration; the one of this run is in bold."""
-    rows = []
-    for name, preset in config["presets"].items():
-        settings = [setting(preset[key]) for key in ("dx", "max_step", "order")]
-        coarser = " and ".join(map(setting, preset["coarser"]))
-        rows.append([f"**{name}**" if name == config["preset"] else name, *settings, coarser])
-    step = r"largest step over $\Delta x$"
-    head = ["preset", r"spacing $\Delta x$", step, "order", "grid study, times coarser"]
-    return table(head, rows, [18, 18, 24, 12, 28], "lrrrr")
-
-
-def speeds(runs: pd.DataFrame, study: pd.DataFrame) -> str:
-    """Front speed and peak slip velocity of a sweep: simulated, with uncertainty, exact, and by the paper."""
-    errors = study.set_index(["point", "quantity"])["uncertainty"]
-
-    rows = []
-    for run, row in enumerate(runs.to_dict("records")):
-        cells = [setting(row["left"]), setting(row["damping_ratio"])]
-        for name in ("front_speed_right", "pulse_peak_velocity"):
-            cells.append(with_uncertainty(row[name], errors.get((run, name))))
-            cells += [number(row[f"{theory}_{name}"], 5) for theory in ("exact", "paper")]
-        rows.append(cells)
-    speed = ["$v$, run", "$v$, exact", r"$1/\sqrt{1-\tau_0^2}$"]
-    head = [r"$\tau_0$", "$b$", *speed, "peak, run", "peak, exact", r"$1/\sqrt{\gamma}$"]
-    return table(head, rows, [9, 9, 13, 13, 16, 13, 14, 13], "rrrrrrrr")
-
-
 def sticking(examples: pd.DataFrame) -> str:
     """When positions x of an exact rupture are released and stick, and their slip; empty without a rupture."""
     columns = ["release_time", "stick_time", "final_slip"]

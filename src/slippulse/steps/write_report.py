@@ -23,13 +23,11 @@ NEEDS = {
         "scaling_displacement",
         "space_time_displacement",
         "space_time_stress",
-        "steady_displacement",
     ],
     "predicted": [
         "scaling_displacement",
         "space_time_displacement",
         "space_time_stress",
-        "steady_displacement",
     ],
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["derivations", "extremes"],
