@@ -75,7 +75,7 @@ def results(project, tmp_path_factory):
     (results / "claims.html").write_text(claims_page(CLAIMS, tables=TABLES), encoding="utf-8")
     (results / "scenes/made.html").write_text("<p>")
     config = read(project / "config/config.yaml")
-    facts = provenance(project, config | {"preset": "draft"}, config, results)
+    facts = provenance(project, "", config | {"preset": "draft"}, config, results)
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
     for name, content in {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}.items():
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
