@@ -18,7 +18,7 @@ from ..model.prestress import Prestress
 from ..model.scene import BOUNDARIES, RELEASES, Scene
 from ..model.stability import MARGIN, largest_step
 from ..theory.front_law import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 from .expand import promise_of, runs
 
 SMALLEST, LARGEST = 1e-4, 0.1
@@ -142,7 +142,7 @@ def _over_springs(
     for level in (level for level in levels if level > 0.0):
         speed = _speed(level, ratio, release)
         # In the limit dx -> 0 damping acts through the speed alone.
-        width = steady_pulse(level, gamma, 0.0, speed).width
+        width = pulse_behind_front(level, gamma, 0.0, speed).width
         layer = ratio * speed / ((speed - 1.0) * (speed + 1.0))
         spacings += [
             width / BLOCKS,

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..model.scene import Scene
 from ..theory.front_law import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 from .accuracy import promised
 from .bound import corners
 from .expand import expand, run_count
@@ -85,6 +85,6 @@ def pulse_blocks(scene: Scene) -> float:
         return math.inf
     try:
         speed = float(front_speed(level, scene.damping_ratio, scene.release))
-        return steady_pulse(level, scene.gamma, scene.beta, speed).width / scene.dx
+        return pulse_behind_front(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):
         return math.inf

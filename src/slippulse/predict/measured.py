@@ -13,7 +13,12 @@ from ..measure.fronts import path
 from ..measure.pulses import LeadingPulse, comoving, slip_variation
 from ..measure.table import measure_run
 from ..model.prestress import prestress_from
-from ..theory.pulse import paper_pulse, paper_transition_displacement, paper_transition_stress, steady_pulse
+from ..theory.pulse import (
+    paper_pulse,
+    paper_transition_displacement,
+    paper_transition_stress,
+    pulse_behind_front,
+)
 
 # A width that differs from that of the steady pulse at the measured speed by more than this, the damped layer and the
 # blocks that the front takes, or slip that still varies by more than this behind it, belongs to a pulse that changes.
@@ -76,7 +81,7 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
     if pulse.speed <= 1.0:
         return "unsteady"
     beta, dx = run.attrs["beta"], run.attrs["dx"]
-    steady = steady_pulse(tau, run.attrs["gamma"], beta, pulse.speed)
+    steady = pulse_behind_front(tau, run.attrs["gamma"], beta, pulse.speed)
     layer = beta * pulse.speed / (pulse.speed**2 - 1.0)
     if layer > THICKEST_LAYER * steady.width:
         return "thick_front"

@@ -16,7 +16,7 @@ from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed
-from ..theory.pulse import SteadyPulse, paper_pulse, steady_pulse
+from ..theory.pulse import SteadyPulse, paper_pulse, pulse_behind_front
 from .final_regime import UNDECIDED, final_regime, growth_beyond
 
 Found = TypeVar("Found")
@@ -104,7 +104,7 @@ def _pulse(scene: Scene, speed: float) -> dict[str, float]:
     if scene.boundary == "displacement" and 0.0 < level < 1.0:
         paper = _known(lambda: paper_pulse(level, scene.gamma))
         if speed > 1.0:
-            exact = _known(lambda: steady_pulse(level, scene.gamma, scene.beta, speed))
+            exact = _known(lambda: pulse_behind_front(level, scene.gamma, scene.beta, speed))
     out = {}
     for kind, pulse in (("paper", paper), ("exact", exact)):
         for name in ("width", "slip", "peak_velocity"):

@@ -26,7 +26,7 @@ from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed as exact_speed
 from ..theory.front_law import front_speed_undamped
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
@@ -118,7 +118,7 @@ def pulse_errors(of: Scene, ratio: float, window: float) -> dict[str, float]:
     pulse, speed = leading_pulse(run, window), float(exact_speed(LEVEL, ratio))
     transition = transition_of(of.prestress, GAMMA, ratio)
     # At fixed beta/dx damping acts at the front alone in the continuum.
-    steady = steady_pulse(LEVEL, GAMMA, 0.0 if of.scheme == "continuum" else of.beta, speed)
+    steady = pulse_behind_front(LEVEL, GAMMA, 0.0 if of.scheme == "continuum" else of.beta, speed)
     ratios = {
         "front_speed": pulse.speed / speed,
         "peak_velocity": pulse.peak_velocity / steady.peak_velocity,

@@ -14,7 +14,7 @@ from ..model.scene import Scene
 from ..solver.run import run_scene
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 
 NEEDS = {}  # type: dict[str, list[str]]
 
@@ -77,7 +77,7 @@ def entered(
     out than the pulse remembers its nucleation. ``exact`` is about how far the front comes.
     """
     speed = float(front_speed(tau0, ratio))
-    width = steady_pulse(tau0, gamma, 0.0, speed).width
+    width = pulse_behind_front(tau0, gamma, 0.0, speed).width
     start = (math.floor((TAIL * WIDTH + width / (speed - 1.0)) / dx) + 0.5) * dx
     both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
     profile, duration = Prestress(tau0, tau0, WIDTH, steps=both), start + CROSSINGS * exact + width

@@ -9,7 +9,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..theory.front_law import front_speed
-from ..theory.pulse import paper_pulse, steady_pulse
+from ..theory.pulse import paper_pulse, pulse_behind_front
 
 # Simulations whose parameters the curves have.
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
@@ -33,12 +33,12 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     for left in sorted({each.prestress.left for each in swept}):
         paper = paper_pulse(left, scene.gamma)
         for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
-            pulse = steady_pulse(left, scene.gamma, ratio * scene.dx, speed)
+            pulse = pulse_behind_front(left, scene.gamma, ratio * scene.dx, speed)
             for name in QUANTITIES:
                 rows.append(("curve", left, ratio, name, getattr(pulse, name) / getattr(paper, name)))
     scene = refined[0]
     left, ratio = scene.prestress.left, scene.damping_ratio
-    pulse = steady_pulse(left, scene.gamma, 0.0, float(front_speed(left, ratio, scene.release)))
+    pulse = pulse_behind_front(left, scene.gamma, 0.0, float(front_speed(left, ratio, scene.release)))
     limits = {name: getattr(pulse, name) for name in QUANTITIES} | {"front_speed": pulse.speed}
     rows += [("limit", left, ratio, name, value) for name, value in limits.items()]
     return pd.DataFrame(rows, columns=["role", "left", "damping_ratio", "quantity", "value"])

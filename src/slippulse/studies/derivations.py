@@ -16,7 +16,7 @@ from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.exact_transition import exact_transition_displacement, uniform_transition_time
 from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
-from ..theory.pulse import SteadyPulse, steady_pulse
+from ..theory.pulse import SteadyPulse, pulse_behind_front
 from ..theory.rupture import Rupture
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
@@ -52,7 +52,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     def pulse() -> SteadyPulse:
         """An undamped one at the speed with damping."""
-        return steady_pulse(level, gamma, 0.0, float(front_speed(level, ratio, release)))
+        return pulse_behind_front(level, gamma, 0.0, float(front_speed(level, ratio, release)))
 
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),

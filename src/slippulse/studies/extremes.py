@@ -24,7 +24,7 @@ from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, exact_transition_displacement
 from ..theory.front_law import front_speed as exact_speed
 from ..theory.front_law import lattice_front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 
 NEEDS = {"settings": ["measure.front_window"]}
 
@@ -90,7 +90,7 @@ def edges() -> Iterator[Edge]:
         (0.02, 0.002, 100.0, "right"), (0.01, 0.4, 60.0, "flagged"), (0.01, 0.01, 60.0, "flagged"),
     ):  # fmt: skip
         of = {"level": level, "dx": dx, "duration": duration, "width": max(0.02, dx)}
-        slip = steady_pulse(level, GAMMA, RATIO * dx, speed(level)).slip
+        slip = pulse_behind_front(level, GAMMA, RATIO * dx, speed(level)).slip
         yield Edge("level near 0", f"tau_0 = {level:g}, dx = {dx:g}", "final slip", should, slip, of)
     # Slip of 1e8, at 500 blocks to 1/sqrt(gamma), the scale of the leaf springs.
     for gamma in (1e-8, 1e-4):

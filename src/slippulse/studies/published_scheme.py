@@ -13,7 +13,7 @@ from ..model.scene import Scene
 from ..simulation.simulate import simulate
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 
 NEEDS = {"settings": ["measure.front_window"]}
 
@@ -43,7 +43,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         "exact": {
             "front_speed": speed,
             "first_stick_time": exact_transition_displacement(profile, GAMMA, ratio).time,
-            "pulse_slip": steady_pulse(LEVEL, GAMMA, BETA, speed).slip,
+            "pulse_slip": pulse_behind_front(LEVEL, GAMMA, BETA, speed).slip,
         },
     }
     return pd.DataFrame(found).rename_axis("quantity").reset_index()

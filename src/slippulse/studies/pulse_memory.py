@@ -10,7 +10,7 @@ import pandas as pd
 from ..configuration.expand import expand
 from ..predict.exact_rupture import exact_rupture
 from ..theory.front_law import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import pulse_behind_front
 
 # The simulation whose parameters the curves have.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
@@ -35,7 +35,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         # In the limit dx -> 0 damping acts through the speed alone.
         speeds = front_speed(np.array([scene.prestress.right, level]), scene.damping_ratio, scene.release)
         old, new = (
-            steady_pulse(each, scene.gamma, 0.0, float(speed))
+            pulse_behind_front(each, scene.gamma, 0.0, float(speed))
             for each, speed in zip((scene.prestress.right, level), speeds, strict=True)
         )
         memory = new.width / (new.speed - 1.0)

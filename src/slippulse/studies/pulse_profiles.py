@@ -11,7 +11,7 @@ from ..configuration.expand import expand
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.front_law import front_speed
-from ..theory.pulse import SteadyPulse, steady_pulse
+from ..theory.pulse import SteadyPulse, pulse_behind_front
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 
@@ -28,7 +28,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     -------
     simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration
 
-    Source: `steady_pulse` under a displacement boundary, `ArrestingCrack.far_pulse` under a stress boundary.
+    Source: `pulse_behind_front` under a displacement boundary, `ArrestingCrack.far_pulse` under a stress boundary.
     """
     parts = []
     for name, sweep in settings["sweeps"].items():
@@ -39,7 +39,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
             else:
                 level = scene.prestress.right
                 speed = float(front_speed(level, scene.damping_ratio, scene.release))
-                found = profile(steady_pulse(level, scene.gamma, scene.beta, speed))
+                found = profile(pulse_behind_front(level, scene.gamma, scene.beta, speed))
             parts.append(found.assign(simulation=name, run=run))
     return pd.concat(parts, ignore_index=True)
 

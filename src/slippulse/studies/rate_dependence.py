@@ -14,8 +14,9 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.simulate import simulate
 from ..theory.front_law import front_speed
-from ..theory.pulse import critical_rate_strengthening, steady_pulse
+from ..theory.pulse import critical_rate_strengthening
 from ..theory.rupture import Rupture
+from ..theory.steady import steady_pulse
 
 NEEDS = {}  # type: dict[str, list[str]]
 

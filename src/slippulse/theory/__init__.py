@@ -20,7 +20,7 @@ _HOMES = {
     "damage_zone_stress_drop": "dimensional",
     "exact_transition_displacement": "exact_transition",
     "front_speed": "front_law",
-    "front_speed_undamped": "front_law",
+    "front_speed_undamped": "pulse",
     "lattice_front_speed": "front_law",
     "paper_pulse": "pulse",
     "paper_transition_displacement": "pulse",
@@ -29,7 +29,7 @@ _HOMES = {
     "prestress_for_speed": "front_law",
     "slip_velocity": "exact_transition",
     "steady_front": "front_motion",
-    "steady_pulse": "pulse",
+    "steady_pulse": "steady",
     "uniform_transition_time": "exact_transition",
 }
 __all__ = list(_HOMES)

@@ -12,7 +12,7 @@ from ..model.prestress import Prestress
 from .curve import Curve
 from .front_law import front_speed
 from .fronts import straight_panel
-from .pulse import steady_pulse
+from .pulse import pulse_behind_front
 from .slow_front import advance
 
 # Panels behind the barrier, each so long in units of 1/sqrt(gamma), as far as the barrier remembers.
@@ -47,7 +47,7 @@ def barrier_depth(
     speed = float(front_speed(tau0, damping_ratio, release))
     check_number(f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST)
     # The depth scales like 1/sqrt(gamma). Its characteristics entered no further back than the pulse remembers.
-    memory = MEMORY * steady_pulse(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    memory = MEMORY * pulse_behind_front(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     # T rises to the right, as behind a pulse that comes from far away.

@@ -20,6 +20,7 @@ from ..model.checks import (
     of_one_shape,
 )
 from ..model.scene import RELEASES
+from .pulse import front_speed_undamped
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
@@ -35,18 +36,6 @@ SLOWEST_MARGIN = 1e-6
 CHUNK = 128
 # Where the pre-stress is looked at for its least, and how often the range is narrowed.
 SCAN, NARROWINGS = 64, 6
-
-
-def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
-
-    Parameters
-    ----------
-    tau0 : float or array, in [0, 1)
-
-    Raises ValueError: outside the domain.
-    """
-    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):

@@ -10,7 +10,18 @@ import numpy as np
 from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_domains, check_number
 from ..model.prestress import Prestress
-from .front_law import front_speed, front_speed_undamped
+
+
+def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
+    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
+
+    Parameters
+    ----------
+    tau0 : float or array, in [0, 1)
+
+    Raises ValueError: outside the domain.
+    """
+    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 @dataclass(frozen=True)
@@ -58,19 +69,17 @@ class SteadyPulse:
         return slip, velocity, acceleration
 
 
-def steady_pulse(
-    tau0: float, gamma: float, beta: float = 0.0, speed: float | None = None, *, damping_ratio: float | None = None,
-    release: str = "total", rate_strengthening: float = 0.0,
-) -> SteadyPulse:  # fmt: skip
-    """Steady pulse in uniform pre-stress behind a front whose speed is given, or follows from the damping ratio.
+def pulse_behind_front(
+    tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
+) -> SteadyPulse:
+    """Steady pulse in uniform pre-stress behind a front of given speed.
 
     Parameters
     ----------
     tau0 : pre-stress, in (0, 1)
     gamma : elasticity ratio, > 0
     beta : damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
-    speed : front speed, > 1, or
-    damping_ratio, release : of `front_speed`, where the speed is left out
+    speed : front speed, > 1
     rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
 
     Raises ValueError: outside the domain.
@@ -80,10 +89,6 @@ def steady_pulse(
     """
     check_domains(tau0=tau0, gamma=gamma)
     check_number("beta", beta, at_least=0.0)
-    if (speed is None) == (damping_ratio is None):
-        raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
-    if speed is None:
-        speed = front_speed(tau0, damping_ratio, release)
     check_number("speed", speed, above=1.0)
     check_number("rate_strengthening", rate_strengthening)
     given, alpha = (float(tau0), float(gamma), float(beta), float(speed)), float(rate_strengthening)
@@ -156,7 +161,7 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     Source: section III A and appendix C of the paper.
     """
     check_domains(tau0=tau0)
-    return steady_pulse(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))
+    return pulse_behind_front(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
