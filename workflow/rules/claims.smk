@@ -17,7 +17,8 @@ rule write_claims:
         uncertainties=tables("uncertainties", CLAIM_SIMULATIONS),
         predicted=tables("predictions", declared("claims.paper", "PREDICTED")),
         studies=tables(
-            "studies", ["exact_pulses", "open_choices", "published_figure", "published_scheme", "rate_dependence"]
+            "studies",
+            ["exact_pulses", "open_choices", "published_figure", "published_scheme", "rate_dependence"],
         ),
         texts="manuscript/claims.yaml",
         statements="manuscript/statements.yaml",
