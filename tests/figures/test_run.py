@@ -37,10 +37,16 @@ def test_what_is_no_run_is_refused():
         sp.plot({})
     with pytest.raises(TypeError, match=r"^run: Dataset; allowed: a Dataset that simulate returned$"):
         sp.plot(sp.run_sweep([PLAIN]))
-    run = sp.simulate(PLAIN)
-    run["release_time"][:] = np.nan
-    with pytest.raises(ValueError, match=r"^run: nothing slipped"):
-        sp.plot(run)
+
+
+@pytest.mark.parametrize("boundary", ["displacement", "stress"])
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+@pytest.mark.parametrize(("peak", "times", "positions"), [(1.0, 0, 0), (0.9, 1, 9), (1.0, 5, 1)])
+def test_every_run_is_drawn(boundary, scheme, peak, times, positions):
+    gamma = 0.65 * (boundary == "displacement")
+    scene = sp.Scene(boundary, sp.Prestress(-0.5, 0.0, peak=peak), 4.0, 0.1, gamma=gamma, scheme=scheme)
+    samples = sp.Samples(np.linspace(0.0, 4.0, times), np.linspace(-3.0, 3.0, positions))
+    assert sp.plot(sp.simulate(scene, samples))._repr_png_().startswith(b"\x89PNG")
 
 
 def test_a_scene_shows_its_parameters():

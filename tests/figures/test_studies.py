@@ -271,3 +271,22 @@ def test_regions_are_drawn_around_the_best_fits_and_curves_as_far_as_accepted(dr
             assert np.ptp(inner[:, 0]) < np.ptp(outer[:, 0])
             assert inner[:, 0].min() < found["damping_ratio"] < inner[:, 0].max()
     assert max(line.get_ydata().max() for line in axes[0].lines if line.get_gid()) <= likely(0.95, 7)
+
+
+def test_lattices_a_tenth_away_from_the_line_where_pulses_end_are_on_its_exact_side(draw):
+    table = draw("study_rate_dependence").table
+    runs = table[table["role"] == "lattice"]
+    side = (runs["regime"] == "pulse") == (runs["over_critical"].abs() < 1.0)
+    assert len(runs) >= 40 and side[(runs["over_critical"].abs() - 1.0).abs() > 0.09].all()
+    # Width and slip of those with a pulse, against the exact line.
+    steady = table[table["role"] == "steady"].sort_values("rate_strengthening")
+    pulses = runs[(runs["level"] == 0.5) & (runs["regime"] == "pulse") & (runs["over_critical"].abs() <= 0.5)]
+    for quantity, most in (("pulse_width", 0.05), ("pulse_slip", 0.08)):
+        exact = np.interp(pulses["rate_strengthening"], steady["rate_strengthening"], steady[quantity])
+        assert (pulses[quantity] / exact - 1.0).abs().max() < most
+    # Without leaf springs: the late height is that of diffusion, until the jerks of the left front are as large.
+    arrest = table[(table["role"] == "arrest") & (table["dx"] == 0.05) & table["time"].between(20.0, 90.0)]
+    late = arrest[arrest["rate_strengthening"] == 0.5].merge(
+        table[table["role"] == "asymptote"], on=["rate_strengthening", "time"], suffixes=("", "_limit")
+    )
+    assert (late["largest_velocity"] / late["largest_velocity_limit"]).between(0.8, 1.1).all()

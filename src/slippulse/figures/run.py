@@ -34,13 +34,9 @@ def plot(run: xr.Dataset) -> Picture:
     ------
     TypeError
         If it is not a run.
-    ValueError
-        If nothing slipped.
     """
     if not isinstance(run, xr.Dataset) or not _is_run(run):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
-    if not np.isfinite(run["release_time"]).any():
-        raise ValueError("run: nothing slipped; allowed: a run with a release")
     # The house style is not forced on the figures of whoever calls.
     with matplotlib.rc_context():
         from .shared import space_time as parts
@@ -52,7 +48,7 @@ def plot(run: xr.Dataset) -> Picture:
         figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
         profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
         parts.draw_profile(profile, roles["prestress"])
-        if "sample_velocity" in run:
+        if _has_map(run):
             roles |= {str(role): rows for role, rows in parts.velocity_map(run).groupby("role")}
             image = parts.draw_map(times, roles)
             figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
@@ -69,10 +65,17 @@ def plot(run: xr.Dataset) -> Picture:
                 figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
         else:
             parts.draw_edges(times, roles, run.attrs["end_time"])
-        times.legend(loc="upper left")
+        if np.isfinite(run["release_time"]).any():
+            times.legend(loc="upper left")
         slip.plot(run["slip"], run["x"], color=BLUE)
         slip.set_xlabel(r"slip $u$")
     return figure
+
+
+def _has_map(run: xr.Dataset) -> bool:
+    """Whether slip was sampled at several times and positions; else the fronts alone are drawn."""
+    several = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+    return several and bool((run["sample_velocity"] > 0.0).any())
 
 
 def _is_run(data: xr.Dataset) -> bool:

@@ -59,8 +59,9 @@ def description(roles: Mapping[str, pd.DataFrame]) -> str:
 def limits(run: xr.Dataset) -> tuple[float, float]:
     """Positions that are drawn: what slips and a margin, or as far as samples go where slip goes farther."""
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
-    margin = MARGIN * (slipped[-1] - slipped[0])
-    if "sample_position" not in run:
+    slipped = slipped if slipped.size else run["x"].values
+    margin = max(MARGIN * (slipped[-1] - slipped[0]), run.attrs["dx"])
+    if run.sizes.get("sample_position", 0) < 2:
         return float(slipped[0] - margin), float(slipped[-1] + margin)
     first, last = run["sample_position"].values[[0, -1]]
     margin = max(margin, 3.0 * (last - first) / max(1, run.sizes["sample_position"] - 1))
@@ -146,6 +147,10 @@ def draw_edges(axes: Axes, roles: Mapping[str, pd.DataFrame], end: float) -> Non
     beyond = 0.01 * end
     front, trailing = roles["front"].sort_values("position"), roles["trailing"].sort_values("position")
     x, release = front["position"].to_numpy(), front["time"].to_numpy()
+    axes.set(xlim=(0.0, end), xlabel=r"time $t$")
+    axes.tick_params(labelleft=False)
+    if not x.size:
+        return
     around = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
     around = np.clip(around, roles["prestress"]["position"].min(), roles["prestress"]["position"].max())
     before = np.concatenate([[end, end], release, [end, end]])
@@ -157,5 +162,3 @@ def draw_edges(axes: Axes, roles: Mapping[str, pd.DataFrame], end: float) -> Non
         axes.fill_betweenx(x, stick, end + beyond, color=STUCK, linewidth=0.0, zorder=1.4)
         dashes = (0, (3, 1.5))
         axes.plot(stick, x, color=BLACK, linewidth=0.8, linestyle=dashes, label="trailing edge")
-    axes.set(xlim=(0.0, end), xlabel=r"time $t$")
-    axes.tick_params(labelleft=False)
