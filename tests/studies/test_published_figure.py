@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.optimize import least_squares
 
 from slippulse.claims.inference import curve, inference, likely, right_panel
 from slippulse.model.prestress import Prestress
-from slippulse.predict.published_figure import exact_values
 from slippulse.studies import published_figure as study_module
 from slippulse.studies.published_figure import BETA, LeftPanel
-from slippulse.theory.rupture import Rupture
 
 
 @pytest.fixture(scope="module")
@@ -106,6 +105,6 @@ def test_the_right_panel_fixes_the_width_and_nothing_else(table):
 
 
 def test_an_unknown_quantity_is_named():
-    rupture = Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 6.0)
+    panel = LeftPanel(pd.DataFrame({"quantity": ["colour"], "drawn": 1.0, "reading_error": 0.1}))
     with pytest.raises(ValueError, match="quantity: 'colour'; allowed: front_speed_right"):
-        exact_values(rupture, ["colour"])
+        panel.exact(np.array([0.5, 0.65]), 0.1, "total")

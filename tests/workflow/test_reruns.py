@@ -126,7 +126,7 @@ CONFIGURATIONS = {
     "another level": (
         {"simulations": {"space_time_displacement": {"left": [0.3]}}},
         CHAIN | {"fig04_space_time": 1, "study_published_figure": 1} | dict.fromkeys(
-            ("study_of_exact_space_time", "study_of_derivations", "study_of_exact_pulses"), 1
+            ("study_of_exact_space_time", "study_of_derivations"), 1
         ),
     ),
     "swapped values": (

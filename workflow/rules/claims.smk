@@ -18,7 +18,7 @@ rule write_claims:
         predicted=tables("predictions", declared("claims.paper", "PREDICTED")),
         studies=tables(
             "studies",
-            ["exact_pulses", "open_choices", "published_figure", "published_scheme", "rate_dependence"],
+            ["derivations", "open_choices", "published_figure", "published_scheme", "rate_dependence"],
         ),
         texts="manuscript/claims.yaml",
         statements="manuscript/statements.yaml",

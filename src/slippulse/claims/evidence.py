@@ -125,11 +125,6 @@ class Evidence:
             raise NoRuns(simulation)
         return table
 
-    def exact_pulses(self, simulation: str, quantity: str) -> pd.DataFrame:
-        """Of the study of that name, by run."""
-        study = self.tables["exact_pulses"]
-        return study[(study["simulation"] == simulation) & (study["quantity"] == quantity)].set_index("run")
-
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
         return float(self.entries[id]["tolerance"])

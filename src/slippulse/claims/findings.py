@@ -97,10 +97,10 @@ def never_arrives(evidence: Evidence, _: float) -> dict[str, float]:
 
 def strain_term(evidence: Evidence, _: float) -> dict[str, float]:
     """Curvature of slip at the nucleation point over the pre-stress there, halfway to the transition of figure 4."""
-    study = evidence.exact_pulses("space_time_displacement", "strain_term")
-    if study.empty:
+    exact = evidence.tables["derivations"].set_index("quantity")["value"]
+    if np.isnan(exact["strain_term"]):
         raise NoRuns("space_time_displacement")
-    return {"share": float(study["difference"].iloc[0])}
+    return {"share": float(exact["strain_term"])}
 
 
 def literal_threshold(evidence: Evidence, _: float) -> dict[str, float]:

@@ -13,11 +13,11 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
 from ..predict.exact_rupture import exact_rupture
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
-from ..theory.exact_transition import exact_transition_displacement, uniform_transition_time
 from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
 from ..theory.pulse import SteadyPulse, pulse_behind_front
 from ..theory.rupture import Rupture
+from .gaussian_transition import with_peak, without_peak
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
 
@@ -29,6 +29,8 @@ DECIMALS = 8
 ONE_WAY_DURATION = 8.0
 # A softer layer, in which the peak at nucleation is narrow.
 SOFT = 1.0 / 9.0
+# A derivative in space by a difference over this.
+STEP = 1e-3
 # Fronts that are followed block by block: speeds, damping ratios, and gamma dx^2 of the leaf springs.
 SPEEDS, RATIOS, SPRINGS = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
 
@@ -75,6 +77,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         "transition_peak_highest": lambda: with_peak(levels[-1], 1.0),
         "transition_peak_level": lambda: with_peak(level, 1.0),
         "transition_peak_level_soft": lambda: with_peak(level, SOFT),
+        # What the paper neglects.
+        "strain_term": lambda: strain_term(exact_rupture(published.attributes())),
         # Steady fronts found block by block, and those of them that are admissible.
         "fronts_block_by_block": lambda: len(fronts),
         "fronts_admissible": lambda: sum(front["admissible"] for front in fronts),
@@ -91,15 +95,9 @@ def or_nan(number: Callable[[], float]) -> float:
         return math.nan
 
 
-def without_peak(level: float) -> float:
-    """Time of the transition in uniform pre-stress nucleated at a point, in units of pi/sqrt(gamma)."""
-    return uniform_transition_time(level, 1.0) / math.pi
-
-
-def with_peak(level: float, gamma: float) -> float:
-    """The same with the Gaussian at nucleation."""
-    time = exact_transition_displacement(Prestress(level, level), gamma).time
-    return time * math.sqrt(gamma) / math.pi
+def strain_term(rupture: Rupture) -> float:
+    """Curvature of slip at the nucleation point halfway to the transition, over the pre-stress, which is 1 there."""
+    return abs(float(rupture.strain(STEP, 0.5 * rupture.transition_time)) / STEP)
 
 
 def sticking(scene: Scene) -> list[dict]:
