@@ -19,11 +19,11 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
     rng = np.random.default_rng(int(os.environ["SLIPPULSE_NUDGED"]))
 
     class Law(fronts.FrontLaw):
-        def __init__(self, prestress, gamma, damping_ratio, release, refinement=1):
+        def __init__(self, prestress, gamma, damping_ratio, release, refinement=1, alpha=0.0):
             # Half a lattice is no other scene than the whole: equal keys give equal moves.
             rng = np.random.default_rng(abs(hash((prestress, gamma, damping_ratio))) % 2**32)
-            moved = [nudged(value, rng) for value in (prestress, gamma, damping_ratio)]
-            super().__init__(*moved, release, refinement)
+            *moved, alpha = [nudged(value, rng) for value in (prestress, gamma, damping_ratio, alpha)]
+            super().__init__(*moved, release, refinement, alpha)
 
         def mirrored(self):
             return mirrored(self)
