@@ -7,7 +7,7 @@ import yaml
 
 from slippulse.claims import rules
 from slippulse.claims.choices import over_choices
-from slippulse.claims.paper import SIMULATIONS, arrow_pulls
+from slippulse.claims.paper import SIMULATIONS
 from slippulse.claims.rules import DEPENDS
 from slippulse.measure.quantities import QUANTITIES
 
@@ -80,11 +80,3 @@ def test_no_claim_compares_a_function_with_itself(project):
             sweeps, _, quantities = part.partition(":")
             assert {*sweeps.split(", ")} <= {*SIMULATIONS, "every simulation here"}, id
             assert quantities and {*quantities.strip().split(", ")} <= {*QUANTITIES, *OF_RUNS}, id
-
-
-def test_drawn_arrows_are_compared_with_the_best_fit():
-    readings = {"centre_stick": 3.93, "front_speed": 1.07, "intercept": 0.81}
-    readings = {name: {"value": value, "reading_error": 0.01} for name, value in readings.items()}
-    found = arrow_pulls(dict.fromkeys(readings, 0.0), readings, {"time": 4.16, "length": 10.4, "error": 0.05})
-    assert [*found.values()] == pytest.approx([-4.6, (10.0302 - 10.4) / 0.05])
-    assert arrow_pulls({}, readings, {}) == {}

@@ -16,10 +16,12 @@ CONFIDENCE = (0.68, 0.95)
 
 
 def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
-    """What was read off for one simulation, of `published`: rows reading, quantity, drawn, reading_error."""
+    """What was read off for one simulation, of `published`: rows reading, quantity, drawn, reading_error,
+    arrow."""
     rows = [
         {"reading": name, "drawn": entry["value"]}
         | {key: entry[key] for key in ("quantity", "reading_error")}
+        | {"arrow": entry.get("arrow", False)}
         for name, entry in published.items()
         if entry["simulation"] == simulation
     ]
@@ -27,7 +29,7 @@ def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
 
 
 def curve(profile: pd.DataFrame) -> pd.DataFrame:
-    """Best trials of one release rule over the damping ratio, from its rows of part "profile".
+    """Best trials of one release rule over the damping ratio, from its rows of one part.
 
     Returns
     -------
@@ -40,7 +42,8 @@ def curve(profile: pd.DataFrame) -> pd.DataFrame:
     at = np.log(nodes.index.to_numpy())
     fine = np.linspace(at[0], at[-1], FINE)
     out = pd.DataFrame(CubicSpline(at, nodes.to_numpy())(fine), columns=nodes.columns)
-    out["chi2"] = (out[pulls.columns] ** 2).sum(axis=1)
+    fitted = profile.loc[profile["weight"] > 0.0, "reading"].unique()
+    out["chi2"] = (out[fitted] ** 2).sum(axis=1)
     return out.assign(damping_ratio=np.exp(fine))
 
 
@@ -49,13 +52,16 @@ def likely(level: float, parameters: int = 1) -> float:
     return float(chdtri(parameters, 1.0 - level))
 
 
-def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic")) -> dict[str, Any]:
+def inference(
+    table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic"), part: str = "profile"
+) -> dict[str, Any]:
     """What the figure says of its parameters, under each release rule and over both.
 
     Parameters
     ----------
     table : results/studies/published_figure.csv, or the figure's own table
     releases : rules that were fitted
+    part : "profile", or "arrows" for the fit of the drawn arrows too
 
     Returns
     -------
@@ -65,7 +71,7 @@ def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic"
 
     Source: profile likelihood; the readings have independent Gaussian errors.
     """
-    profile = table[table["part"] == "profile"]
+    profile = table[table["part"] == part]
     found: dict[str, dict[str, Any]] = {}
     for release in releases:
         rows = profile[profile["release"] == release]
@@ -73,7 +79,7 @@ def inference(table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic"
         line = curve(rows)
         best = line.loc[line["chi2"].idxmin()]
         # tau_0, gamma and the damping ratio.
-        dof = len(names) - 3
+        dof = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
         found[release] = {
             "release": release,
             "chi2": float(best["chi2"]),

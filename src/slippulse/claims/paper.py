@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from types import SimpleNamespace
 
-from scipy.special import chdtrc
-
 from ..data.numerals import number, rounded
 from . import rules
 from .entries import positions
@@ -67,54 +65,45 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
 def published_figure(evidence: Evidence, readings: Mapping) -> list[Claim]:
     """The published space-time figure, a claim a panel: is there a run of this model that it may show?
 
-    The left one at the best fit of its readings, with the arrows that are drawn in it; the right one without a fit.
+    The left one at the best fit of its readings, the drawn arrows among them; the right one without a fit.
     """
     study = evidence.tables["published_figure"]
-    left, right = inference(study)["best"], right_panel(study)
-    arrows = arrow_pulls(left["pulls"], readings, evidence.entries[LEFT].get("arrows", {}))
-    fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
-    alone = f"without its drawn arrows p is {number(left['p_value'], 2)}"
+    left, right = inference(study, part="arrows")["best"], right_panel(study)
+    arrows = {name: entry["statement"] for name, entry in readings.items() if entry.get("arrow")}
+    further, why = {}, []
+    for fit, found in {"with": left, "without": inference(study)["best"]}.items():
+        further[f"chi-square {fit} the arrows"] = found["chi2"]
+        further |= {
+            f"pull of the {text} at the fit {fit} the arrows": found["pulls"][name]
+            for name, text in arrows.items()
+        }
+        pulls = " and ".join(number(found["pulls"][name], 2) for name in arrows)
+        why.append(f"{fit} its arrows p is {number(found['p_value'], 2)} and they are off by {pulls}")
 
-    def claim(id: str, sweep: str, chi2: float, degrees: int, note: str, why: str) -> Claim:
-        p, run = float(chdtrc(degrees, chi2)), evidence.lattices(sweep)[0].iloc[0]
+    def claim(id: str, sweep: str, found: Mapping, of: str, why: str, **further: float) -> Claim:
+        p, degrees, run = found["p_value"], found["dof"], evidence.lattices(sweep)[0].iloc[0]
         of_panel = [entry for entry in readings.values() if entry["simulation"] == sweep]
+        ours = {entry["statement"]: float(run[entry["quantity"]]) for entry in of_panel}
         return {
             "id": id, "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
-            "measured": chi2, "deviation": p, "note": f"chi-square of {note}; then the readings in our own figure",
-            "further": {entry["statement"]: float(run[entry["quantity"]]) for entry in of_panel},
+            "measured": found["chi2"], "deviation": p, "further": ours | further,
+            "note": f"chi-square of {of}; then the readings in our own figure",
             "why": why, "at": partial(rules.reading, p, degrees),
         }  # fmt: skip
 
-    pulled = " and ".join(number(pull, 2) for pull in arrows.values())
-    note = f"all readings of the panel, and its arrows, at their best fit without these, {fit}, release rule"
-    whole = left["chi2"] + sum(pull**2 for pull in arrows.values()), left["dof"] + len(arrows)
-    found = claim(
-        LEFT, "space_time_displacement", *whole, f"{note} `{left['release']}`",
-        f"Its arrows are off by {pulled} reading errors; {alone}.",
-    )  # fmt: skip
-    one = (
-        "its one reading, the pre-stress being read off",
-        "One reading is left when its pre-stress is read off.",
-    )
-    right_claim = claim(RIGHT, "space_time_stress", right["chi2"], right["dof"], *one)
-    return [found | {"further": found["further"] | arrows}, right_claim]
-
-
-def arrow_pulls(pulls: Mapping, readings: Mapping, arrows: Mapping) -> dict[str, float]:
-    """How far the drawn arrows are from what the best fit has, in their reading errors."""
-
-    def fitted(name: str) -> float:
-        return readings[name]["value"] + pulls[name] * readings[name]["reading_error"]
-
-    if not arrows:
-        return {}
-    time = fitted("centre_stick")
-    length = 2.0 * (fitted("front_speed") * time + fitted("intercept"))
-    names = {"time": time, "length": length}
-    return {
-        f"pull of the arrow of the {name}": (value - arrows[name]) / arrows["error"]
-        for name, value in names.items()
-    }
+    fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
+    return [
+        claim(
+            LEFT, "space_time_displacement", left,
+            f"all readings of the panel, its arrows among them, at their best fit, {fit}, release rule"
+            f" `{left['release']}`",
+            f"Fitted {'; '.join(why)} reading errors." if arrows else "", **further,
+        ),
+        claim(
+            RIGHT, "space_time_stress", right, "its one reading, the pre-stress being read off",
+            "One reading is left when its pre-stress is read off.",
+        ),
+    ]  # fmt: skip
 
 
 def written(claim: Claim, entry: Mapping, where: str) -> dict:

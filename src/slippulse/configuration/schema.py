@@ -348,6 +348,9 @@ class Reading(Block):
     statement: str = Field(min_length=1, description="what was read off (figure)")
     value: float = Field(description="the number (figure)")
     reading_error: Positive = Field(description="of reading by pixel")
+    arrow: bool = Field(
+        False, description="whether it is a drawn arrow, which the best fit is found with and without"
+    )
 
 
 class Configuration(Block):

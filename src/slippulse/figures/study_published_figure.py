@@ -44,7 +44,8 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
     for release, profile in study[study["part"] == "profile"].groupby("release", sort=False):
         line = curve(profile)
-        best, readings = line.loc[line["chi2"].idxmin()], profile["reading"].drop_duplicates()
+        best = line.loc[line["chi2"].idxmin()]
+        readings = profile.loc[profile["weight"] > 0.0, "reading"].drop_duplicates()
         rows = pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)})
         kept = line[::KEPT][[*names, "tau0_error", "gamma_error"]]
         parts.append(kept.assign(part="curve", release=release))
@@ -90,7 +91,7 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
         label = rf"{label}: $\chi^2 = {found['chi2']:.1f}$"
         axes.plot(found["damping_ratio"], found["chi2"], marker, color=colour, label=label)
     top = 1.75 * accepted
-    notebook = table[table["part"] == "notebook"]
+    notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
     label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
     look: Look = {"color": GREY, "linewidth": 0.8, "linestyle": "--", "label": label}
     axes.axvline(notebook["damping_ratio"].iloc[0], ymax=accepted / top, **look)

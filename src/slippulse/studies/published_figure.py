@@ -15,6 +15,7 @@ import pandas as pd
 
 from ..claims.inference import readings_of
 from ..measure.fronts import front_speed, position_at
+from ..measure.transition import between_fronts
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import RELEASES, Scene
@@ -56,10 +57,11 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Returns
     -------
-    rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact) and pull. "profile":
-    release, damping_ratio, dx = beta/damping_ratio, and tau0 and gamma that fit best with their errors; "notebook":
-    the same at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels
-    and width read off it
+    rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact), pull and weight (0
+    where it is not fitted). "profile": release, damping_ratio, dx = beta/damping_ratio, and tau0 and gamma that
+    fit all but the drawn arrows best, with their errors; "arrows": the same of all readings; "notebook": as "profile"
+    at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels and width
+    read off it
 
     Source: `claims.inference`.
     """
@@ -76,10 +78,11 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
                 steps = 1
             trial, rows = panel.fitted(ratio, release, BETA / ratio, guess, steps)
             trials.append((ratio, trial))
-            parts.append(rows.assign(part="profile"))
+            parts.append(rows)
     _, rows = panel.fitted(*NOTEBOOK, NEAR, FIRST)
+    notebook = rows[rows["part"] == "profile"].assign(part="notebook")
     right = readings_of(settings["published"], "space_time_stress")
-    parts += [rows.assign(part="notebook"), _right_panel(right[right["quantity"] == "largest_velocity"])]
+    parts += [notebook, _right_panel(right[right["quantity"] == "largest_velocity"])]
     return pd.concat(parts, ignore_index=True)
 
 
@@ -104,8 +107,11 @@ class LeftPanel:
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
     ) -> tuple[np.ndarray, pd.DataFrame]:
-        """tau_0 and gamma that fit best, by some steps of Gauss and Newton, and their rows."""
-        trial = guess
+        """tau_0 and gamma that fit all but the arrows best, by some steps of Gauss and Newton; rows of both fits.
+
+        That of all readings is so near that one more step, and the same correction for the lattice, suffice.
+        """
+        trial, fitted = guess, np.flatnonzero(~self.readings["arrow"])
         for step in range(steps + 1):
             exact = self.exact(trial, ratio, release)
             correction = self.lattice(trial, ratio, release, dx) - exact
@@ -116,13 +122,24 @@ class LeftPanel:
                     for change in np.diag(DIFFERENCE * trial)
                 ]
                 slopes = np.column_stack(changes) / self.error[:, None]
-                trial = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
-        tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
-        rows = self.readings.assign(
-            release=release, damping_ratio=ratio, dx=dx, tau0=trial[0], gamma=trial[1], tau0_error=tau0_error,
-            gamma_error=gamma_error, exact=exact, correction=correction, pull=misfit,
-        )  # fmt: skip
-        return trial, rows
+                trial = trial - np.linalg.lstsq(slopes[fitted], misfit[fitted], rcond=None)[0]
+
+        def rows(part: str, at: np.ndarray, exact: np.ndarray, chosen: np.ndarray) -> pd.DataFrame:
+            tau0_error, gamma_error = np.sqrt(np.diag(np.linalg.inv(slopes[chosen].T @ slopes[chosen])))
+            return self.readings.drop(columns="arrow").assign(
+                part=part, release=release, damping_ratio=ratio, dx=dx, tau0=at[0], gamma=at[1],
+                tau0_error=tau0_error, gamma_error=gamma_error, exact=exact, correction=correction,
+                pull=(exact + correction - self.drawn) / self.error,
+                weight=np.isin(np.arange(len(exact)), chosen).astype(float),
+            )  # fmt: skip
+
+        every = np.arange(len(exact))
+        near = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
+        both = (
+            rows("profile", trial, exact, fitted),
+            rows("arrows", near, self.exact(near, ratio, release), every),
+        )
+        return trial, pd.concat(both)
 
 
 # Readings by name, and the trailing edge over time.
@@ -142,6 +159,7 @@ def _exact_values(rupture: Rupture) -> Known:
         "front_speed_right": speed,
         "front_intercept_right": end.x - speed * end.time,
         "first_stick_time": rupture.transition_time,
+        "transition_length": rupture.transition_length,
         "largest_velocity": max(rupture.largest_velocity, float(np.max(at_end))),
     }
     return known, lambda time: float(np.interp(time, *edge))
@@ -157,6 +175,7 @@ def _lattice_values(scene: Scene, left: float, quantities: Iterable[str]) -> np.
         "front_speed_right": speed,
         "front_intercept_right": intercept,
         "first_stick_time": run.attrs["first_stick_time"],
+        "transition_length": between_fronts(run, run.attrs["first_stick_time"]),
         "largest_velocity": float(run["sample_velocity"].max()),
     }
     return _chosen(quantities, known, lambda time: float(position_at(run, time, edge="stick_time")))
@@ -181,10 +200,10 @@ def _right_panel(readings: pd.DataFrame) -> pd.DataFrame:
         of = ("stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release)
         scene = Scene(*of, max_step=STEP, order=ORDER)
         (found,) = _lattice_values(scene, crack.balance_position, ["largest_velocity"])
-        rows = readings.assign(
+        rows = readings.drop(columns="arrow").assign(
             part="stress", release=release, damping_ratio=ratio, dx=dx, left=RIGHT_PANEL.left, width=RIGHT_PANEL.width,
             exact=crack.peak_velocity, correction=found - crack.peak_velocity,
-            pull=(found - readings["drawn"]) / readings["reading_error"],
+            pull=(found - readings["drawn"]) / readings["reading_error"], weight=1.0,
         )  # fmt: skip
         parts.append(rows)
     return pd.concat(parts)
