@@ -49,6 +49,23 @@ def test_pulses_end_between_nine_and_eleven_tenths_of_the_critical_rate_strength
     assert (width.max() - width.min() < 1.1 * pulse.width) == (fraction < 1.0)
 
 
+@pytest.mark.parametrize(("alpha", "time"), [(1.2, 19.71489), (1.3, None)])
+def test_beyond_the_critical_rate_strengthening_the_nucleation_alone_may_stick(alpha, time):
+    """What it leaves oscillates, and outlives the wake below 2 sqrt(gamma/(1 + 1/v^2)); a coarse lattice misses it."""
+    bound = 2.0 * np.sqrt(GAMMA / (1.0 + 1.0 / SPEED**2))
+    assert alpha > CRITICAL and (alpha < bound) == (time is not None)
+    rupture = theory.Rupture(
+        sp.Prestress(LEVEL, LEVEL), GAMMA, RATIO, duration=24.0, rate_strengthening=alpha
+    )
+    if time is None:
+        assert rupture.first_stick is None
+    else:
+        assert rupture.first_stick == pytest.approx((time, 0.0), abs=1e-4)
+        lag = [run(alpha, dx, 24.0).attrs["first_stick_time"] - time for dx in (0.02, 0.01)]
+        assert 0.0 < lag[1] < 0.5 * lag[0] < 0.25
+        assert np.isnan(run(alpha, 0.04, 24.0).attrs["first_stick_time"])
+
+
 @pytest.mark.parametrize("options", [{}, {"order": 8, "half_lattice": False}, {"scheme": "fixed_step"}])
 def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
     """Those that know the term and those that leave it out."""

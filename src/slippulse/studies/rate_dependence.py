@@ -25,7 +25,7 @@ GAMMA, RATIO = 0.65, 0.1
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
 FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5)
 # Spacing over pre-stress, to which the width of a pulse is proportional; and a step so short and of such an order that
-# rounding alone ends the exponential decay behind a crack.
+# rounding, or what the nucleation leaves behind, ends the exponential decay behind a crack.
 SPACING, ORDER, MAX_STEP = 0.12, 8, 0.25
 # Long enough for the trailing edge to be steady: it learns of the front at the rate by which that outruns the waves.
 SHORTEST, MEMORIES = 30.0, 5.0
@@ -38,7 +38,7 @@ LEVEL, MAPPED, END, MAP = 0.5, {"pulse": 0.6, "crack": 1.5}, 14.0, (57, 96)
 ALPHAS, ARRESTING, SPACINGS, TIMES = (
     (0.0, 0.5, 2.0),
     Prestress(-0.5, 0.0),
-    (0.1, 0.05),
+    (0.05, 0.025),
     np.geomspace(2.0, 100.0, 21),
 )
 

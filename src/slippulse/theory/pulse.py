@@ -134,7 +134,7 @@ def _shape(
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
-    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): from it on nothing sticks behind a front, and from -alpha_c slip grows.
+    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): from it on no pulse is steady, and from -alpha_c slip grows.
 
     Parameters
     ----------

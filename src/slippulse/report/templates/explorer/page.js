@@ -188,7 +188,7 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
   map.scale(COLOURS, `slip velocity, 0 to ${format(view.largest, 3)}`);
   const ending = sticks ? `first sticks at time ${format(exact.transitionTime)}` : "sticks nowhere";
   const late = pulse && steady && deviates(pulse, steady) ? " The pulse is not yet steady at the end of the map."
-    : scene.gamma > 0 && scene.right > 0 && !steady ? " α is beyond αc: no steady pulse exists, and the rupture stays a crack." : "";
+    : scene.gamma > 0 && scene.right > 0 && !steady ? " α is beyond αc: no pulse is steady, and the part that slides becomes ever wider." : "";
   at("state").textContent = `The rupture ${ending}${sticks ? "" : ` until t = ${format(end)}`}.${late}`;
   if (limits.length) at("state").textContent += " Blank wedges: not known, since the trailing edge there becomes slower than the waves.";
   map.show(`Slip velocity in time and space: a rupture with fronts of speed ${format(exact.speed)} on the right and`
