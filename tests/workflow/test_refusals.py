@@ -142,6 +142,10 @@ CASES = {
         "{accuracy: 1.0e-2, scenes: {barrier: {scheme: fixed_step}}}",
         ["scenes.barrier.scheme: 'fixed_step'", "'localised' where accuracy is given"],
     ),
+    "accuracy with friction that depends on slip rate": (
+        "{accuracy: 1.0e-2, simulations: {steady_displacement: {rate_strengthening: [0.2]}}}",
+        ["steady_displacement.rate_strengthening: [0.2]", "allowed: 0 where accuracy is given"],
+    ),
     "accuracy at strong damping": (
         "{accuracy: 1.0e-2, simulations: {steady_displacement: {damping_ratio: [3.0]}}}",
         ["steady_displacement.damping_ratio: 3.0", "<= 1"],
