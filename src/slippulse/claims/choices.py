@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
@@ -38,9 +38,7 @@ def over_choices(claims: Sequence[tuple[Chosen, Claim]], shown: Claim | None = N
         ats = [claim["at"] for _, claim in claims]
         found["at"] = lambda tolerance: rules.over_choices([at(tolerance) for at in ats])
     if verdict == rules.DEPENDS:
-        sides = "; on ".join(
-            f"{NAMES[name]}: {' and '.join(map(side(name), pair))}" for name, pair in pairs.items()
-        )
+        sides = "; on ".join(f"{NAMES[name]}: {sides_of(name, pair)}" for name, pair in pairs.items())
         found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations. It depends on {sides}."
     elif verdict == "reproduced with caveat":
         unsure = next(row for row in rows if row["verdict"] == verdict)
@@ -49,13 +47,12 @@ def over_choices(claims: Sequence[tuple[Chosen, Claim]], shown: Claim | None = N
     return found
 
 
-def side(name: str) -> Callable[[Mapping], str]:
-    """What a combination says of a claim, by the value of one of its choices."""
-
-    def text(row: Mapping) -> str:
-        return f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({percent(row['deviation'], 3)})"
-
-    return text
+def sides_of(name: str, pair: Iterable[Mapping]) -> str:
+    """What combinations say of a claim, by their value of one choice."""
+    return " and ".join(
+        f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({percent(row['deviation'], 3)})"
+        for row in pair
+    )
 
 
 # What each choice is called in a sentence.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,19 +13,6 @@ from scipy.special import chdtrc, chdtri
 # Points of a curve over the damping ratio.
 FINE = 801
 CONFIDENCE = (0.68, 0.95)
-
-
-def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
-    """What was read off for one simulation, of `published`: rows reading, quantity, drawn, reading_error,
-    arrow."""
-    rows = [
-        {"reading": name, "drawn": entry["value"]}
-        | {key: entry[key] for key in ("quantity", "reading_error")}
-        | {"arrow": entry.get("arrow", False)}
-        for name, entry in published.items()
-        if entry["simulation"] == simulation
-    ]
-    return pd.DataFrame(rows)
 
 
 def curve(profile: pd.DataFrame) -> pd.DataFrame:

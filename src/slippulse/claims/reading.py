@@ -140,16 +140,15 @@ def why_text(claim: SimpleNamespace) -> str:
         return claim.why
     if claim.verdict == "not testable":
         return "This run leaves no number to judge by."
-    if claim.kind == "qualitative" and not claim.failed + claim.undecided:
+    if claim.kind == "qualitative":
+        held, _, rest = measured_text(claim).partition(", ")
+        if rest:
+            return f"It holds in {held} cases, with {rest}."
         return "It needs a condition that the paper does not state."
-    words = {
-        "qualitative": "It holds in {}",
-        "arithmetic": "Printed over derived is {}",
-        "reading": "At the best fit {} is asked",
-    }
-    if claim.kind in words:
-        text = compared_text(claim) if claim.kind == "reading" else measured_text(claim)
-        return words[claim.kind].format(text) + "."
+    if claim.kind == "arithmetic":
+        return f"The printed formula gives {measured_text(claim)} of the derived value."
+    if claim.kind == "reading":
+        return f"At the best fit {compared_text(claim)} is asked."
     write, scale = (percent, abs(claim.predicted)) if claim.predicted else (number, 1.0)
     blur = write(claim.uncertainty / (1.0 if claim.kind == "approximate" else scale))
     return f"It is off by {compared_text(claim)}; its uncertainty is {blur}."

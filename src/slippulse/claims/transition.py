@@ -21,6 +21,14 @@ ESTIMATES = {"T": ("time", "distance"), "L": ("length", "2 * distance")}
 # Fraction of the way whose numbers stand with a claim.
 SHOWN = 0.95
 LAST = "last release"
+# What is compared of the exact solution, and of lattices.
+SOLVED = {"paper_transition_time": "distance", "transition_time": "time", "transition_length": "length"}
+SIMULATED = {
+    "balance_distance": "distance",
+    "last_release_distance": "covered",
+    "last_release_time": "time",
+    "last_release_length": "length",
+}
 # One table, or one a lattice, by combination of choices.
 Tables = list[tuple[Chosen, list[pd.DataFrame]]]
 
@@ -78,29 +86,12 @@ def arrests(evidence: Evidence, where: str = INSIDE) -> Tables:
     tables with distance (|x_minus|), covered, time, length (between the fronts)
     """
     found = [
-        (
-            choice,
-            [
-                rows.assign(
-                    distance=rows["paper_transition_time"],
-                    covered=rows["fraction"] * rows["paper_transition_time"],
-                    time=rows["transition_time"],
-                    length=rows["transition_length"],
-                )
-                for rows in tables
-            ],
-        )
+        (choice, [rows.rename(columns=SOLVED).eval("covered = fraction * distance") for rows in tables])
         for choice, tables in solved(evidence, "stress")
     ]
-    names = {f"last_release_{name}": name for name in ("time", "length")}
-    names |= {"balance_distance": "distance", "last_release_distance": "covered"}
-    return found + [
-        (
-            choice | {"nucleation": "Gaussian", "fraction": LAST},
-            [table.rename(columns=names) for table in tables],
-        )
-        for choice, tables in simulated(evidence, "stress", where)
-    ]
+    runs = simulated(evidence, "stress", where)
+    last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
+    return found + [(choice | last, [t.rename(columns=SIMULATED) for t in tables]) for choice, tables in runs]
 
 
 def at_ours(tables: Tables) -> Tables:

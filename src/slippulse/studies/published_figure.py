@@ -13,7 +13,6 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from ..claims.inference import readings_of
 from ..measure.fronts import front_speed, position_at
 from ..measure.transition import between_fronts
 from ..model.prestress import Prestress
@@ -84,6 +83,19 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     right = readings_of(settings["published"], "space_time_stress")
     parts += [notebook, _right_panel(right[right["quantity"] == "largest_velocity"])]
     return pd.concat(parts, ignore_index=True)
+
+
+def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
+    """What was read off for one simulation, of `published`: rows reading, quantity, drawn, reading_error,
+    arrow."""
+    rows = [
+        {"reading": name, "drawn": entry["value"]}
+        | {key: entry[key] for key in ("quantity", "reading_error")}
+        | {"arrow": entry.get("arrow", False)}
+        for name, entry in published.items()
+        if entry["simulation"] == simulation
+    ]
+    return pd.DataFrame(rows)
 
 
 class LeftPanel:
