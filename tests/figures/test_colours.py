@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
+from matplotlib.colors import LogNorm, to_rgb
 
 from slippulse.figures.fig06_burridge_knopoff import COLOURS
 from slippulse.figures.style import CYCLE, ORDER_COLOURS, SCALES, colour_scale
@@ -40,11 +40,24 @@ def test_colours_of_the_cycle_are_apart(vision):
         assert np.linalg.norm(one - other) > APART
 
 
+# The palest level that a figure draws as a line or a mark.
+PALEST = {"tau_0": 0.8, "tau_l": -0.1, "gamma": 0.65, "damping_ratio": 3.0, "width": 0.5}
+
+
+@pytest.mark.parametrize(("quantity", "value"), PALEST.items())
+def test_levels_are_seen_on_white(quantity, value):
+    red, green, blue = (
+        c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+        for c in colour_scale(quantity).to_rgba(value)[:3]
+    )
+    assert 1.05 / (0.2126 * red + 0.7152 * green + 0.0722 * blue + 0.05) >= 3.0
+
+
 @pytest.mark.parametrize("vision", VISION)
 @pytest.mark.parametrize("quantity", SCALES)
 def test_a_scale_goes_one_way_in_lightness(quantity, vision):
-    _, _, ends, logarithmic = SCALES[quantity]
-    values = np.geomspace(*ends, 9) if logarithmic else np.linspace(*ends, 9)
+    _, _, ends, norm = SCALES[quantity]
+    values = np.geomspace(*ends, 9) if norm is LogNorm else np.linspace(*ends, 9)
     lightness = np.array([lab(colour_scale(quantity).to_rgba(value), vision)[0] for value in values])
     steps = np.diff(lightness)
     assert (steps > 0.0).all() or (steps < 0.0).all()

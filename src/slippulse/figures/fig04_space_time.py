@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import matplotlib.patheffects as effects
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -16,7 +15,7 @@ from matplotlib.patches import Patch
 from ..data.points import point
 from ..measure.fronts import position_at
 from .shared.space_time import STUCK, description, draw_map, draw_profile, run_rows
-from .style import BLACK, COLUMN, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter, stacked
+from .style import BLACK, COLUMN, HALO, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter, stacked
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
@@ -26,7 +25,6 @@ NEEDS = {
 }
 
 PANELS = {"displacement": "a", "stress": "b"}
-HALO = [effects.withStroke(linewidth=2.2, foreground="white")]
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:

@@ -10,14 +10,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .style import BLACK, BLUE, GREY, ORDER_COLOURS, PAGE, Look, entry, new_panels
+from .style import BLACK, BLUE, GREY, HALO, ORDER_COLOURS, PAGE, Look, entry, new_panels
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
 PANELS = {"front_speed": "front speed", "peak_velocity": "peak slip velocity"}
 PANELS["transition_time"] = r"$T_\mathrm{trans}$"
+MARKERS = dict(zip(ORDER_COLOURS, "osD^P>", strict=True))
 # Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
-SIZES = {1.0: 5.0, 0.5: 3.6, 0.25: 2.2}
+SIZES = {1.0: 4.0, 0.5: 2.8, 0.25: 1.8}
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -32,7 +33,8 @@ def plot(table: pd.DataFrame) -> Figure:
     trade = table[table["part"] == "trade"]
     for panel, (name, title) in zip(axes, PANELS.items(), strict=False):
         _draw_trade(panel, trade, name)
-        panel.set(title=title, ylabel="relative error", xlabel="stencil passes over a block")
+        panel.set(ylabel=f"relative error of {title}", xlabel="stencil passes over a block")
+        panel.set_title(r"$\Gamma = 1$", loc="right")
     _draw_locking(axes[3], table[table["part"] == "locking"])
     look: Look = {"ncols": 5, "columnspacing": 1.0, "handletextpad": 0.3}
     figure.legend(handles=_handles(trade), loc="outside upper center", **look)
@@ -40,33 +42,38 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
-    """One mark a setting; the textbook scheme joined over its steps, presets ringed."""
+    """One mark a setting; the textbook scheme joined over its steps, steps of 1 over spacings; presets ringed."""
     textbook = rows[rows["scheme"] == "fixed_step"]
     axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6, gid="textbook")
     for (order, step), marks in rows[rows["scheme"] == "localised"].groupby(["order", "step"]):
-        look: Look = {"color": ORDER_COLOURS[order], "markersize": SIZES.get(step, 3.0)}
-        axes.plot(marks["work"], marks[name], "o", alpha=0.8, markeredgewidth=0.0, gid="localised", **look)
+        look: Look = {"color": ORDER_COLOURS[order], "markersize": SIZES.get(step, 2.3)}
+        look |= {"linewidth": 0.6, "linestyle": "-"} if step == 1.0 else {"alpha": 0.35, "linestyle": "none"}
+        marks = marks.sort_values("work")
+        look |= {"marker": MARKERS[order], "markeredgewidth": 0.0, "gid": "localised"}
+        axes.plot(marks["work"], marks[name], **look)
     presets = rows[rows["preset"].notna()]
     look = {"color": BLACK, "markersize": 8.0, "fillstyle": "none"}
     axes.plot(presets["work"], presets[name], "o", gid="preset", **look)
     # On the side that is empty.
-    look = {"xytext": (4, 6), "textcoords": "offset points", "fontsize": 7.0}
+    look = {"xytext": (4, 6), "textcoords": "offset points", "fontsize": 7.5, "path_effects": HALO}
     for _, preset in presets.iterrows():
         axes.annotate(preset["preset"], (preset["work"], preset[name]), **look)
     axes.set(xscale="log", yscale="log")
 
 
 def _handles(rows: pd.DataFrame) -> list[Line2D]:
-    """Legend: colours are orders, sizes steps."""
+    """Legend: colours and markers are orders, sizes steps."""
     spacings = ", ".join(f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique())
     orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
-    dots = [(ORDER_COLOURS[order], 3.6, f"order {order:g}") for order in orders]
-    dots += [(GREY, size, f"step {step:g} dx") for step, size in SIZES.items()]
     textbook = entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", linewidth=0.6, linestyle="-")
-    return [
-        textbook,
-        *(entry(label, color=colour, marker="o", markersize=size) for colour, size, label in dots),
-    ]
+    found = [textbook, entry("preset", color=BLACK, marker="o", markersize=8.0, fillstyle="none")]
+    for order in orders:
+        look: Look = {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": 4.0}
+        found.append(entry(f"order {order:g}", linewidth=0.6, linestyle="-", **look))
+    for step, size in SIZES.items():
+        look = {"alpha": 1.0 if step == 1.0 else 0.5, "marker": "o", "markersize": size}
+        found.append(entry(f"step {step:g} dx", color=GREY, **look))
+    return found
 
 
 def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
@@ -84,5 +91,10 @@ def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
     axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, **look)
     look = {"gid": "localised", "label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
     axes.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
-    axes.set(ylim=(low, high), xlabel=r"time step $\Delta t\,/\,\Delta x$", ylabel="front speed")
-    axes.legend(loc="upper left", frameon=True, framealpha=1.0, edgecolor="none")
+    # The legend stands above the marks.
+    axes.set(
+        ylim=(low, low + 1.32 * (high - low)),
+        xlabel=r"time step $\Delta t\,/\,\Delta x$",
+        ylabel="front speed",
+    )
+    axes.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)

@@ -6,11 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from ..data.points import point
 from ..measure.fronts import path
-from .style import GREY, PAGE, Look, colour_scale, few_ticks, new_panels
+from .style import GREY, ORANGE, PAGE, Look, colour_scale, entry, few_ticks, legend_below, new_panels
 
 NEEDS = {
     "data": ["arrest"],
@@ -37,7 +38,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     runs = tables["arrest"]
     # The paper estimates the time of the transition by |x_minus|.
     scale = runs["paper_transition_time"]
-    numbers = runs[["damping_ratio", "dx", "run_flags"]].assign(
+    numbers = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",
         last_release=runs["last_release_time"] / scale,
         fraction=settings["measure"]["share"],
@@ -55,10 +56,13 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a) what is left of the way, at the finest spacing; (b) times of the fraction and of the last release."""
-    figure, (path_axes, spacing_axes) = new_panels(PAGE, 2.9, 1, 2)
+    figure, (path_axes, spacing_axes) = new_panels(PAGE, 3.1, 1, 2)
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
+    handles: list[Artist] = []
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
-        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio)}
+        # On a logarithmic scale of colours 0 is as its lower end.
+        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio) if ratio else ORANGE}
+        handles.append(entry(f"$b$ = {ratio:g}", marker=marker, **look))
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
         path_axes.plot(simulated["time"], simulated["to_go"], gid=f"simulation {ratio:g}", **PALE, **look)
@@ -69,18 +73,26 @@ def plot(table: pd.DataFrame) -> Figure:
         fraction = OPEN | look | {"gid": f"fraction {ratio:g}"}
         spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **fraction)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
-        spacing_axes.plot([], [], marker=marker, label=f"$b$ = {ratio:g}", **look)
-    path_axes.plot([], [], color=GREY, label="simulation", **PALE)
-    path_axes.plot([], [], color=GREY, linewidth=0.9, label="exact")
-    path_axes.plot([], [], "o", color=GREY, label="last release")
+    handles.append(entry("simulation", color=GREY, **PALE))
+    handles.append(entry("exact", color=GREY, linewidth=0.9))
+    handles.append(entry("last release", color=GREY, marker="o"))
+    fraction_label = f"{100.0 * table['fraction'].max():g} % of the way"
+    handles.append(entry(fraction_label, color=GREY, marker="o", **OPEN))
+    handles.append(entry("the same, exact", color=GREY, marker="<"))
+    legend_below(figure, handles, 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     path_axes.set_ylabel(r"still to go, $1-|x|/|x_{-}|$")
-    path_axes.legend(loc="lower left")
+    path_axes.set_title(_conditions(table[table["role"] == "run"]), loc="right")
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
-    spacing_axes.plot([], [], "o-", color=GREY, label="last release")
-    spacing_axes.plot([], [], "o--", color=GREY, label=f"{table['fraction'].max():.0%} of the way", **OPEN)
-    spacing_axes.plot([], [], "<", color=GREY, label="the same, exact")
-    handles, labels = spacing_axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside right center")
+    low, high = spacing_axes.get_ylim()
+    spacing_axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
+    words = ("last release: does not converge", f"{fraction_label}: converges to the exact time")
+    for height, word, va in zip((0.98, 0.02), words, ("top", "bottom"), strict=True):
+        spacing_axes.text(0.98, height, word, transform=spacing_axes.transAxes, ha="right", va=va)
     few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure
+
+
+def _conditions(runs: pd.DataFrame) -> str:
+    levels = rf"$\tau_{{0,l}} = {runs['left'].iloc[0]:g}$, $\tau_{{0,r}} = {runs['right'].iloc[0]:g}$"
+    return rf"$\Gamma = 0$, {levels}, $W = {runs['width'].iloc[0]:g}$"

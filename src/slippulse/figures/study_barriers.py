@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import pandas as pd
@@ -11,14 +11,16 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.polynomial.chebyshev import chebvander
 
-from .style import BLACK, BLUE, ORANGE, PAGE, Look, colour_scale, few_ticks, new_panels
+from .style import BLACK, PAGE, Look, colour_scale, few_ticks, new_panels
 
 NEEDS = {"studies": ["barriers"]}
 
 MAP = "cividis"
 # Points of the interpolated map along each axis, its bands of colour, and contour lines on it.
 FINE, BANDS, CONTOURS = 41, 33, (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
-MARKERS, COLOURS = ("o", "s", "^"), (BLUE, ORANGE)
+# Above this depth the map is light, and what is written on it dark.
+LIGHT = 3.5
+MARKERS = ("o", "s", "^")
 OPEN: Look = {"markersize": 3.8, "markerfacecolor": "white"}
 # gamma of the curves, for which the later estimate is drawn; exact depths scale to it.
 GAMMA = 0.65
@@ -71,14 +73,14 @@ def plot(table: pd.DataFrame) -> Figure:
     for axes, ratio in zip(maps, ratios, strict=True):
         at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
         image = _draw_map(axes, at, marked, scale, bands)
-        axes.set_title(rf"$b = {ratio:g}$", loc="right")
+        axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOURS)
     # At the larger damping ratio, which is the last above.
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
     _draw_curves(curve_axes, curves, marked)
-    curve_axes.set_title(rf"$b = {ratio:g}$", loc="right")
+    curve_axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
     _draw_convergence(convergence_axes, runs)
     return figure
 
@@ -87,15 +89,20 @@ def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNo
     grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
     image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
-    lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors="white", linewidths=0.5)
+    lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors=_ink(CONTOURS), linewidths=0.5)
     axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
-    look: Look = {"s": 26.0, "edgecolors": "white", "linewidths": 0.9, "gid": "lattice", "zorder": 3.0}
+    look: Look = {"s": 26.0, "linewidths": 0.9, "gid": "lattice", "zorder": 3.0}
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
-        look |= {"c": group["measured"] * np.sqrt(gamma), "norm": scale, "cmap": MAP, "marker": marker}
+        depth = group["measured"] * np.sqrt(gamma)
+        look |= {"c": depth, "edgecolors": _ink(depth), "norm": scale, "cmap": MAP, "marker": marker}
         axes.scatter(group["tau0"], -group["barrier"], **look)
     axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\mathrm{b}$")
     few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
     return image
+
+
+def _ink(depths: Iterable[float]) -> list[str]:
+    return [BLACK if depth > LIGHT else "white" for depth in depths]
 
 
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:
@@ -109,11 +116,11 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
         for gamma, found in finest[finest["tau0"] == tau0].groupby("gamma"):
             look: Look = {"color": colour, "gid": f"lattice {tau0:g}"} | OPEN
             axes.plot(-found["barrier"], found["measured"] * np.sqrt(gamma / GAMMA), markers[gamma], **look)
-    axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="later estimate")
+    axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
         axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
     axes.set(xscale="log", yscale="log", ylim=(0.33, 14.0), xlabel=r"barrier $-\tau_\mathrm{b}$")
-    axes.set_ylabel(rf"depth at $\gamma = {GAMMA:g}$")
+    axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
     look = {"ncols": 2, "columnspacing": 0.6, "handletextpad": 0.3, "handlelength": 1.3, "fontsize": 7.0}
@@ -121,12 +128,17 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
 
 
 def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
-    for colour, (ratio, chosen) in zip(COLOURS, runs.groupby("damping_ratio"), strict=True):
-        look: Look = {"color": colour, "linewidth": 0.7, "markersize": 1.8, "alpha": 0.8}
+    styles = ("o-", "s--")
+    for style, (ratio, chosen) in zip(styles, runs.groupby("damping_ratio"), strict=True):
+        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio), "markersize": 2.4}
+        look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
         for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
             line, label = line.sort_values("dx"), None if number else rf"$b = {ratio:g}$"
             over = line["measured"] / line["exact"]
-            axes.plot(line["dx"], over, "o-", gid=f"lattice {ratio:g}", label=label, **look)
+            axes.plot(line["dx"], over, style, gid=f"lattice {ratio:g}", label=label, **look)
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
+    axes.set_title(
+        rf"$\Gamma = 1$, {runs.groupby(['tau0', 'barrier', 'gamma']).ngroups} scenes a ratio", loc="right"
+    )
     axes.legend(loc="upper left")

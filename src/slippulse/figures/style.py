@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -15,9 +16,10 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, LogNorm, Normalize
+from matplotlib.colors import ListedColormap, LogNorm, Normalize, PowerNorm, to_hex
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullFormatter
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
@@ -37,16 +39,19 @@ BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 SKY, YELLOW, BLACK, GREY = "#56B4E9", "#E69F00", "#000000", "#7f7f7f"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
 # Of each order of the localised scheme; the textbook scheme is black.
-ORDER_COLOURS = {3: BLUE, 4: ORANGE, 5: GREEN, 6: PURPLE, 7: YELLOW, 8: SKY}
+_orders = {order: matplotlib.colormaps["plasma"](0.14 * (order - 3)) for order in range(3, 9)}
+ORDER_COLOURS = {order: to_hex(colour) for order, colour in _orders.items()}
 VELOCITY_MAP = "viridis"
-# A quantity has the same colour for the same value in every figure: map, its part that is used, ends, and whether the
-# scale is logarithmic.
-SCALES = {
-    "tau_0": ("plasma", (0.0, 0.88), (0.0, 1.0), False),
-    "tau_l": ("YlGnBu_r", (0.0, 0.62), (-2.0, 0.0), False),
-    "gamma": ("cividis", (0.0, 0.9), (1e-3, 1.0), True),
-    "damping_ratio": ("viridis", (0.0, 0.92), (5e-3, 5.0), True),
-    "width": ("YlOrBr", (0.42, 1.0), (0.5, 16.0), True),
+# Of letters on what is drawn.
+HALO = [withStroke(linewidth=2.2, foreground="white")]
+# A quantity has the same colour for the same value in every figure: map, its part that is used, as far as it can be
+# seen on white, ends, and the scale; that of tau_l is stretched towards 0, where most levels are.
+SCALES: dict[str, tuple[str, tuple[float, float], tuple[float, float], Callable[..., Normalize]]] = {
+    "tau_0": ("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
+    "tau_l": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
+    "gamma": ("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
+    "damping_ratio": ("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
+    "width": ("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
 
 # A Times, as the journal has, which Matplotlib brings along; the report has the same.
@@ -109,10 +114,9 @@ def stacked(figure: Figure, heights: Sequence[float]) -> list[SubFigure]:
 
 def colour_scale(quantity: str) -> ScalarMappable:
     """The colours of a quantity of SCALES; ``to_rgba`` gives that of a value, a colour bar shows all."""
-    name, part, ends, logarithmic = SCALES[quantity]
+    name, part, ends, norm = SCALES[quantity]
     colours = matplotlib.colormaps[name](np.linspace(*part, 256))
-    norm = (LogNorm if logarithmic else Normalize)(*ends, clip=True)
-    return ScalarMappable(norm, ListedColormap(colours))
+    return ScalarMappable(norm(*ends, clip=True), ListedColormap(colours))
 
 
 def panel_letter(axes: Axes, letter: str) -> None:

@@ -82,7 +82,9 @@ def _scatter(
 def colour_bar(figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any) -> None:
     """The colours of the levels, or of gamma or W, as a column of runs."""
     quantity, label = LEVEL[boundary] if column == "left" else OTHER[boundary]
-    figure.colorbar(colour_scale(quantity), ax=list(axes), **options).set_label(label)
+    # Its scale is stretched, and ticks at equal distances would overlap.
+    ticks = [-2.0, -1.0, -0.5, 0.0] if quantity == "tau_l" else None
+    figure.colorbar(colour_scale(quantity), ax=list(axes), ticks=ticks, **options).set_label(label)
 
 
 def damping_figure(runs: pd.DataFrame) -> Figure:
