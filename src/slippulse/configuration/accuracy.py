@@ -96,10 +96,8 @@ def settings_for(
         raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
-    error, levels = (
-        SHARE * accuracy,
-        [prestress.left, prestress.right, *(level for _, level in prestress.steps)],
-    )
+    error = SHARE * accuracy
+    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
     peak = min(prestress.width, *(width for *_, width in prestress.bumps), math.inf)
     if boundary == "displacement":
         check_number("gamma", gamma, above=0.0)

@@ -57,11 +57,8 @@ def _line(problem: Mapping, config: Mapping) -> str:
         # An incomplete new entry may be a misspelt one.
         others = _walk(place[:-2], config)[2] if len(place) > 2 else {}
         hint = nearest(place[-2], {*others} - {place[-2]}) if others else ""
-        names = (
-            f"; allowed: {', '.join(config['presets'])}"
-            if place == ("preset",) and "presets" in config
-            else ""
-        )
+        presets = config.get("presets", ()) if place == ("preset",) else ()
+        names = f"; allowed: {', '.join(presets)}" if presets else ""
         return f"{dotted(place)}: missing; it is required (null removes a key){hint}{names}"
     if kind == "extra_forbidden":
         known = [*node["properties"]]

@@ -33,9 +33,10 @@ class Block(BaseModel):
         return self.model_dump(mode="json", exclude_none=True)
 
 
-def allowed(words: str) -> dict[str, Any]:
-    """What a key allows, where its type does not say it in words."""
-    return {"allowed": words}
+def key(description: str, default: Any = ..., words: str | None = None, **limits: Any) -> Any:
+    """A key of a mapping; what it allows in words, where its type does not say it."""
+    extra: dict[str, Any] = {"json_schema_extra": {"allowed": words}} if words else {}
+    return Field(default, description=description, **extra, **limits)
 
 
 def require(condition: bool, problem: str) -> None:
@@ -73,7 +74,7 @@ Title = Annotated[
     Field(
         max_length=120,
         pattern=r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$",
-        json_schema_extra=allowed("one line of at most 120 printable characters, not blank"),
+        json_schema_extra={"allowed": "one line of at most 120 printable characters, not blank"},
     ),
 ]
 
@@ -85,63 +86,55 @@ RECORDED = "a list of fronts (always: all is measured from them), fields, sample
 class Profile(Block):
     """One pre-stress."""
 
-    left: float = Field(description="level of the pre-stress far to the left [S]")
-    right: float = Field(description="level far to the right [S]")
-    width: Positive = Field(
-        1.0, description="standard deviation W of the Gaussian at nucleation, >= dx [H] (paper)"
+    left: float = key("level of the pre-stress far to the left [S]")
+    right: float = key("level far to the right [S]")
+    width: Positive = key("standard deviation W of the Gaussian at nucleation, >= dx [H] (paper)", 1.0)
+    peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
+    steps: list[Step] = key(
+        "beyond each position, away from x = 0, its level holds [H, S]", [], ROWS_OF_STEPS
     )
-    peak: float = Field(1.0, description="value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)")
-    steps: list[Step] = Field(
-        [],
-        description="beyond each position, away from x = 0, its level holds [H, S]",
-        json_schema_extra=allowed(ROWS_OF_STEPS),
-    )
-    bumps: list[Bump] = Field(
-        [], description="Gaussians that are added [H, S, H]", json_schema_extra=allowed(ROWS_OF_BUMPS)
-    )
+    bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], ROWS_OF_BUMPS)
 
 
 class Beyond(Block):
     """Another level on one side, one run a level."""
 
-    position: float = Field(
-        description="from here on, away from x = 0 and not there, the level is replaced [H]"
-    )
-    levels: Distinct[float] = Field(description="by each of these in turn [S]")
+    position: float = key("from here on, away from x = 0 and not there, the level is replaced [H]")
+    levels: Distinct[float] = key("by each of these in turn [S]")
 
 
 class Duration(Block):
     """How long a run is, in one of three units."""
 
-    time: Positive | None = Field(None, description="the duration itself [H/c]")
-    half_periods: Positive | None = Field(None, description="in pi/sqrt(gamma); under `displacement`")
-    balance_distances: Positive | None = Field(None, description="in |x_minus|; left level < 0, right 0")
+    time: Positive | None = key("the duration itself [H/c]", None)
+    half_periods: Positive | None = key("in pi/sqrt(gamma); under `displacement`", None)
+    balance_distances: Positive | None = key("in |x_minus|; left level < 0, right 0", None)
 
 
 class SpacingRule(Block):
     """A rule for the block spacing: the preset's dx times scale W^width_power gamma^gamma_power, or a fixed one."""
 
-    fixed: Spacing | None = Field(None, description="the spacing, in the grid study too; alone [H]")
-    scale: Positive = Field(1.0, description="factor of the preset's dx")
-    width_power: float = Field(0.0, description="power of W")
-    gamma_power: float = Field(0.0, description="power of gamma; under `displacement`")
+    fixed: Spacing | None = key("the spacing, in the grid study too; alone [H]", None)
+    scale: Positive = key("factor of the preset's dx", 1.0)
+    width_power: float = key("power of W", 0.0)
+    gamma_power: float = key("power of gamma; under `displacement`", 0.0)
 
 
 class Recording(Block):
     """Where and when slip and slip velocity are sampled."""
 
-    times: int = Field(ge=2, le=100_000, description="how many, evenly over the duration")
-    positions: int = Field(ge=1, le=100_000, description="how many, from -extent to extent; 1: at x = 0")
-    extent: NonNegative = Field(description="how far to each side [H]")
+    times: int = key("how many, evenly over the duration", ge=2, le=100_000)
+    positions: int = key("how many, from -extent to extent; 1: at x = 0", ge=1, le=100_000)
+    extent: NonNegative = key("how far to each side [H]")
 
 
 class Physics(Block):
     """What a simulation and a scene share."""
 
-    boundary: Boundary = Field(description="held on top: displacement (Gamma = 1) or stress (Gamma = 0)")
-    scheme: Scheme | None = Field(None, description="by default the model's")
-    resolved_blocks: Count | None = Field(None, description="by default the model's")
-    max_step: Positive | None = Field(None, description="by default the preset's, cut to the bound [dx]")
+    boundary: Boundary = key("held on top: displacement (Gamma = 1) or stress (Gamma = 0)")
+    scheme: Scheme | None = key("by default the model's", None)
+    resolved_blocks: Count | None = key("by default the model's", None)
+    max_step: Positive | None = key("by default the preset's, cut to the bound [dx]", None)
 
     def alone(self, key: str, *others: str) -> None:
         """Refuse a key that is given with another."""
@@ -152,14 +145,10 @@ class Physics(Block):
     @model_validator(mode="after")
     def _physics(self) -> Self:
         gamma, springs = getattr(self, "gamma", None), self.boundary == "displacement"
-        require(
-            not springs or gamma is not None, "gamma: missing; allowed: > 0 under boundary 'displacement'"
-        )
-        require(
-            springs or gamma is None,
-            f"gamma: {gamma!r}; allowed: left out under boundary 'stress', which has no leaf springs"
-            " (gamma: null removes it)",
-        )
+        missing = "gamma: missing; allowed: > 0 under boundary 'displacement'"
+        require(not springs or gamma is not None, missing)
+        none = "left out under boundary 'stress', which has no leaf springs (gamma: null removes it)"
+        require(springs or gamma is None, f"gamma: {gamma!r}; allowed: {none}")
         self.alone("beta", "damping_ratio")
         return self
 
@@ -167,43 +156,36 @@ class Physics(Block):
 class Simulation(Physics):
     """A sweep: the product of its lists."""
 
-    left: Distinct[float] | None = Field(None, description="pre-stress levels on the left, below 1 [S]")
-    right: Literal["same"] | Distinct[float] | None = Field(None, description="on the right [S]")
-    width: Distinct[Positive] = Field([1.0], description="widths W of the Gaussian at nucleation, >= dx [H]")
-    profiles: Distinct[Profile] | None = Field(
+    left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
+    right: Literal["same"] | Distinct[float] | None = key("on the right [S]", None)
+    width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
+    profiles: Distinct[Profile] | None = key(
+        "whole profiles, below, instead of the three above",
         None,
-        description="whole profiles, below, instead of the three above",
-        json_schema_extra=allowed("a list of different profiles, at least one"),
+        "a list of different profiles, at least one",
     )
-    beyond: Beyond | None = Field(None, description="another level on one side, below")
-    gamma: Distinct[Positive] | None = Field(
-        None, description="elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
+    beyond: Beyond | None = key("another level on one side, below", None)
+    gamma: Distinct[Positive] | None = key(
+        "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)", None
     )
-    damping_ratio: Distinct[NonNegative] | None = Field(None, description="beta/dx; by default the model's")
-    beta: Distinct[NonNegative] | None = Field(None, description="damping, instead of `damping_ratio` [H]")
-    rate_strengthening: Distinct[float] | None = Field(
-        None,
-        description="alpha, friction that grows (> 0) or weakens (< 0) with slip rate; by default 0 [c/H]",
+    damping_ratio: Distinct[NonNegative] | None = key("beta/dx; by default the model's", None)
+    beta: Distinct[NonNegative] | None = key("damping, instead of `damping_ratio` [H]", None)
+    rate_strengthening: Distinct[float] | None = key(
+        "alpha, friction that grows (> 0) or weakens (< 0) with slip rate; by default 0 [c/H]", None
     )
-    duration: Duration = Field(
-        description="how long each run is, in one of three units, below", json_schema_extra=allowed(UNITS)
+    duration: Duration = key("how long each run is, in one of three units, below", words=UNITS)
+    spacing: SpacingRule = key("a rule for the block spacing, below", SpacingRule(), RULE)
+    dx: Distinct[Spacing] | None = key("block spacings, instead of `spacing` [H]", None)
+    release: Release | Distinct[Release] | None = key(
+        "by default the model's", None, "total, elastic, or a list of both"
     )
-    spacing: SpacingRule = Field(
-        SpacingRule(), description="a rule for the block spacing, below", json_schema_extra=allowed(RULE)
+    friction_ratio: NonNegative | None = key("by default the model's", None)
+    record: Distinct[Record] = key(
+        "what is kept: release and stick times; slip, velocity and acceleration at the end; samples",
+        words=RECORDED,
     )
-    dx: Distinct[Spacing] | None = Field(None, description="block spacings, instead of `spacing` [H]")
-    release: Release | Distinct[Release] | None = Field(
-        None,
-        description="by default the model's",
-        json_schema_extra=allowed("total, elastic, or a list of both"),
-    )
-    friction_ratio: NonNegative | None = Field(None, description="by default the model's")
-    record: Distinct[Record] = Field(
-        description="what is kept: release and stick times; slip, velocity and acceleration at the end; samples",
-        json_schema_extra=allowed(RECORDED),
-    )
-    samples: Recording | None = Field(None, description="what `record: [fronts, samples]` samples, below")
-    chunks: int = Field(1, ge=1, le=1000, description="how many jobs share the sweep, at most a run each")
+    samples: Recording | None = key("what `record: [fronts, samples]` samples, below", None)
+    chunks: int = key("how many jobs share the sweep, at most a run each", 1, ge=1, le=1000)
 
     @model_validator(mode="after")
     def _together(self) -> Self:
@@ -219,86 +201,77 @@ class Simulation(Physics):
         require(springs or "half_periods" not in units, f"duration.half_periods: {only}")
         require(springs or "gamma_power" not in rule, f"spacing.gamma_power: {only}")
         require("fronts" in self.record, f"record: {self.record}; allowed: {RECORDED}")
-        require(
-            self.samples is not None or not recorded,
-            "samples: missing; allowed: times, positions and extent when record has 'samples'",
-        )
-        require(
-            self.samples is None or recorded,
-            "samples: given, but not recorded; allowed: with samples in record (samples: null removes it)",
-        )
+        text = "samples: missing; allowed: times, positions and extent when record has 'samples'"
+        require(self.samples is not None or not recorded, text)
+        text = "samples: given, but not recorded; allowed: with samples in record (samples: null removes it)"
+        require(self.samples is None or recorded, text)
         return self
 
 
 class NamedScene(Profile, Physics):
     """One run by name."""
 
-    title: Title = Field(description="one line above figure and page")
-    gamma: Positive | None = Field(None, description="as under `simulations` (paper: near 2/3)")
-    damping_ratio: NonNegative | None = Field(None, description="beta/dx; by default the model's")
-    beta: NonNegative | None = Field(None, description="damping, instead of `damping_ratio` [H]")
-    rate_strengthening: float | None = Field(None, description="alpha, as under `simulations` [c/H]")
-    dx: Spacing | None = Field(None, description="block spacing; by default the preset's [H]")
-    release: Release | None = Field(None, description="by default the model's")
-    duration: Positive = Field(description="how long the run is [H/c]")
+    title: Title = key("one line above figure and page")
+    gamma: Positive | None = key("as under `simulations` (paper: near 2/3)", None)
+    damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
+    beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
+    rate_strengthening: float | None = key("alpha, as under `simulations` [c/H]", None)
+    dx: Spacing | None = key("block spacing; by default the preset's [H]", None)
+    release: Release | None = key("by default the model's", None)
+    duration: Positive = key("how long the run is [H/c]")
 
 
 class Preset(Block):
     """One trade of speed for accuracy."""
 
-    dx: Spacing = Field(description="block spacing where a simulation does not scale it [H]")
-    max_step: Positive = Field(description="largest time step; strong damping may need less [dx]")
-    order: int = Field(ge=3, le=8, description="order of the Taylor step")
-    coarser: Annotated[Distinct[Annotated[float, Field(gt=1.0)]], Field(min_length=2, max_length=2)] = Field(
-        description="factors of the spacing in the grid study behind every uncertainty",
-        json_schema_extra=allowed("two different factors > 1"),
+    dx: Spacing = key("block spacing where a simulation does not scale it [H]")
+    max_step: Positive = key("largest time step; strong damping may need less [dx]")
+    order: int = key("order of the Taylor step", ge=3, le=8)
+    coarser: Annotated[Distinct[Annotated[float, Field(gt=1.0)]], Field(min_length=2, max_length=2)] = key(
+        "factors of the spacing in the grid study behind every uncertainty", words="two different factors > 1"
     )
-    whole: bool = Field(True, description="whether studies, ledger and report are made without `everything`")
+    whole: bool = key("whether studies, ledger and report are made without `everything`", True)
 
 
 class Model(Block):
     """What holds for every simulation that does not say otherwise."""
 
-    damping_ratio: NonNegative = Field(description="beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
-    release: Release = Field(
-        description="whether stress at release has the damping force (`total`) or not (figure; `elastic` is printed)"
+    damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
+    release: Release = key(
+        "whether stress at release has the damping force (`total`) or not (figure; `elastic` is printed)"
     )
-    scheme: Scheme = Field(
-        description="`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
+    scheme: Scheme = key(
+        "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
         " `continuum`: the exact solution of the continuum limit, to which `max_step` and `order` mean nothing"
     )
-    friction_ratio: NonNegative = Field(
-        description="mu_k/(mu_s - mu_k): beyond stress -(1 + 2 friction_ratio) blocks slide back: flagged"
+    friction_ratio: NonNegative = key(
+        "mu_k/(mu_s - mu_k): beyond stress -(1 + 2 friction_ratio) blocks slide back: flagged"
     )
-    resolved_blocks: Count = Field(
-        description="a pulse of fewer blocks (under a stress boundary: a Gaussian of fewer) is flagged as unresolved"
+    resolved_blocks: Count = key(
+        "a pulse of fewer blocks (under a stress boundary: a Gaussian of fewer) is flagged as unresolved"
     )
 
 
 class Measure(Block):
     """How numbers are read off a run."""
 
-    share: Fraction = Field(
-        description="under a stress boundary T_trans is when the left front has covered this fraction of |x_minus|; the"
+    share: Fraction = key(
+        "under a stress boundary T_trans is when the left front has covered this fraction of |x_minus|; the"
         " arrest itself never comes in the continuum"
     )
-    front_window: float = Field(
-        ge=0.05, lt=1.0, description="a front speed is a straight line through this last fraction of its path"
+    front_window: float = key(
+        "a front speed is a straight line through this last fraction of its path", ge=0.05, lt=1.0
     )
-    steady_tolerance: Fraction = Field(
-        description="a largest velocity changing less over the last third is steady"
-    )
-    trailing_times: Distinct[Positive] = Field(
-        description="when the trailing edge is tabulated [H/c] (figure)"
-    )
-    still: Fraction = Field(description="slower than this fraction of the largest slip velocity is at rest")
+    steady_tolerance: Fraction = key("a largest velocity changing less over the last third is steady")
+    trailing_times: Distinct[Positive] = key("when the trailing edge is tabulated [H/c] (figure)")
+    still: Fraction = key("slower than this fraction of the largest slip velocity is at rest")
 
 
 class Sketch(Block):
     """The layer of figure 1."""
 
-    thickness: float = Field(ge=0.01, le=100.0, description="of the layer in the sketch [H]")
-    strip_width: float = Field(ge=0.01, le=2.0, description="of the integrated strip in the sketch [H]")
+    thickness: float = key("of the layer in the sketch [H]", ge=0.01, le=100.0)
+    strip_width: float = key("of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
 
 
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
@@ -307,9 +280,9 @@ Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 class Steps(Block):
     """Numbers in steps of equal ratio."""
 
-    from_: Ratio = Field(alias="from", description="the first")
-    to: Ratio = Field(description="the last, above the first")
-    count: int = Field(ge=2, le=10_000, description="how many")
+    from_: Ratio = key("the first", alias="from")
+    to: Ratio = key("the last, above the first")
+    count: int = key("how many", ge=2, le=10_000)
 
     @model_validator(mode="after")
     def _upwards(self) -> Self:
@@ -320,64 +293,57 @@ class Steps(Block):
 class DamageZone(Block):
     """The curves of figure 7."""
 
-    stiffness_ratios: Steps = Field(description="G/G_r")
-    thickness_ratios: Distinct[Ratio] = Field(description="H_r/H, one curve each")
+    stiffness_ratios: Steps = key("G/G_r")
+    thickness_ratios: Distinct[Ratio] = key("H_r/H, one curve each")
 
 
 class Figures(Block):
     """Settings of figures that draw no simulation."""
 
-    fig01_system_sketch: Sketch = Field(description="the sketch of the system")
-    fig07_damage_zone: DamageZone = Field(description="the damage zone")
+    fig01_system_sketch: Sketch = key("the sketch of the system")
+    fig07_damage_zone: DamageZone = key("the damage zone")
 
 
 class Claim(Block):
     """When a claim counts as reproduced, in place of what stands with it in manuscript/claims.yaml."""
 
-    tolerance: NonNegative | None = Field(None, description="what counts as agreement, by kind")
-    tolerance_exponent: Positive | None = Field(
-        None, description="of an approximate claim: largest distance of the exponent from 1"
+    tolerance: NonNegative | None = key("what counts as agreement, by kind", None)
+    tolerance_exponent: Positive | None = key(
+        "of an approximate claim: largest distance of the exponent from 1", None
     )
 
 
 class Reading(Block):
     """A number read off a published figure."""
 
-    simulation: str = Field(description="name of the simulation whose run is compared with it")
-    quantity: str = Field(description="which of its measured numbers: a column of the measured table")
-    statement: str = Field(min_length=1, description="what was read off (figure)")
-    value: float = Field(description="the number (figure)")
-    reading_error: Positive = Field(description="of reading by pixel")
-    arrow: bool = Field(
-        False, description="whether it is a drawn arrow, which the best fit is found with and without"
-    )
+    simulation: str = key("name of the simulation whose run is compared with it")
+    quantity: str = key("which of its measured numbers: a column of the measured table")
+    statement: str = key("what was read off (figure)", min_length=1)
+    value: float = key("the number (figure)")
+    reading_error: Positive = key("of reading by pixel")
+    arrow: bool = key("whether it is a drawn arrow, which the best fit is found with and without", False)
 
 
 class Configuration(Block):
     """The whole configuration."""
 
-    preset: str = Field(
-        description="which of `presets` is used", json_schema_extra=allowed("the name of a preset")
+    preset: str = key("which of `presets` is used", words="the name of a preset")
+    presets: dict[str, Preset] = key("trades of speed for accuracy, by name", min_length=1)
+    accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
+        "largest relative numerical error of measured numbers, instead of a preset's spacing and step", None
     )
-    presets: dict[str, Preset] = Field(min_length=1, description="trades of speed for accuracy, by name")
-    accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = Field(
+    allow_large: bool = key("whether simulations above the limits of cost run", False)
+    model: Model = key("for every simulation that does not say otherwise")
+    simulations: dict[Name, Simulation] = key("sweeps by name, each the product of its lists")
+    scenes: dict[Name, NamedScene] = key("single runs by name", {})
+    measure: Measure = key("how numbers are read off a run")
+    figures: Figures = key("of figures that draw no simulation")
+    claims: dict[str, Claim] = key("other tolerances than those of manuscript/claims.yaml, by claim", {})
+    published: dict[str, Reading] = key("numbers read off a published figure, by name")
+    studies: Distinct[Name] | None = key(
+        "studies run for their tables, by name; by default all",
         None,
-        description="largest relative numerical error of measured numbers, instead of a preset's spacing and step",
-    )
-    allow_large: bool = Field(False, description="whether simulations above the limits of cost run")
-    model: Model = Field(description="for every simulation that does not say otherwise")
-    simulations: dict[Name, Simulation] = Field(description="sweeps by name, each the product of its lists")
-    scenes: dict[Name, NamedScene] = Field({}, description="single runs by name")
-    measure: Measure = Field(description="how numbers are read off a run")
-    figures: Figures = Field(description="of figures that draw no simulation")
-    claims: dict[str, Claim] = Field(
-        {}, description="other tolerances than those of manuscript/claims.yaml, by claim"
-    )
-    published: dict[str, Reading] = Field(description="numbers read off a published figure, by name")
-    studies: Distinct[Name] | None = Field(
-        None,
-        description="studies run for their tables, by name; by default all",
-        json_schema_extra=allowed("a list of different names, at least one"),
+        "a list of different names, at least one",
     )
 
     @model_validator(mode="after")
@@ -385,35 +351,23 @@ class Configuration(Block):
         hint = nearest(self.preset, self.presets)
         text = f"preset: {short_repr(self.preset)}{hint}; allowed: {', '.join(self.presets)}"
         require(self.preset in self.presets, text)
-        require(
-            self.accuracy is None or self.model.scheme == "localised",
-            f"model.scheme: {self.model.scheme!r}; allowed: 'localised' where accuracy is given",
-        )
+        text = f"model.scheme: {self.model.scheme!r}; allowed: 'localised' where accuracy is given"
+        require(self.accuracy is None or self.model.scheme == "localised", text)
         for name in self.scenes:
+            text = "also the name of a simulation; allowed: another name"
+            require(name not in self.simulations, f"scenes.{name}: {text}")
             taken = name == "index" or name.removesuffix("_numbers") in {*self.scenes} - {name}
-            require(
-                name not in self.simulations,
-                f"scenes.{name}: also the name of a simulation; allowed: another name",
-            )
-            require(
-                not taken,
-                f"scenes.{name}: another file of that name is there; allowed: neither index nor SCENE_numbers",
-            )
+            text = "another file of that name is there; allowed: neither index nor SCENE_numbers"
+            require(not taken, f"scenes.{name}: {text}")
         known = QUANTITIES | {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
-        for key, reading in self.published.items():
+        for entry, reading in self.published.items():
             name, quantity = reading.simulation, reading.quantity
-            require(
-                name in self.simulations,
-                f"published.{key}.simulation: {short_repr(name)}{nearest(name, self.simulations)};"
-                " allowed: a name under simulations",
-            )
-            text = f"published.{key}.quantity: {short_repr(quantity)}"
-            require(
-                quantity in known,
-                f"{text}{nearest(quantity, known)}; allowed: a column of the measured table",
-            )
-            require(
-                known[quantity] in ("fronts", *self.simulations[name].record),
-                f"{text}; allowed: what simulations.{name} records; this takes record: [fronts, {known[quantity]}]",
-            )
+            text = f"{short_repr(name)}{nearest(name, self.simulations)}; allowed: a name under simulations"
+            require(name in self.simulations, f"published.{entry}.simulation: {text}")
+            where = f"published.{entry}.quantity: {short_repr(quantity)}"
+            text = f"{where}{nearest(quantity, known)}; allowed: a column of the measured table"
+            require(quantity in known, text)
+            text = f"what simulations.{name} records; this takes record: [fronts, {known[quantity]}]"
+            recorded = ("fronts", *self.simulations[name].record)
+            require(known[quantity] in recorded, f"{where}; allowed: {text}")
         return self
