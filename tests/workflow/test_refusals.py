@@ -20,7 +20,11 @@ KEPT = (
 )  # fmt: skip
 STEADY, STRESS = "simulations: {steady_displacement: ", "simulations: {space_time_stress: "
 OWN = "simulations: {mine: {boundary: displacement, duration: {time: 10.0}, record: [fronts], "
+OWN_LEVEL = OWN + "gamma: [0.5], left: [0.5], right: same, "
 OWN_STRESS = "simulations: {mine: {boundary: stress, left: [-1.0], record: [fronts], "
+OWN_PROFILE = (
+    "simulations: {mine: {boundary: stress, record: [fronts], duration: {time: 1.0}, profiles: [{left: "
+)
 MANY = "[" + ", ".join(f"{0.001 * i:.3f}" for i in range(1, 801)) + "]"
 
 # Overlay, and what the refusal must name: the key, the value, what is allowed or the remedy.
@@ -52,7 +56,7 @@ CASES = {
     "a fraction for a whole number": ("presets: {paper: {order: 4.5}}", ["order: 4.5", "a whole number from 3 to 8"]),
     "a list for a mapping": ("simulations: [1, 2]", ["simulations: [1, 2]", "a mapping"]),
     "text for a mapping": (STEADY + "{duration: long}}", ["duration: 'long'", "one of time"]),
-    "text for a switch": ("allow_large: 'yes'", ["allow_large: 'yes'", "true or false"]),
+    "yes for a switch": ("allow_large: yes", ["allow_large: 'yes'", "true or false"]),
     "a preset that is a number": ("preset: 3", ["preset: 3", "the name of a preset"]),
     # ranges
     "negative spacing": ("presets: {paper: {dx: -0.1}}", ["presets.paper.dx: -0.1", "> 0"]),
@@ -87,9 +91,7 @@ CASES = {
     "null for the preset": ("preset: null", ["preset: missing", "null removes a key", "draft, paper, reference"]),
     "null for a preset's key": ("presets: {paper: {dx: null}}", ["presets.paper.dx: missing", "null removes a key"]),
     "null in a list": (STEADY + "{gamma: [null]}}", ["gamma.0: None", "a number > 0"]),
-    "a number as a name": (
-        "simulations: {123: {boundary: stress}}", ["simulations: '123'", "begins with a letter"],
-    ),
+    "a number as a name": ("simulations: {123: {boundary: stress}}", ["simulations: '123'", "begins with a letter"]),
     "reading of a quantity that is not measured": (
         "published: {front_speed: {quantity: front_speed_rigt}}",
         ["published.front_speed.quantity: 'front_speed_rigt'", "did you mean 'front_speed_right'"],
@@ -107,30 +109,25 @@ CASES = {
     ),
     # what belongs together
     "samples that are not recorded": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, samples: {times: 2, positions: 1, extent: 0.0}}}",
+        OWN_LEVEL + "samples: {times: 2, positions: 1, extent: 0.0}}}",
         ["mine.samples: given, but not recorded", "samples in record"],
     ),
     "peak below 1 everywhere": (
-        OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: 0.5, right: 0.5, peak: 0.9}]")
-        + "duration: {time: 1.0}}}",
-        ["mine.peak: 0.9", "at most 0.9 ", "reaches 1 somewhere"],
+        OWN_PROFILE + "0.5, right: 0.5, peak: 0.9}]}}", ["mine.peak: 0.9", "at most 0.9 ", "reaches 1 somewhere"],
     ),
     "a dent that reaches the peak": (
-        OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: -0.2, right: 0.0, bumps: [[-3.0, -0.8, 0.7]]}]")
-        + "duration: {time: 1.0}}}",
+        OWN_PROFILE + "-0.2, right: 0.0, bumps: [[-3.0, -0.8, 0.7]]}]}}",
         ["mine.peak: 1", "at most 0.9999178", "reaches 1 somewhere"],
     ),
     "a bump between two blocks": (
-        OWN_STRESS.replace("left: [-1.0]", "profiles: [{left: 0, right: 0, peak: 0, bumps: [[0.003, 1, 1.0e-4]]}]")
-        + "duration: {time: 1.0}}}",
-        ["mine.peak: 0,", "reaches 1 somewhere"],
+        OWN_PROFILE + "0, right: 0, peak: 0, bumps: [[0.003, 1, 1.0e-4]]}]}}", ["mine.peak: 0,", "reaches 1 somewhere"],
     ),
     "balance distances of positive levels": (
         STEADY + "{duration: {time: null, balance_distances: 2.0}}}",
         ["steady_displacement.duration.balance_distances: 2.0 times |x_minus|, but right: 0.2", "allowed: 0"],
     ),
     "fixed spacing with a rule": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, spacing: {fixed: 0.1, scale: 2.0}}}",
+        OWN_LEVEL + "spacing: {fixed: 0.1, scale: 2.0}}}",
         ["mine.spacing.fixed: given with others", "alone"],
     ),
     "gamma that leaves no stable step": (STEADY + "{gamma: [1.0e+200]}}", ["steady_displacement.gamma: 1e+200"]),
@@ -154,14 +151,11 @@ CASES = {
     "no gamma under displacement": (OWN + "left: [0.5], right: same}}", ["mine.gamma: missing"]),
     "no levels": (OWN + "gamma: [0.5]}}", ["mine.left, right: missing"]),
     "profiles and levels": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, profiles: [{left: 0.5, right: 0.5}]}}",
+        OWN_LEVEL + "profiles: [{left: 0.5, right: 0.5}]}}",
         ["mine.profiles", "one or the other"],
     ),
     "beta and damping ratio": (STEADY + "{beta: [0.001]}}", ["beta", "damping_ratio", "one or the other"]),
-    "dx and spacing": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, dx: [0.1], spacing: {scale: 2.0}}}",
-        ["mine.dx", "spacing", "one or the other"],
-    ),
+    "dx and spacing": (OWN_LEVEL + "dx: [0.1], spacing: {scale: 2.0}}}", ["mine.dx", "spacing", "one or the other"]),
     "two durations": (STEADY + "{duration: {half_periods: 3.0}}}", ["duration", "one of time"]),
     "half periods under stress": (
         OWN_STRESS + "right: [0.0], duration: {half_periods: 1.0}}}",
@@ -182,7 +176,7 @@ CASES = {
     ),
     "unstable step": (STEADY + "{max_step: 3.0}}", ["max_step: 3.0", "stability bound"]),
     "unstable on a coarser lattice": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, width: [0.3], dx: [0.1]}}",
+        OWN_LEVEL + "width: [0.3], dx: [0.1]}}",
         ["prestress.width: 0.3", "4 times coarser of the grid study"],
     ),
     "pulse of a few blocks": (
@@ -241,7 +235,6 @@ CASES = {
     "claim with an unknown key": ("claims: {pulse_slip: {kind: exact}}", ["claims.pulse_slip.kind: unknown key"]),
     "study that is text": ("studies: extremes", ["studies: 'extremes'", "a list of different names"]),
     "a collection as a key": ("{[1, 2]: 3}", ["unknown key", "allowed: preset"]),
-    "yes for a switch": ("allow_large: yes", ["allow_large: 'yes'", "true or false"]),
     "sexagesimal": ("model: {friction_ratio: 1:30}", ["friction_ratio: '1:30'", "a number >= 0"]),
     "a quote in a preset": ("preset: \"draft'\"", ["preset: \"draft'\"", "did you mean 'draft'"]),
 }  # fmt: skip
@@ -253,12 +246,8 @@ EXPENSIVE = {
         + "right: same, damping_ratio: [1.0], dx: [0.01], duration: {time: 60.0}}}",
         "mine", "block updates; allowed: 4e+13",
     ),
-    "a nucleation of a million layers": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, width: [1.0e+9], dx: [0.01]}}", "mine", "block updates",
-    ),
-    "damping of ten thousand": (
-        OWN + "gamma: [0.5], left: [0.5], right: same, damping_ratio: [1.0e+4], dx: [0.001]}}", "mine", "block updates",
-    ),
+    "a nucleation of a million layers": (OWN_LEVEL + "width: [1.0e+9], dx: [0.01]}}", "mine", "block updates"),
+    "damping of ten thousand": (OWN_LEVEL + "damping_ratio: [1.0e+4], dx: [0.001]}}", "mine", "block updates"),
     "too many runs": (
         STEADY + f"{{left: {MANY}, gamma: {MANY}}}}}", "steady_displacement", "1.92e+06 runs; allowed: 2e+04",
     ),
