@@ -90,11 +90,16 @@ def _known(find: Callable[[], Found]) -> Found | None:
         return None
 
 
+def or_nan(find: Callable[[], float]) -> float:
+    """A number that theory has; NaN where it says that it has none."""
+    found = _known(find)
+    return NAN if found is None else float(found)
+
+
 @cache
 def _with_springs(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
     # Under strong springs no front outruns the waves.
-    speed = _known(lambda: lattice_front_speed(level, gamma, dx, ratio, release))
-    return NAN if speed is None else speed
+    return or_nan(lambda: lattice_front_speed(level, gamma, dx, ratio, release))
 
 
 def _pulse(scene: Scene, speed: float) -> dict[str, float]:
@@ -145,8 +150,7 @@ def _stress(scene: Scene, fraction: float) -> dict[str, float]:
     profile = scene.prestress
     out = {}
     if _level(scene, "left") < 0.0 == _level(scene, "right"):
-        balance = _known(lambda: prestress_balance_position(profile))
-        out["exact_balance_distance"] = NAN if balance is None else -balance
+        out["exact_balance_distance"] = -or_nan(lambda: prestress_balance_position(profile))
     if _plain(profile) and profile.left < 0.0 == profile.right:
         # All lengths and times go with the width.
         unit = _arrest(profile.left, _ratio(scene), scene.release, fraction)
@@ -170,8 +174,7 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
         numbers[f"exact_arrest_time_{100.0 * each:g}"] = partial(crack.share_time, each)
         numbers[f"exact_arrest_length_{100.0 * each:g}"] = partial(crack.share_length, each)
     # Very near x_minus the front is held by what theory leaves out.
-    found = {name: _known(find) for name, find in numbers.items()}
-    return {name: NAN if value is None else value for name, value in found.items()}
+    return {name: or_nan(find) for name, find in numbers.items()}
 
 
 def _half_width(crack: ArrestingCrack) -> float:

@@ -12,6 +12,7 @@ from ..configuration.expand import expand
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
 from ..predict.exact_rupture import exact_rupture
+from ..predict.table import or_nan
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
@@ -85,14 +86,6 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     }
     rows = [{"quantity": name, "x": math.nan, "value": or_nan(find)} for name, find in numbers.items()]
     return pd.DataFrame(rows + sticking(published))
-
-
-def or_nan(number: Callable[[], float]) -> float:
-    """A number; NaN where the theory says that it has no answer."""
-    try:
-        return float(number())
-    except (ValueError, ArithmeticError):
-        return math.nan
 
 
 def strain_term(rupture: Rupture) -> float:

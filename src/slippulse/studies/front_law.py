@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
+from ..predict.table import or_nan
 from ..theory.front_law import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
 # Simulations whose parameters the curves have.
@@ -71,7 +72,4 @@ def _refined(runs: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
 
 def _speed(*scene) -> float:
     """The lattice's front speed; NaN where no front outruns the waves."""
-    try:
-        return lattice_front_speed(*scene)
-    except ValueError:
-        return np.nan
+    return or_nan(lambda: lattice_front_speed(*scene))
