@@ -11,9 +11,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measure.fronts import front_speed, path
-from ..measure.pulses import leading_pulse
-from ..measure.transition import transition_stress
+from ..measure.fronts import path
+from ..measure.table import measure_run
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
@@ -45,6 +44,11 @@ LONG, APART, CENTRE, WIDTH = 1e5, 20.0, 25.0, 2.0
 # Of these the steady pulse is expected, so its state belongs to the flags; and flags that say that all is well.
 OF_PULSES = ("front speed", "final slip", "speed drift", "slip drift", "energy residual")
 FINE = ("", "steady", "none", "resolved")
+# Columns of the measured table; the other quantities are found here.
+MEASURED = {
+    "front speed": "front_speed_right", "final slip": "pulse_slip", "T_trans": "transition_time",
+    "energy residual": "energy_residual",
+}  # fmt: skip
 
 
 class Edge(NamedTuple):
@@ -226,25 +230,14 @@ def measured(edge: Edge, window: float) -> tuple[float, str, int]:
     if edge.quantity == "slip":
         return float(run_scene(of, damping_sign=-1 if edge.family == "damping sign" else 1).slip.max()), "", 0
     run = simulated(of)
-    flags = [run.attrs["run_flags"]]
-    if edge.quantity in OF_PULSES:
-        flags.append(pulse_state(run, leading_pulse(run, window)))
+    numbers, pulse = measure_run(run, {"front_window": window, "share": FRACTION, "trailing_times": ()})
+    flags = [numbers["run_flags"], numbers.get("transition_state", "")]
+    if pulse is not None and edge.quantity in OF_PULSES:
+        flags.append(pulse_state(run, pulse))
     match edge.quantity:
-        case "front speed":
-            value = front_speed(run, window)[0]
-        case "final slip":
-            value = leading_pulse(run, window).slip
-        case "T_trans" if of.boundary == "stress":
-            found = transition_stress(run, FRACTION)
-            value = float(found["transition_time"])
-            flags.append(str(found["transition_state"]))
-        case "T_trans":
-            value = run.attrs["first_stick_time"]
         case "releases":
             # That nothing is released is flagged, and right here.
             value, flags = float(run.attrs["releases"]), []
-        case "energy residual":
-            value = run.attrs["energy_residual"]
         case "speed drift" | "slip drift":
             value = drift(run, edge.quantity)
         case "meeting time":
@@ -256,6 +249,8 @@ def measured(edge: Edge, window: float) -> tuple[float, str, int]:
             value = float(np.max(np.abs(slip - mirrored)) / slip.max())
         case "passes by":
             value = max(0.0, float(path(run)[1][-1]) - CENTRE)
+        case quantity:
+            value = numbers[MEASURED[quantity]]
     return value, ",".join(flag for flag in flags if flag not in FINE), run.attrs["block_updates"]
 
 
