@@ -69,17 +69,15 @@ def far_field(run: xr.Dataset) -> dict[str, float]:
     largest velocity), energy_change (relative change of kinetic plus strain energy) and strain_left (largest strain
     left where it entered, over the largest strain); NaN where nothing slides there at two thirds of the run
     """
-    out = {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
-    start = max(
-        [FAR * run.attrs["width"], *(abs(position) for position, _ in prestress_from(run.attrs).steps)]
-    )
+    steps = [abs(position) for position, _ in prestress_from(run.attrs).steps]
+    start = max([FAR * run.attrs["width"], *steps])
     times, x = run.variables["sample_time"].values, run.variables["sample_position"].values
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     moved = float(times[-1] - times[early])
     velocity, slip = run.variables["sample_velocity"].values, run.variables["sample_slip"].values
     far = x >= start
     if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
-        return out
+        return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
     strain = np.gradient(slip[:, far], x[far], axis=1)
     energies = [
         np.trapezoid(0.5 * (velocity[i][far] ** 2 + s**2), x[far])
@@ -88,10 +86,9 @@ def far_field(run: xr.Dataset) -> dict[str, float]:
     inside = far & (x + moved <= x[-1])
     later = np.interp(x[inside] + moved, x, velocity[-1])
     entered = x[far] <= start + run.attrs["width"]
+    changed = np.max(np.abs(later - velocity[early][inside]))
     return {
-        "profile_change": float(
-            np.max(np.abs(later - velocity[early][inside])) / np.max(velocity[early][far])
-        ),
+        "profile_change": float(changed / np.max(velocity[early][far])),
         "energy_change": float(energies[1] / energies[0] - 1.0),
         "strain_left": float(np.max(np.abs(strain[-1][entered])) / np.max(np.abs(strain[-1]))),
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -14,21 +14,20 @@ from ..model.roots import root_between
 ORDERS = (0.5, 6.0)
 
 
-@dataclass(frozen=True)
-class GridStudy:
+class GridStudy(NamedTuple):
     """What three spacings say about one number.
 
     Attributes
     ----------
     value : at the finest spacing
     extrapolated : at spacing 0, by the observed order; the finest value where there is none
-    order : observed order; NaN where the three values do not follow a power of the spacing
+    observed_order : NaN where the three values do not follow a power of the spacing
     uncertainty : |value - extrapolated|, or the spread of the three where there is no order
     """
 
     value: float
     extrapolated: float
-    order: float
+    observed_order: float
     uncertainty: float
 
 
@@ -97,12 +96,6 @@ def grid_tables(
     studied = {name: np.column_stack([table[name] for table in tables]) for name in quantities(finest, keys)}
     for index, point in enumerate(finest[list(keys)].to_dict("records")):
         for name, values in studied.items():
-            study = grid_study(values[index].tolist(), factors)
-            numbers = {
-                "value": study.value,
-                "extrapolated": study.extrapolated,
-                "observed_order": study.order,
-            }
-            numbers["uncertainty"] = study.uncertainty
+            numbers = grid_study(values[index].tolist(), factors)._asdict()
             rows.append({"point": index} | point | {"quantity": name} | numbers)
     return pd.DataFrame(rows)

@@ -96,9 +96,9 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
 
     def scene(profile: Prestress, duration: float, dx: float, gamma: float, ratio: float) -> Scene:
         boundary = "displacement" if gamma > 0.0 else "stress"
-        bound = math.inf if scheme == "continuum" else largest_step(scheme, known, ratio, gamma * dx**2)
+        bound = MARGIN * largest_step(scheme, known, ratio, gamma * dx**2)
         of = Scene(boundary, profile, duration, dx, gamma, ratio * dx, scheme=scheme, order=known)
-        return replace(of, max_step=min(step, MARGIN * bound))
+        return replace(of, max_step=min(step, bound))
 
     even, uneven = Prestress(LEVEL, LEVEL), Prestress(NEGATIVE_LEVEL, 0.0)
     found = [pulse_errors(scene(even, DURATION, dx, GAMMA, b), b, window) for b in DAMPING_RATIOS]
