@@ -116,6 +116,7 @@ def test_what_no_number_is_is_refused(name):
         (lambda: sp.settings_for(1e-2, boundary="stress", prestress=PLAIN, fields=1), "fields: 1; allowed: true"),
         (lambda: exact_scene(beta=1e300), "damping_ratio: "),
         (lambda: exact_scene(duration=1e-300), "duration: 1e-300; allowed"),
+        (lambda: sp.Scene(**GOOD | {"duration": 1e308}), "duration: 1e+308; allowed: a finite number and <= 9"),
         (lambda: exact_scene(dx=1e-9), "dx: 1e-09; allowed"),
         (lambda: exact_scene(prestress=FAR), "prestress.bumps reach: 1000000004.0; allowed"),
         (lambda: theory.barrier_depth(0.5, -1e-5, 0.65), "tau_barrier: -1e-05; allowed"),

@@ -26,6 +26,8 @@ ORDERS = (3, 4, 5, 6, 7, 8)
 RESOLVED_BLOCKS = 8
 # A lattice holds every bump from the start, at 200 bytes a block.
 FARTHEST_BUMP = 10**6
+# After so many a step no longer moves the time.
+MOST_STEPS = 2.0**52
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,8 @@ class Scene:
             )
         bound = self._largest_step()
         check_number("max_step", self.max_step, above=0.0)
+        if self.scheme != "continuum":
+            check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
         # Single-precision or integer parameters would be computed with as such, and compiled for.
         for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio", "rate_strengthening"):
             object.__setattr__(self, name, float(getattr(self, name)))
