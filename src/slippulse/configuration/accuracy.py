@@ -121,9 +121,9 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
     if promise is None or math.isnan(promise):
         return simulation
     if any(run.alpha for run in runs(simulation)):
-        # The constants above were found without it; beyond alpha_c no pulse has a width, and near -alpha_c slip diverges.
-        given = short_repr(simulation["rate_strengthening"])
-        raise ConfigError(f"rate_strengthening: {given}; allowed: 0 where accuracy is given, or a dx of its own")
+        # The constants above are those without it; beyond alpha_c no pulse has a width, near -alpha_c slip diverges.
+        given = f"rate_strengthening: {short_repr(simulation['rate_strengthening'])}"
+        raise ConfigError(f"{given}; allowed: 0 where accuracy is given, or a dx of its own")
     spacings = [
         settings_for(
             promise, boundary=simulation["boundary"], prestress=run.profile, gamma=run.gamma,
