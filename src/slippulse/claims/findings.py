@@ -11,7 +11,7 @@ from ..data.prose import fill
 from .evidence import Evidence, NoRuns, evaluated
 from .inference import inference
 from .reading import Numbers
-from .transition import LAST, arrests, at_ours, median
+from .transition import medians
 
 
 def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]) -> list[dict]:
@@ -52,11 +52,8 @@ def numbers(
 
 def fractions(evidence: Evidence) -> dict[str, float]:
     """Median ratio of the exact time at each fraction of the way to the predicted one."""
-    return {
-        f"median_{100.0 * float(choice['fraction']):.0f}": median(tables, "time", "distance")
-        for choice, tables in at_ours(arrests(evidence))
-        if choice["fraction"] != LAST
-    }
+    found = medians(evidence, "time", "distance")
+    return {f"median_{100.0 * fraction:.0f}": ratio for fraction, ratio in found.items()}
 
 
 def best_fit(evidence: Evidence) -> dict[str, float | str]:

@@ -118,23 +118,20 @@ def stress(evidence: Evidence, name: str) -> Claim:
         return evidence.approximate(id, tables, *estimate, "left", "width")
 
     claim = at_fractions(evidence, judge) | evidence.compared("scaling_stress", f"transition_{estimate[0]}")
-    curve = sorted(
-        (choice["fraction"], median(tables, *estimate) - 1.0)
+    fractions, ratio = zip(*sorted(medians(evidence, *estimate).items()), strict=True)
+    over = np.array(ratio) - 1.0
+    reached = float(np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN))
+    name = "fraction of the way at which the median ratio leaves the tolerance"
+    return claim | {"further": claim["further"] | {name: reached}}
+
+
+def medians(evidence: Evidence, measured: str, predicted: str) -> dict[float, float]:
+    """Median ratio at each fraction of the way, by the exact solution at our release rule and damping."""
+    return {
+        float(choice["fraction"]): float(np.nanmedian(ratios(tables[0], measured, predicted)))
         for choice, tables in at_ours(arrests(evidence))
-        if choice["fraction"] != LAST and choice["nucleation"] == "Gaussian"
-    )
-    fractions, over = zip(*curve, strict=True)
-    reached = {
-        "fraction of the way at which the median ratio leaves the tolerance": float(
-            np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN)
-        )
+        if choice["fraction"] != LAST
     }
-    return claim | {"further": claim["further"] | reached}
-
-
-def median(tables: list[pd.DataFrame], measured: str, predicted: str) -> float:
-    """Median ratio of runs on the finest lattice, or of exact values."""
-    return float(np.nanmedian(ratios(tables[0], measured, predicted)))
 
 
 def speeds_near_one(evidence: Evidence) -> Claim:
