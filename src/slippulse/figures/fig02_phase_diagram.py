@@ -8,12 +8,13 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from ..data.numerals import setting
 from . import style
 from .shared.scaling import chosen
-from .style import BLACK, GREY, PAGE, Look, new_figure, panel_letter
+from .style import BLACK, GREY, PAGE, Look, entry, legend_below, new_figure, panel_letter
 
 NEEDS = {
     "measured": ["regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress"],
@@ -58,7 +59,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """A plane for each boundary, and velocity profiles of the ruptures that are numbered in them."""
-    figure = new_figure(PAGE, 2.55)
+    figure = new_figure(PAGE, 2.75)
     grid = figure.add_gridspec(1, 2, width_ratios=(2.05, 1.0))
     planes, strips = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
@@ -73,6 +74,9 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_title(BOUNDARIES[boundary], fontsize=9)
         panel_letter(axes, letter)
     draw_profiles(strips, profiles)
+    runs = table[table["role"] == "run"]
+    # What is flagged is in the legend where there is any.
+    legend_below(figure, run_handles()[: 3 if runs["run_flags"].notna().any() else 2], 3)
     return figure
 
 
@@ -113,6 +117,16 @@ def draw_runs(axes: Axes, runs: pd.DataFrame) -> None:
         elif run.exact_regime in LOOKS and run.exact_regime != run.regime:
             look["markerfacecolor"] = "white"
         axes.plot(run.left, run.right, marker, gid="run", zorder=3.0, **look)
+
+
+def run_handles() -> list[Line2D]:
+    """Legend of the runs."""
+    look: Look = {"color": BLACK, "markersize": 4.0, "markeredgewidth": 0.6}
+    return [
+        entry("simulation, in the colour of its regime", marker="o", **look | {"markerfacecolor": GREY}),
+        entry("not settled by its end", marker="o", **look | {"markerfacecolor": "white"}),
+        entry("flagged", marker="x", **look),
+    ]
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:

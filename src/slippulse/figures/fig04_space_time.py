@@ -80,7 +80,7 @@ def plot(table: pd.DataFrame) -> Figure:
     handles: dict[str, Artist] = {}
     panels: dict[str, str] = {}
     for side, (panel, letter) in zip(stacked(figure, (1.0, 1.0)), PANELS.items(), strict=True):
-        profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.27, 1.0))
+        profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.3, 1.0))
         roles = {str(role): rows for role, rows in table[table["panel"] == panel].groupby("role")}
         draw_profile(profile, roles["prestress"])
         image = draw_map(axes, roles)
@@ -109,24 +109,30 @@ def draw_transition(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> None:
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             rows = roles[role].sort_values("position")
-            look: Look = {"color": PURPLE, "linestyle": (0, (1, 1)), "zorder": 2.5}
+            look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
             axes.plot(rows["time"], rows["position"], label=label, gid=role, **look)
     # A run that is too short for its transition has none to draw.
     if np.isfinite(roles["measured"]["time"]).all():
-        draw_arrows(axes, roles["measured"].set_index("series"), roles["front"]["position"].min())
+        draw_arrows(axes, roles["measured"].set_index("series"))
     look = {"markeredgewidth": 0.8, "markeredgecolor": BLACK, "markersize": 4.5, "zorder": 5.0}
     paper = roles["paper"]
     axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **look)
     if "last_release" in roles:
+        # Under a stress boundary the paper's estimate of the time is the way of the left front, |x_-|.
+        limit = -float(paper["time"].iloc[0])
+        axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9, gid="x_-")
+        axes.text(0.02 * axes.get_xlim()[1], limit, "$x_-$", va="bottom", fontsize=8.5, zorder=4.0)
         left = roles["last_release"].iloc[:1]
         axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)
 
 
-def draw_arrows(axes: Axes, ends: pd.DataFrame, lowest: float) -> None:
+def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
     """T_trans as an arrow below the lowest position that slips, L_trans between the fronts."""
     time, length = float(ends["time"].iloc[0]), float(ends["value"].iloc[0])
     left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
-    level = 0.5 * (axes.get_ylim()[0] + lowest)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.04 * (high - low), high)
+    level = low
     arrow = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9, "mutation_scale": 8.0}
     axes.plot([time, time], [level, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
     for name, value, height, start, stop in (
@@ -135,5 +141,11 @@ def draw_arrows(axes: Axes, ends: pd.DataFrame, lowest: float) -> None:
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
         text = rf"${name}_\mathrm{{trans}} = {value:#.3g}$"
-        x = time + 0.025 * axes.get_xlim()[1]
-        axes.text(x, height, text, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0)
+        end = axes.get_xlim()[1]
+        # On a long arrow, away from what is marked beyond it.
+        look: Look = (
+            {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
+            if name == "T" and time > 0.45 * end
+            else {"x": time + 0.025 * end}
+        )
+        axes.text(y=height, s=text, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0, **look)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import matplotlib
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .shared.sketch import BOTH, arrow, label
-from .style import BLACK, BLUE, COLUMN, CYCLE, GREY, ORANGE, new_panels
+from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, new_panels
 
 NEEDS = {"studies": ["damage_zone"]}
 
@@ -68,9 +70,14 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
 
 def draw_stress_drop(axes: Axes, curves: pd.DataFrame) -> None:
     """One curve a thickness ratio, and the limit of rock that does not yield."""
-    for colour, (thickness, curve) in zip(CYCLE, curves.groupby("thickness_ratio"), strict=False):
-        name = rf"$H_r/H = {thickness:g}$"
-        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve")
+    groups = curves.groupby("thickness_ratio")
+    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
+    for colour, (thickness, curve) in zip(colours, groups, strict=True):
+        curve = curve.sort_values("stiffness_ratio")
+        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, gid="curve")
+        look: Look = {"xytext": (3, 0), "textcoords": "offset points", "va": "center", "fontsize": 8.0}
+        end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
+        axes.annotate(rf"$H_r/H = {thickness:g}$", end, color=colour, annotation_clip=False, **look)
     limit = r"$G \ll G_r$: imposed at $y = H$"
     axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
     ends = curves["stiffness_ratio"].agg(["min", "max"])

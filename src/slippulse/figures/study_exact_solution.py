@@ -37,14 +37,16 @@ def plot(table: pd.DataFrame) -> Figure:
                 _draw_edge(axes, rows, quantity, colour)
         _draw_differences(difference_axes, rows[rows["role"] == "difference"], colour)
     dx = table.loc[table["role"] == "scene", "dx"].iloc[0]
-    looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"lattice, $\Delta x = {dx:g}$"}
-    for look, label in looks.items():
+    drawn = table.loc[table["role"] == "exact", "scene"].unique()
+    looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"front, lattice, $\Delta x = {dx:g}$"}
+    for look, label in (looks | {"s": "trailing edge, lattice"}).items():
         edge_axes.plot([], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label)
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     edge_axes.legend(loc="upper left", fontsize=7.0)
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
-    _finish_differences(difference_axes, table[table["role"] == "difference"])
-    lines = [entry(names[scene], color=colour) for scene, colour in SCENES.items()]
+    others = {names[scene]: SCENES[scene] for scene in SCENES.keys() - set(drawn)}
+    _finish_differences(difference_axes, table[table["role"] == "difference"], others)
+    lines = [entry(names[scene], color=colour) for scene, colour in SCENES.items() if scene in drawn]
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     return figure
 
@@ -85,15 +87,20 @@ def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> No
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame, colour: str) -> None:
-    for quantity, line in rows.groupby("quantity"):
-        line = line.sort_values("dx")
+    """The largest and the smallest difference of a scene; its others lie between them."""
+    finest = rows[rows["dx"] == rows["dx"].min()].sort_values("difference")
+    for quantity in finest["quantity"].iloc[[0, -1]]:
+        line = rows[rows["quantity"] == quantity].sort_values("dx")
         look: Look = {"marker": QUANTITIES[str(quantity)][1], "color": colour, "linewidth": 0.7}
         axes.plot(line["dx"], line["difference"], gid=str(quantity), **look)
 
 
-def _finish_differences(axes: Axes, rows: pd.DataFrame) -> None:
-    for label, marker in QUANTITIES.values():
+def _finish_differences(axes: Axes, rows: pd.DataFrame, others: Mapping[str, str]) -> None:
+    for quantity in dict.fromkeys(line.get_gid() for line in axes.lines):
+        label, marker = QUANTITIES[str(quantity)]
         axes.plot([], [], marker, color=GREY, label=label)
+    for label, colour in others.items():
+        axes.plot([], [], color=colour, label=label)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
     axes.plot(ends, 1.5 * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")

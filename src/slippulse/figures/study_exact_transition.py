@@ -58,7 +58,14 @@ def _draw_ratios(axes: Axes, sweep: pd.DataFrame, quantity: str) -> None:
             exact, measured = runs[f"exact_transition_{quantity}"], runs[f"transition_{quantity}"]
             ratio = measured / runs[f"{reference}_transition_{quantity}"]
             face, name = ("white", "the paper's value") if reference == "paper" else (colour, "the exact one")
-            look: Look = {"markersize": 2.5, "markerfacecolor": face, "markeredgewidth": 0.5, "color": colour}
+            size, order = (2.5, 2.0) if reference == "paper" else (1.7, 3.0)
+            look: Look = {
+                "markersize": size,
+                "zorder": order,
+                "markerfacecolor": face,
+                "markeredgewidth": 0.5,
+            }
+            look["color"] = colour
             axes.plot(
                 exact, ratio, marker, **look, label=f"{label}, over {name}", gid=f"{reference} {boundary}"
             )

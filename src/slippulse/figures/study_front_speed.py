@@ -9,7 +9,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, GREY, PAGE, Look, colour_scale, few_ticks, legend_above, new_panels
+from .style import BLACK, GREY, HALO, PAGE, Look, colour_scale, few_ticks, legend_above, new_panels
 
 NEEDS = {
     "measured": [
@@ -67,7 +67,7 @@ def plot(table: pd.DataFrame) -> Figure:
     figure, grid = new_panels(PAGE, 5.2, 2, 2)
     for axes, rule in zip(grid, RULES, strict=False):
         _draw_prestress(axes, _part(table, "prestress", rule))
-        axes.set_title(f"release by {rule} stress", loc="right")
+        axes.set_title(rf"$\Gamma = 0$, release by {rule} stress", loc="right")
     grid[0].set(yscale="log", ylim=(0.93, 30.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
     few_ticks(grid[0].yaxis, (1, 2, 5, 10, 20))
     grid[1].set(ylim=(0.98, 1.45), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
@@ -111,11 +111,12 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     for left, (style, marker) in looks.items():
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
     axes.plot([], [], "x", color=GREY, label="no front beyond")
+    axes.plot([], [], "s", color=GREY, markerfacecolor="white", label="too narrow for the theory")
     axes.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
     axes.set_ylabel("front speed $v$")
-    axes.set_title("release by total stress", loc="right")
+    axes.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
     few_ticks(axes.yaxis, (1, 1.5, 2, 3, 4, 5))
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.62))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
 
 
 def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
@@ -126,14 +127,22 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
         gid, name = f"refined {held} {fixed:g} {rule}", rf"fixed ${names[held]} = {fixed:g}$, {rule}"
         axes.plot(line["dx"], line["speed"], color=GREY, linewidth=0.8, gid=gid)
         _points(axes, group, "dx", "speed", marker)
-        axes.plot([], [], marker, color=GREY, label=name)
+        axes.plot([], [], marker=marker, color=GREY, linewidth=0.8, label=name)
     limit = rows.loc[rows["panel"] == "limit", "speed"].max()
-    axes.axhline(limit, color=BLACK, linewidth=0.8, linestyle=":", label=r"$1/\sqrt{1-\tau_0}$")
     undamped = rows["undamped"].max()
-    axes.axhline(undamped, color=GREY, linewidth=0.8, linestyle="--", label=r"$1/\sqrt{1-\tau_0^2}$")
+    for value, style, name, side in ((limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")):
+        axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=style)
+        place: Look = {
+            "transform": axes.get_yaxis_transform(),
+            "ha": "right",
+            "va": side,
+            "fontsize": 8.0,
+        }
+        axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **place)
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
+    axes.set_ylim(0.88 * undamped, None)
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
-    axes.set_title(rf"refining, $\tau_0 = {rows['left'].iloc[0]:g}$", loc="right")
+    axes.set_title(rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$", loc="right")
     axes.legend(loc="upper right")
 
 

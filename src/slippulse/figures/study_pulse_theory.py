@@ -37,12 +37,12 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     for quantity in QUANTITIES:
         values = {"value": runs[f"pulse_{quantity}"], "theory": runs[f"exact_pulse_{quantity}"]}
         values |= {"paper": runs[f"paper_pulse_{quantity}"], "role": "simulation", "quantity": quantity}
-        parts.append(runs[["left", "damping_ratio", "run_flags"]].assign(**values))
+        parts.append(runs[["left", "gamma", "damping_ratio", "run_flags"]].assign(**values))
     runs = tables["continuum_fixed_ratio"]
     limits = study[study["role"] == "limit"].set_index("quantity")["value"]
     for quantity, column in REFINED.items():
         values = {"value": runs[column], "theory": limits[quantity], "quantity": quantity, "role": "refined"}
-        parts.append(runs[["left", "damping_ratio", "dx"]].assign(**values))
+        parts.append(runs[["left", "gamma", "damping_ratio", "dx"]].assign(**values))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -54,12 +54,14 @@ def plot(table: pd.DataFrame) -> Figure:
         for left, rows in table[table["quantity"] == quantity].groupby("left"):
             colour = colour_scale("tau_0").to_rgba(left)
             line, runs = rows[rows["role"] == "theory"], rows[rows["role"] == "simulation"]
-            look: Look = {"color": colour, "label": rf"theory, $\tau_0 = {left:g}$" if len(line) else None}
+            look: Look = {"color": colour, "label": rf"exact, $\tau_0 = {left:g}$" if len(line) else None}
             axes.plot(line["damping_ratio"], line["over_paper"], gid=f"theory {left:g}", **look)
             for flagged, group in runs.groupby(runs["run_flags"].notna()):
                 look = {"markerfacecolor": "white"} if flagged else {}
                 over = group["value"] / group["paper"]
                 axes.plot(group["damping_ratio"], over, "o", color=colour, gid=f"simulation {left:g}", **look)
+        gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]
+        axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", loc="right")
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula", xlim=(-0.02, None))
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     _draw_refined(refined_axes, table[table["role"] == "refined"])
@@ -76,7 +78,8 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
     axes.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")
-    left, ratio = rows[["left", "damping_ratio"]].iloc[0]
-    axes.set_title(rf"refining, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right")
+    left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
+    name = rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$"
+    axes.set_title(name, loc="right")
     axes.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
     axes.set_ylim(1e-6, None)

@@ -14,7 +14,19 @@ from matplotlib.figure import Figure
 from ..data.numerals import setting
 from ..data.points import point
 from ..model.prestress import prestress_from
-from .style import GREEN, GREY, PAGE, PURPLE, YELLOW, Look, colour_scale, legend_below, new_panels
+from .style import (
+    BLACK,
+    GREEN,
+    GREY,
+    PAGE,
+    PURPLE,
+    YELLOW,
+    Look,
+    colour_scale,
+    entry,
+    legend_below,
+    new_panels,
+)
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
@@ -60,25 +72,29 @@ def _runs(sweep: xr.Dataset) -> list[xr.Dataset]:
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a) slip across the step, (b) how far from the new steady pulse, (c) largest velocity under imposed stress."""
-    figure, (slip_axes, rest_axes, velocity_axes) = new_panels(PAGE, 3.1, 1, 3)
+    figure, (slip_axes, rest_axes, velocity_axes) = new_panels(PAGE, 3.2, 1, 3)
     slip = table[table["role"].isin(["exact", "lattice"])]
     for level, rows in slip.groupby("level"):
         colour = colour_scale("tau_0").to_rgba(level)
         _draw_level(slip_axes, rest_axes, rows.sort_values("x"), colour, f"{level:g}")
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    slip_axes.plot([], [], "|", color=GREY, markersize=7.0, label="finite memory")
-    label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
-    slip_axes.plot([], [], "o", color=GREY, markersize=2.0, label=label)
+    handles = slip_axes.get_legend_handles_labels()[0]
+    lattice = {"marker": "o", "markersize": 2.5, "markerfacecolor": "white"}
+    handles += [
+        entry("exact", color=GREY),
+        entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", color=GREY, **lattice),
+        entry("finite memory", color=GREY, marker="|", markersize=7.0),
+    ]
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
-    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before, beyond:", loc="right")
-    legend_below(figure, slip_axes.get_legend_handles_labels()[0], 7)
+    slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
+    legend_below(figure, handles, 4)
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
-    for style, label in (("-", "exact"), (":", "lattice")):
-        rest_axes.plot([], [], style, color=GREY, label=label)
-    rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.3 * ROUNDING, 3.0))
+    # What is exactly 0 is drawn as what rounding leaves.
+    rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
+    rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center", fontsize=8.0)
+    rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING, 3.0))
     rest_axes.set(xlabel=r"distance / $W_\mathrm{p}/(v - 1)$", ylabel="|slip / new steady slip $-$ 1|")
     rest_axes.set_title(r"$\Gamma = 1$", loc="right")
-    rest_axes.legend(loc="lower left")
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure
 
@@ -90,7 +106,7 @@ def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: An
         exact["x"],
         exact["slip"],
         color=colour,
-        label=rf"exact, $\tau_0 = {level}$",
+        label=rf"$\tau_0 = {level}$ beyond",
         gid=f"exact {level}",
     )
     marks = lattice.iloc[::MARKED]
@@ -103,10 +119,13 @@ def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: An
     slip_axes.plot(marks["x"], marks["slip"], "o", color=colour, **look)
     look = {"markersize": 9.0, "markeredgewidth": 1.2, "gid": f"memory {level}"}
     slip_axes.plot(memory, steady, "|", color=colour, **look)
-    for part, style, name in ((exact, "-", "rest"), (lattice, ":", "lattice rest")):
-        beyond = part[part["x"] > 0.0]
-        rest = np.maximum(np.abs(beyond["slip"] / steady - 1.0), ROUNDING)
-        rest_axes.plot(beyond["x"] / memory, rest, style, color=colour, linewidth=1.0, gid=f"{name} {level}")
+    # From the memory on the exact rest is 0.
+    exact = exact[(exact["x"] > 0.0) & ((exact["x"] <= memory) | (exact["x"].shift() <= memory))]
+    marks = marks[marks["x"] > 0.0]
+    for part, style, name in ((exact, "-", "rest"), (marks, "o", "lattice rest")):
+        rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)
+        look = {"linewidth": 1.0, "markersize": 2.2, "markerfacecolor": "white", "markeredgewidth": 0.6}
+        rest_axes.plot(part["x"] / memory, rest, style, color=colour, gid=f"{name} {level}", **look)
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
@@ -116,13 +135,16 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = GREEN if level < 0.0 else PURPLE if level > 0.0 else YELLOW
         look: Look = {"markersize": 2.0, "linewidth": 0.8, "gid": f"velocity {level:g}"}
         axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, **look)
-        last = line[line["largest_velocity"] > LEAST].iloc[-1]
-        at = (last["time"], last["largest_velocity"])
+        # Where the line ends or leaves the panel; velocities fall with time there.
+        seen, below = line[line["largest_velocity"] > LEAST], line[line["largest_velocity"] <= LEAST]
+        at = tuple(seen[["time", "largest_velocity"]].iloc[-1])
+        if len(below):
+            two = pd.concat([below.iloc[:1], seen.iloc[-1:]])
+            at = np.interp(np.log(LEAST), np.log(two["largest_velocity"]), two["time"]), 1.15 * LEAST
         look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 7.0}
-        axes.annotate(setting(level), at, color=colour, **look)
+        axes.annotate(setting(level), at, color=BLACK, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
-    axes.set(xlim=(None, 1.14 * rows["time"].max()), ylim=(LEAST, None))
-    axes.set_title(
-        rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before, beyond:", loc="right", fontsize=8.0
-    )
+    axes.set(xlim=(None, 1.28 * rows["time"].max()), ylim=(LEAST, None))
+    axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
+    axes.text(0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top", fontsize=8.0)

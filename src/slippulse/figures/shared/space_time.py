@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -123,8 +124,12 @@ def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
     # The peak and the levels far away, the right one only where its label has room.
     left, right = rows["value"].iloc[[0, -1]]
     shown = [upper, left] if abs(right - left) < LABEL * (upper - lower) else [upper, left, right]
-    ticks = sorted({round(float(value), 2) for value in shown})
+    ticks = sorted({round(float(value), 2) for value in (*shown, 0.0)})
     axes.set_xticks(ticks, [setting(value) for value in ticks])
+    # Two that are near each other have their labels on their outer sides.
+    near = [abs(one - other) < LABEL * (upper - lower) for one, other in pairwise(ticks)]
+    for label, after, before in zip(axes.get_xticklabels(), [*near, False], [False, *near], strict=True):
+        label.set_horizontalalignment("center" if after == before else "right" if after else "left")
     axes.set(xlabel=r"$\tau$", xlim=(lower - 0.15, upper + 0.15))
     axes.set(ylabel=r"position $x$", ylim=(rows["position"].min(), rows["position"].max()))
 
