@@ -99,7 +99,8 @@ def predicted_text(claim: SimpleNamespace) -> str:
     """What the paper has, as its kind says it."""
     if claim.predicted is None:
         return number(None)
-    return PREDICTED.get(claim.kind, number(claim.predicted, 5)).format(claim.predicted)
+    text = PREDICTED.get(claim.kind, number(claim.predicted, 5)).format(claim.predicted)
+    return text.replace("degrees", "degree") if claim.predicted == 1 else text
 
 
 def measured_text(claim: SimpleNamespace) -> str:

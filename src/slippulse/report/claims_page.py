@@ -52,7 +52,6 @@ def claims_page(
         altered=altered,
         tables_behind=partial(tables_behind, tables=sorted(tables)),
         command=command,
-        few=FEW,
         counted=lambda claims: sum(claim.counted for claim in claims),
         rules_altered=any(change["key"].startswith("claims.") for change in altered),
         **shown(Ledger(claims), [finding["text"] for finding in findings]),

@@ -36,6 +36,8 @@ OTHERS = {
 }
 # Pixels of a page for one of a figure: what is as wide as a column of the journal stays narrower than the page.
 SCALE = 0.4
+# What is wider has a row of the page for itself.
+WIDE = 600
 
 
 def index_page(
@@ -87,6 +89,7 @@ def index_page(
         accuracy=accuracy,
         figures=figures,
         sizes={name: _size(results / f"figures/{name}.png") for name in figures},
+        wide=WIDE,
         picture=summary["picture"],
         first=there[0],
         others=there[1],

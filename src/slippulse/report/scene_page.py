@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..data.numerals import number, rounded, with_uncertainty
+from ..data.numerals import number, rounded, setting, with_uncertainty
+from ..model.prestress import prestress_from
 from .html import page
 
 SHOWN = (
@@ -29,6 +30,9 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
     numbers : as `slippulse.figures.shared.numbers.scene_numbers`
     attributes : of the run's data, with the state of its leading pulse
     """
+    shown = {key: attributes[key] for key in SHOWN if key in attributes}
+    if "steps_and_bumps" in shown:
+        shown["steps_and_bumps"] = _steps_and_bumps(attributes)
     return page(
         "scene.html",
         name=name,
@@ -37,13 +41,22 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
         pulse_state=attributes.get("pulse_state", "none"),
         promised="promised" in numbers,
         numbers=[_number(row) for row in numbers.itertuples()],
-        parameters={key.replace("_", " "): attributes[key] for key in SHOWN if key in attributes},
+        parameters={key.replace("_", " "): value for key, value in shown.items()},
     )
 
 
 def scenes_page(scenes: Mapping[str, str]) -> str:
     """The list of scenes, titles by name, in the folder of their pages."""
     return page("scenes.html", scenes=scenes)
+
+
+def _steps_and_bumps(attributes: Mapping) -> str:
+    """What a run's pre-stress has beside the Gaussian and its levels, in words."""
+    profile = prestress_from(attributes)
+    parts = [f"step to {setting(level)} at x = {setting(at)}" for at, level in profile.steps]
+    for centre, amplitude, width in profile.bumps:
+        parts.append(f"bump of {setting(amplitude)} and width {setting(width)} at x = {setting(centre)}")
+    return "; ".join(parts)
 
 
 def _number(row) -> dict[str, str]:

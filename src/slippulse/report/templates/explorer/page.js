@@ -5,7 +5,7 @@ const COLOURS = smoothed(DATA.colours);
 const at = (id) => document.getElementById(id);
 const NAMES = ["beta", "dx", "left", "right", "width", "gamma", "alpha", "end"];
 const SLIDERS = Object.fromEntries(NAMES.map((name) => [name, at(name)]));
-const RATIO_TICKS = [0, 0.01, 0.1, 1];
+const RATIO_TICKS = [0, 0.1, 1];
 // A simulated run is near at less than this `distance`; a pulse is steady within this of its limit.
 const [NEAR, STEADY] = [1, 0.01];
 // Exact values: a slider has steps between which a preset, a typed number or a run may lie.
