@@ -74,13 +74,14 @@ def draw_stress_drop(axes: Axes, curves: pd.DataFrame) -> None:
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):
         curve = curve.sort_values("stiffness_ratio")
-        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, gid="curve")
+        name = rf"$H_r/H = {thickness:g}$"
+        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve")
         look: Look = {"xytext": (3, 0), "textcoords": "offset points", "va": "center", "fontsize": 8.0}
         end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
-        axes.annotate(rf"$H_r/H = {thickness:g}$", end, color=colour, annotation_clip=False, **look)
+        axes.annotate(name, end, color=colour, annotation_clip=False, **look)
     limit = r"$G \ll G_r$: imposed at $y = H$"
-    axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
+    line = axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
     ends = curves["stiffness_ratio"].agg(["min", "max"])
     axes.set(xscale="log", xlim=tuple(ends), ylim=(0.0, 1.08), xlabel="ratio of shear moduli $G/G_r$")
     axes.set_ylabel(r"stress drop $\Delta\tau\,/\,(G\delta/H)$")
-    axes.legend(loc="lower left")
+    axes.legend(handles=[line], loc="lower left")
