@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import matplotlib
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, CYCLE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, new_panels
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, new_panels
 
 NEEDS = {"studies": ["rate_dependence"]}
 
@@ -51,18 +52,21 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame, scale: floa
         axes.plot(rows["rate_strengthening"] / scale, rows["level"], **look)
     for regime, (colour, marker) in REGIMES.items():
         axes.plot([], [], marker, color=colour, markersize=4.0, label=f"{regime}, lattice")
+    if (runs["run_flags"].fillna("") != "").any():
+        look = {"color": GREY, "markersize": 4.0, "markerfacecolor": "white"}
+        axes.plot([], [], "o", label="open: flagged or undecided", **look)
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(
-        xlabel=r"$\alpha/\sqrt{\gamma}$", ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 1.25), xlim=(-2.0, 2.7)
+        xlabel=r"$\alpha/\sqrt{\gamma}$", ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7)
     )
     axes.set_title(r"$\Gamma = 1$", loc="right")
-    axes.legend(loc="upper center", ncols=3, columnspacing=0.8, handletextpad=0.4)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2, columnspacing=0.8, handletextpad=0.4)
 
 
 def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame, scale: float) -> None:
     for column, colour, marker, label in (
-        ("pulse_width", BLUE, "o", r"width $W_\mathrm{p}$"),
-        ("pulse_slip", ORANGE, "s", r"slip $u$"),
+        ("pulse_width", BLACK, "o", r"width $W_\mathrm{p}$"),
+        ("pulse_slip", GREY, "s", r"slip $u$"),
     ):
         axes.plot(
             steady["rate_strengthening"] / scale,
@@ -78,7 +82,7 @@ def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame, scale: fl
             "gid": f"lattice {column}",
         }
         axes.plot(runs["rate_strengthening"] / scale, runs[column], marker, **look)
-    axes.set(xlabel=r"$\alpha/\sqrt{\gamma}$", yscale="log")
+    axes.set(xlabel=r"$\alpha/\sqrt{\gamma}$", ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
     axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {runs['level'].iloc[0]:g}$; points: lattice", loc="right")
     axes.legend(loc="upper center")
 
@@ -99,10 +103,12 @@ def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame, scale: float) -> 
 
 def _draw_arrest(axes: Axes, rows: pd.DataFrame, theory: pd.DataFrame) -> None:
     rows = rows[rows["dx"] == rows["dx"].min()]
-    for colour, (alpha, line) in zip(CYCLE, rows.groupby("rate_strengthening"), strict=False):
+    groups = rows.groupby("rate_strengthening")
+    colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
+    for colour, marker, (alpha, line) in zip(colours, "os^Dv", groups, strict=False):
         look: Look = {"markersize": 3.0, "markerfacecolor": "white", "label": rf"$\alpha = {alpha:g}$"}
         axes.plot(
-            line["time"], line["largest_velocity"], "o", color=colour, gid=f"velocity {alpha:g}", **look
+            line["time"], line["largest_velocity"], marker, color=colour, gid=f"velocity {alpha:g}", **look
         )
     line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
     axes.plot(line["time"], line["largest_velocity"], "--", label="diffusion", gid="diffusion", **LINES)
