@@ -12,6 +12,8 @@ from .evidence import Claim
 
 # A combination of choices, by name.
 Chosen = dict[str, float | str]
+# The fraction of the path where a lattice has no criterion of arrest.
+LAST = "last release"
 # What a combination has beside its choices.
 FOUND = ("deviation", "exponent", "verdict", "holds")
 
@@ -38,21 +40,26 @@ def over_choices(claims: Sequence[tuple[Chosen, Claim]], shown: Claim | None = N
         ats = [claim["at"] for _, claim in claims]
         found["at"] = lambda tolerance: rules.over_choices([at(tolerance) for at in ats])
     if verdict == rules.DEPENDS:
-        sides = "; on ".join(f"{NAMES[name]}: {sides_of(name, pair)}" for name, pair in pairs.items())
+        sides = "; on ".join(
+            f"{NAMES[name]}: {sides_of(name, pair, 'held' in found)}" for name, pair in pairs.items()
+        )
         found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations. It depends on {sides}."
     elif verdict == "reproduced with caveat":
         unsure = next(row for row in rows if row["verdict"] == verdict)
-        where = ", ".join(f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure)
-        found["why"] = f"A tolerance lies within the uncertainty at {where}."
+        where = " and ".join(f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure)
+        found["why"] = f"With {where} it is within the tolerance, but not together with its uncertainty."
     return found
 
 
-def sides_of(name: str, pair: Iterable[Mapping]) -> str:
-    """What combinations say of a claim, by their value of one choice."""
-    return " and ".join(
-        f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({percent(row['deviation'], 3)})"
-        for row in pair
-    )
+def sides_of(name: str, pair: Iterable[Mapping], counted: bool) -> str:
+    """What combinations say of a claim, by their value of one choice; ``counted``: by runs, not by a deviation."""
+
+    def side(row: Mapping) -> str:
+        size = percent(row["deviation"], 3) + (" of the runs against" if counted else "")
+        size += ", at the last release" if name != "fraction" and row.get("fraction") == LAST else ""
+        return f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({size})"
+
+    return " and ".join(map(side, pair))
 
 
 # What each choice is called in a sentence.

@@ -56,6 +56,19 @@ def fractions(evidence: Evidence) -> dict[str, float]:
     return {f"median_{100.0 * fraction:.0f}": ratio for fraction, ratio in found.items()}
 
 
+def collapse(evidence: Evidence) -> dict[str, float]:
+    """Median change of L_trans between no damping and the largest ratio, over the scenes that have it at both."""
+    out: dict[str, float] = {}
+    for boundary in ("displacement", "stress"):
+        table = evidence.runs(f"damping_{boundary}").fillna({"gamma": 0.0})
+        scenes = ["left", "width", "gamma"]
+        lengths = table.pivot(index=scenes, columns="damping_ratio", values="transition_length")
+        change = lengths.iloc[:, -1] / lengths.iloc[:, 0]
+        out[f"{boundary}_change"] = float(change.median())
+        out[f"{boundary}_runs"], out[f"{boundary}_scenes"] = float(change.count()), float(len(change))
+    return out | {"ratio": float(lengths.columns[-1])}
+
+
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """What the published figure was made with: best fit, confidence region, how much worse the other rule is."""
     found = inference(evidence.tables["published_figure"])
@@ -69,6 +82,7 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
 
 # Numbers that are no expression over the columns of one table.
 COMPUTED: dict[str, Callable[[Evidence], dict]] = {
+    "collapse_against_damping": collapse,
     "front_never_arrives": fractions,
     "published_figure_made_with": best_fit,
     "duration_criterion": lambda _: {"factor": float(np.pi / np.sqrt(2.0))},

@@ -57,6 +57,9 @@ def pulse_claims(evidence: Evidence) -> list[Claim]:
     keeps = f"(beyond == 0 and abs({CHANGE}) <= {evidence.steady}) or (beyond != 0 and changed != 0)"
     meeting["steady_only_at_zero"] = evidence.agreed("regimes_beyond", "", keeps)
     found = {id: evidence.qualitative(id, decided) for id, decided in meeting.items()}
+    for id in ("grows_above_zero", "decays_below_zero"):
+        ends = evidence.lattices("regimes_beyond", where=MEETING[id][0])[0]["regime"].value_counts()
+        found[id]["further"] = {f"at the end: {regime}": float(count) for regime, count in ends.items()}
     levels = evidence.tables["regimes_beyond"]["beyond"].abs()
     found["small_perturbation_changes_pulse"]["further"] = {
         "smallest level": float(levels[levels > 0.0].min())

@@ -61,6 +61,11 @@ class Ledger:
         deviation = self(id).deviation
         return float("nan") if deviation is None else deviation
 
+    def deviation_at(self, id: str, **chosen: float | str) -> float:
+        """The deviation of a claim at a combination of choices; NaN where it was not judged at it."""
+        rows = [row["deviation"] for row in self(id).choices if chosen.items() <= row.items()]
+        return rows[0] if rows else float("nan")
+
     def verdict(self, id: str) -> str:
         """The verdict, emphasised."""
         return f"*{self(id).verdict}*"
@@ -145,7 +150,8 @@ def why_text(claim: SimpleNamespace) -> str:
         held, _, rest = measured_text(claim).partition(", ")
         if rest:
             return f"It holds in {held} cases, with {rest}."
-        return "It needs a condition that the paper does not state."
+        condition = getattr(claim, "note", "").partition("condition: ")[2]
+        return f"It needs a condition that the paper does not state{condition and ': '}{condition}."
     if claim.kind == "arithmetic":
         return f"The printed formula gives {measured_text(claim)} of the derived value."
     if claim.kind == "reading":

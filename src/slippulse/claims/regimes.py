@@ -134,7 +134,7 @@ def burridge_knopoff(evidence: Evidence) -> Claim:
     claim = shown(evidence, "burridge_knopoff_pulses", held, **further)
     if claim["verdict"] != "reproduced" or fewest <= ABOUT_ONE:
         return claim
-    why = f"The pulses are {number(fewest)} to {number(most)} blocks wide, where the paper has one."
+    why = f"The two kinds of pulse are reproduced, their width is not: {number(fewest)} to {number(most)} blocks."
     return claim | {"verdict": "reproduced with caveat", "why": why}
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from ..measure.fronts import straight_line
 from . import rules
-from .choices import Chosen, named, over_choices
+from .choices import LAST, Chosen, named, over_choices
 from .evidence import NAN, Claim, Evidence, agreeing, ratios
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
@@ -20,7 +20,7 @@ GAP = 1.0
 ESTIMATES = {"T": ("time", "distance"), "L": ("length", "2 * distance")}
 # Fraction of the way whose numbers stand with a claim.
 SHOWN = 0.95
-LAST = "last release"
+
 # What is compared of the exact solution, and of lattices.
 SOLVED = {"paper_transition_time": "distance", "transition_time": "time", "transition_length": "length"}
 SIMULATED = {
@@ -169,7 +169,7 @@ def arrest_position(evidence: Evidence) -> Claim:
         claim = evidence.approximate(id, tables, *what, "left", "width")
         gap = evidence.studied(tables, lambda t: float((t[what[1]] - t[what[0]]).abs().median()))
         far = rules.within(gap.value, gap.uncertainty, GAP)
-        further = {"median gap in H": gap.value}
+        further = {"median gap in H, over all sweeps": gap.value}
         return claim | {"verdict": rules.worst([claim["verdict"], far]), "further": further}
 
     whole = evidence.lattices(*sweeps, where=INSIDE)
