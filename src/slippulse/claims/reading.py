@@ -63,7 +63,7 @@ class Ledger:
 
     def deviation_at(self, id: str, **chosen: float | str) -> float:
         """The deviation of a claim at a combination of choices; NaN where it was not judged at it."""
-        rows = [row["deviation"] for row in self(id).choices if chosen.items() <= row.items()]
+        rows = [row["deviation"] for row in getattr(self(id), "choices", []) if chosen.items() <= row.items()]
         return rows[0] if rows else float("nan")
 
     def verdict(self, id: str) -> str:

@@ -80,9 +80,10 @@ def in_the_end(evidence: Evidence, id: str, row: Regimes) -> Claim:
     )
     if not row.counted:
         return claim
-    regimes = evidence.lattices(row.sweep, where=row.counted)[0]["regime"].value_counts()
     further = {
-        f"{row.position}, without a verdict: {regime}": float(count) for regime, count in regimes.items()
+        f"{words}: {regime}": float(count)
+        for words, where in (("at the end", row.where), (f"{row.position}, without a verdict", row.counted))
+        for regime, count in evidence.lattices(row.sweep, where=where)[0]["regime"].value_counts().items()
     }
     return claim | {"further": further}
 

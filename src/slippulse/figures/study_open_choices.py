@@ -52,6 +52,12 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
+def _name(id: str) -> str:
+    """A claim as the texts call it."""
+    quantity, _, boundary = id.partition("_trans_")
+    return rf"${quantity}_\mathrm{{trans}}$, {boundary} held" if boundary else id.replace("_", " ")
+
+
 def plot(table: pd.DataFrame) -> Figure:
     """Deviation over tolerance, a claim a row; those that depend on a choice above."""
     table = table.fillna({"choice": "", "release": ""})
@@ -67,7 +73,7 @@ def plot(table: pd.DataFrame) -> Figure:
             height = place + rows["release"].map(APART).fillna(0.0)
             axes.plot(over, height, linestyle="none", gid=f"claim {id}", **look)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
-    axes.set_yticks(range(len(farthest)), [id.replace("_", " ") for id in farthest.index], fontsize=7.0)
+    axes.set_yticks(range(len(farthest)), [_name(id) for id in farthest.index], fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)
     figure.supylabel("claim", fontsize=9.0)
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)

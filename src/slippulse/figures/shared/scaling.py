@@ -108,8 +108,9 @@ def damping_figure(runs: pd.DataFrame) -> Figure:
         axes.minorticks_off()
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"${SYMBOLS[quantity]}$ / paper's formula")
     spacing = runs["dx"] / runs["width"]
-    panels[0].set_title(rf"$\Gamma = {int(boundary == 'displacement')}$", fontsize=9)
-    panels[1].set_title(rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}", fontsize=9)
+    spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
+    for axes in panels:
+        axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}", fontsize=9)
     colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
     handles = [
         entry(f"simulation, {symbol} = {value:g}", marker=marker, color=GREY)
