@@ -9,7 +9,7 @@ import math
 import numpy as np
 import pytest
 import tolerances as tol
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 from reference.lattice_state import sliding, threshold_stress
 
@@ -72,7 +72,15 @@ def random_scenes(draw) -> sp.Scene:
     )
 
 
+# A front of the textbook scheme that moves by a block a step, near the end of its lattice.
+FAST = sp.Scene(
+    "displacement", sp.Prestress(-3.0, 0.95, 1.0, bumps=((0.0, 1.0, 0.5),)), duration=5.0, dx=0.1, gamma=1.0,
+    beta=0.3, scheme="fixed_step", max_step=0.07284750148033359, order=3,
+)  # fmt: skip
+
+
 @SETTINGS
+@example(FAST)
 @given(random_scenes())
 def check_invariants(scene):
     reach = math.ceil(scene.duration) + 2.0

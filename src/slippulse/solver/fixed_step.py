@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, UNSTABLE
+from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE
 from .jit import entry, inner
 from .notes import note_release, note_stick
 from .taylor import BLOW_UP
@@ -101,7 +101,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         t = tally.time
         if t >= limits.end_time:
             return DONE
-        if sliding[size - 3] or (sliding[2] and not medium.mirror):
+        if sliding[size - ROOM] or (sliding[ROOM - 1] and not medium.mirror):
             return GROW
         dt = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if dt == limits.end_time - t else t + dt
