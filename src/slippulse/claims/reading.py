@@ -71,9 +71,9 @@ class Ledger:
         return f"*{self(id).verdict}*"
 
     def listed(self, id: str, words: str) -> str:
-        """How many runs there are of each kind that the further numbers of a claim name behind some words."""
-        found = {name: value for name, value in self(id).further.items() if words in name}
-        return ", ".join(f"{name.rpartition(': ')[2]}: {number(value)}" for name, value in found.items())
+        """The further numbers of a claim whose name has these words before its colon, each with what is behind it."""
+        found = [(name.partition(": "), value) for name, value in self(id).further.items()]
+        return "; ".join(f"{number(value)} {name}" for (before, _, name), value in found if words in before)
 
     def count(self, *verdicts: str) -> int:
         """How many counted claims have one of these verdicts; all of them if none is named."""
@@ -85,7 +85,9 @@ class Ledger:
 
     def summary(self) -> str:
         """How many claims there are of each verdict, in words."""
-        listed = ", ".join(f"{self.count(name)} {name}" for name in VERDICTS if self.count(name))
+        counts = {name: self.count(name) for name in VERDICTS}
+        several = {name: name.replace("depends", "depend") if counts[name] > 1 else name for name in VERDICTS}
+        listed = ", ".join(f"{counts[name]} {several[name]}" for name in VERDICTS if counts[name])
         rest = f" {self.following()} more follow from these." if self.following() else ""
         return f"{self.count()} claims: {listed}.{rest}"
 

@@ -104,8 +104,8 @@ def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim
     """A claim judged at each combination; beside its numbers the medians at each fraction, the rest being ours."""
     tables = arrests(evidence)
     further = {
-        f"median ratio at {named(choice['fraction'])}": judge(found)["measured"]
-        for choice, found in at_ours(tables)
+        f"median ratio: at {named(choice['fraction'])}": judge(found)["measured"]
+        for choice, found in sorted(at_ours(tables), key=lambda pair: named(pair[0]["fraction"]))
     }
     return over_choices([(choice, judge(found)) for choice, found in tables]) | {"further": further}
 
