@@ -23,6 +23,7 @@ CALL = Path("results/records/.call")
 # Without the log of a run.
 LOOK = ("--workflow-profile", "none", "--quiet", "all")
 SHOW_CURSOR = "\x1b[?25h"
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def arguments(what: str) -> list[str]:
@@ -81,14 +82,16 @@ def main(what: str) -> int:
     process = None
 
     def stop(number: int, _frame: object) -> None:
+        for other in SIGNALS:
+            signal.signal(other, signal.SIG_IGN)
         if process is not None:
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
         shown = SHOW_CURSOR if sys.stderr.isatty() else ""
         os.write(2, f"{shown}\nStopped; the next run goes on from what is there.\n".encode())
-        os._exit(128 + number)
+        sys.exit(128 + number)
 
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in SIGNALS:
         signal.signal(number, stop)
     process = subprocess.Popen(
         [sys.executable, "-m", "snakemake", *arguments(what)],
