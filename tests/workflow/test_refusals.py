@@ -255,7 +255,7 @@ EXPENSIVE = {
     "too much memory": (
         "simulations: {space_time_stress: {samples: {times: 100000, positions: 100000}}}", "space_time_stress", "bytes",
     ),
-    "too many runs for so many chunks": (
+    "too many runs for the chunks": (
         STEADY + f"{{chunks: 3, left: {MANY}, gamma: {MANY}}}}}", "steady_displacement",
         "6.4e+05 runs in each of 3 chunks; allowed: 2e+04",
     ),

@@ -23,9 +23,9 @@ MOST_CHUNKS = 50
 HOW_TO_GO_ON = "--config allow_large=true"
 # Bytes of a block: seven recorded numbers, and two arrays an order and sixteen others while it runs.
 RECORDED, ARRAYS = 56.0, 16.0
-# A run that does nothing takes as long as so many block updates; a block of the exact solution too.
+# A run that does nothing takes as long as this number of block updates; a block of the exact solution too.
 START, EXACT_BLOCK = 1e5, 3e4
-# A step ends early after so many events.
+# A step ends early after this number of events.
 EVENTS_OF_A_STEP = 64
 # Seconds of a block update at the highest order, on a slow machine; block updates from which two threads pay.
 UPDATE_SECONDS, LONG_SWEEP = 2e-8, 1e11
@@ -41,7 +41,7 @@ class Bound(NamedTuple):
     bytes: float
 
     def exceeded(self, chunks: int = 1) -> str:
-        """Which limit one of so many jobs exceeds, or all together do, in words; empty where none is."""
+        """Which limit one of these jobs exceeds, or all together do, in words; empty where none is."""
         most = min(1.0, MOST_CHUNKS / chunks)
         for name, value, limit in zip(self._fields, self, LIMITS, strict=True):
             if not value <= most * limit:

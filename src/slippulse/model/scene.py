@@ -26,7 +26,7 @@ ORDERS = (3, 4, 5, 6, 7, 8)
 RESOLVED_BLOCKS = 8
 # A lattice holds every bump from the start, at 200 bytes a block.
 FARTHEST_BUMP = 10**6
-# After so many a step no longer moves the time.
+# After this number a step no longer moves the time.
 MOST_STEPS = 2.0**52
 
 

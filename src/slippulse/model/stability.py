@@ -14,7 +14,7 @@ WEAK_GROWTH = 1e-4
 WEAK_ORDERS = (5, 6)
 # Steps are chosen at most this fraction of the bound: measured boundaries meet it within a hundredth.
 MARGIN = 0.9
-# The bound is found in rounds, each looking at so many parts of the interval that is left.
+# The bound is found in rounds, each looking at this number of parts of the interval that is left.
 ROUNDS, PARTS = 4, 32
 
 

@@ -111,7 +111,7 @@ class Lattice:
         self._extend(left, right)
 
     def _extend(self, left: int, right: int) -> None:
-        """Arrays with so many more blocks at rest on the left and on the right."""
+        """Arrays with these numbers of further blocks at rest on the left and on the right."""
         old, inside, n = self.motion, slice(left, left + self.size), self.segments.count.n
         size = left + self.size + right
         self.motion = arrays.make_motion(old.w.shape[0], size)

@@ -20,7 +20,7 @@ NEEDS = {
     "sweeps": ["scaling_displacement", "scaling_stress"],
 }
 
-# The first stick, over pi/sqrt(gamma), lies between these; beyond so many widths a Gaussian is 0 to rounding.
+# The first stick, over pi/sqrt(gamma), lies between these; beyond this number of widths a Gaussian is 0 to rounding.
 STICK, FAR = (0.3, 1.7), 12.0
 # Nodes of the time that a front takes across a tent.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)

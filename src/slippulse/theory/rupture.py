@@ -53,7 +53,7 @@ class Rupture:
     damping_ratio : beta/dx, from 0 to 1e6, at which dx -> 0
     release : "total" or "elastic"
     duration : time up to which the rupture is wanted, >= 1e-9
-    refinement : panels are cut into so many more, to see what the result owes to them; 1 to 10
+    refinement : panels are cut into this number of parts, to see what the result owes to them; 1 to 10
     rate_strengthening : alpha, of a term -alpha du/dt; above where slip runs away, and at most 600/duration in size
 
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
