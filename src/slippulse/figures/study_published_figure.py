@@ -94,7 +94,8 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
     label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
     look: Look = {"color": LOOKS["total"][0], "markersize": 4.5, "label": label}
-    axes.plot(notebook["damping_ratio"].iloc[0], 1.12 * accepted, "^", **look)
+    # Far above the axes, to which the marker points.
+    axes.plot(notebook["damping_ratio"].iloc[0], top, "^", clip_on=False, **look)
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
     look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
     axes.text(0.98, accepted, f"5 % at {dof} degrees of freedom", **look)
