@@ -10,7 +10,7 @@ import numpy as np
 from ..model.prestress import Prestress
 from ..model.roots import root_between
 
-# A Gaussian is its level to rounding beyond this number of widths; edges of panels stand at these multiples of the width.
+# A Gaussian is its level to rounding beyond this many widths; edges of panels stand at these multiples of the width.
 EXTENT = 9.0
 FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
 # Samples a width that find each sign change.

@@ -138,7 +138,7 @@ def roots(
 
 @lru_cache(maxsize=32)
 def nodes(panels: int, angle: float = ANGLE) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The right half of the contour, its ray in this number of panels: z, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
+    """The right half of the contour, its ray in panels: z, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
