@@ -21,7 +21,9 @@ class Picture {
     x, y, labels, height, top: above = 12, xTicks = ticks(...x), yTicks = ticks(...y), position = (value) => value, shown = format,
   }) {
     this.element = element;
-    this.width = Math.max(element.parentElement.clientWidth - 24, 240);
+    // Asked once a width of the page, since the answer waits for all that was drawn before.
+    element.room ||= element.parentElement.clientWidth;
+    this.width = Math.max(element.room - 24, 240);
     this.height = height;
     this.box = { left: 58, right: this.width - 10, top: above, bottom: height - 42 };
     this.inside = [];
@@ -112,6 +114,7 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
   [canvas.width, canvas.height] = [pixels, found.length];
   const context = canvas.getContext("2d");
   const image = context.createImageData(pixels, found.length);
+  const shades = new Uint32Array(image.data.buffer);
   const margin = 6 * end / pixels;
   found.forEach(({ start, stop, times, values }, k) => {
     let m = 0;
@@ -125,9 +128,8 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
       while (m < times.length - 2 && times[m + 1] < time) m++;
       const fraction = Math.min(Math.max((time - times[m]) / (times[m + 1] - times[m]), 0), 1);
       const value = times.length > 1 ? values[m] + fraction * (values[m + 1] - values[m]) : 0;
-      const at = 4 * ((found.length - 1 - k) * pixels + n);
-      const colour = colours[Math.min(Math.floor(colours.length * Math.max(value, 0) / largest), colours.length - 1)];
-      [image.data[at], image.data[at + 1], image.data[at + 2], image.data[at + 3]] = [...colour, 255];
+      const [red, green, blue] = colours[Math.min(Math.floor(colours.length * Math.max(value, 0) / largest), colours.length - 1)];
+      shades[(found.length - 1 - k) * pixels + n] = red | green << 8 | blue << 16 | 255 << 24;
     }
   });
   context.putImageData(image, 0, 0);

@@ -69,8 +69,8 @@ function balance({ left, right, width }) {
 // construction holds: nothing is said of the future of a trailing edge that is slower than the waves.
 function solve(scene) {
   const rupture = new Rupture(scene, DATA.law);
-  const exact = rupture.transition();
   const map = columns(rupture, scene.end);
+  const exact = rupture.transition(map);
   const limits = map.flatMap((column, k) => [1, -1].map((sign) => [column, map[k + sign], sign]))
     .filter(([{ y, stick }, next, sign]) => next && Number.isFinite(stick) && sign * (y - exact.firstStick) >= 0
       && Math.min(next.stick, scene.end) - stick > 1.02 * Math.abs(next.y - y) && next.start < next.stop)
@@ -391,7 +391,10 @@ for (const preset of document.querySelectorAll("[data-scene]")) {
 }
 at("fit").addEventListener("click", () => redraw({ fitted: true }));
 document.querySelector("form").addEventListener("submit", (event) => event.preventDefault());
-addEventListener("resize", () => redraw({ reference: compared }));
+addEventListener("resize", () => {
+  for (const picture of document.querySelectorAll("svg")) picture.room = 0;
+  redraw({ reference: compared });
+});
 function visit() {
   const words = Object.fromEntries(location.hash.slice(1).split("&").map((word) => word.split("=")));
   const values = Object.fromEntries(NAMES.filter((name) => name in words).map((name) => {

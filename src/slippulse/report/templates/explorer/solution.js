@@ -76,7 +76,7 @@ function bessel(z) {
 class Front {
   constructor(level, width, law) {
     Object.assign(this, { level, width, cells: 240 });
-    this.rest = (x) => (1 - level) * -Math.expm1(-0.5 * (x / width) ** 2);
+    this.rest = (x) => (1 - level) * (x < 8 * width ? -Math.expm1(-0.5 * (x / width) ** 2) : 1);
     this.slowness = level > 0 ? law(1 - level) : 1;
     // The zero of tau, or where tau is its level.
     this.extent = level < 0 ? width * Math.sqrt(2 * Math.log((1 - level) / -level)) : 7 * width;
@@ -220,8 +220,10 @@ class Rupture {
     const { alpha, squared, breaks } = this;
     // Without leaf springs and rate term the kernel is 1.
     const flat = alpha === 0 && squared === 0;
-    // With a rate term the kernel is large near the ends alone.
-    const longest = alpha === 0 ? Infinity : Math.max(2 / Math.abs(alpha), 0.5);
+    // With a rate term the kernel changes like an exponential of alpha x, and with strong leaf springs it oscillates too.
+    const longest = alpha === 0 ? Infinity : (squared > 0 ? 2 : 8) / Math.abs(alpha);
+    // The kernel is largest at the nearer end, where a front passed last, and nothing beside it where one passed long before.
+    const latest = Math.min(y - from, to - y) + (alpha > 0 && squared > 0 ? 40 / alpha : Infinity);
     let sum = 0;
     let low = from;
     for (let piece = 0; low < to;) {
@@ -232,6 +234,10 @@ class Rupture {
       }
       const top = Math.min(high, to, low + longest);
       const front = this.side(0.5 * (low + top));
+      if (time - front.arrival(Math.max(Math.abs(low), Math.abs(top))) > latest) {
+        low = top;
+        continue;
+      }
       const half = 0.5 * (top - low);
       for (let n = 0; n < NODES.length; n++) {
         const x = low + half * (1 + NODES[n].x);
@@ -272,7 +278,7 @@ class Rupture {
       slid ||= value > 0;
       times.push(time);
       values.push(Math.max(value, 0));
-      step = Math.min(1.15 * step, longest);
+      step = Math.min(1.15 * step, Math.max(longest, (time - start) / 24));
     }
     // Where a front stops nothing slides.
     return slid || !front.slow?.stopped ? { times, values, stick: Infinity } : { times: [start, start], values: [0, 0], stick: start };
@@ -287,19 +293,16 @@ class Rupture {
     return time <= start ? 0 : integral((t) => this.velocity(y, t), start, time, nodes);
   }
 
-  // The first sticking: at the centre of a symmetric scene, else where the stick time is least; null if there is none.
-  firstStick() {
+  // The first sticking: at the centre of a symmetric scene, else where the stick time is least, near the best of every
+  // other column; null if there is none.
+  firstStick(found) {
     if (this.symmetric) {
       const time = this.stick(0);
       return Number.isFinite(time) ? { x: 0, time } : null;
     }
-    const [low, high] = this.fronts(this.end);
-    let step = (high - low) / 60;
-    let best = { x: 0, time: this.stick(0) };
-    for (let x = low + 0.5 * step; x < high; x += step) {
-      const time = this.stick(x, Math.min(best.time, this.end));
-      if (time < best.time) best = { x, time };
-    }
+    const sought = found.filter((_, k) => k % 2).map(({ y, stick }) => ({ x: y, time: stick }));
+    let step = sought[1].x - sought[0].x;
+    let best = sought.reduce((least, next) => (next.time < least.time ? next : least));
     // Parabolas through three neighbours.
     for (let turn = 0; turn < 4 && Number.isFinite(best.time); turn++, step *= 0.35) {
       const [before, after] = [best.x - step, best.x + step].map((x) => this.stick(x));
@@ -313,8 +316,8 @@ class Rupture {
   }
 
   // Speeds, the first sticking, and how far apart the fronts are then; no times where nothing sticks.
-  transition() {
-    const first = this.firstStick();
+  transition(found = this.symmetric ? [] : columns(this, this.end)) {
+    const first = this.firstStick(found);
     const [left, right] = first ? this.fronts(first.time) : [NaN, NaN];
     return {
       speed: 1 / this.right.slowness,
