@@ -18,32 +18,16 @@ configfile: "config/config.yaml"
 include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/figures.smk"
-include: "workflow/rules/studies.smk"
-include: "workflow/rules/claims.smk"
-include: "workflow/rules/scenes.smk"
-include: "workflow/rules/report.smk"
-include: "workflow/rules/explorer.smk"
-include: "workflow/rules/provenance.smk"
-
-
-EVERYTHING = [
-    # First, so that the claims come first in Snakemake's own report too.
-    "results/claims.html",
-    RESULTS,
-    "results/provenance.json",
-    "results/index.html",
-]
+include: "workflow/rules/pages.smk"
 
 
 rule all:
     default_target: True
     input:
-        EVERYTHING if ACCURACY.get("whole", True) else FIRST,
+        EVERYTHING if WHOLE else FIRST,
     message:
-        "Done: {}".format(
-            "open results/index.html"
-            if ACCURACY.get("whole", True)
-            else "the figures are in results/figures; TARGET=everything adds studies, ledger and report"
+        "Done: open results/{}".format(
+            "index.html" if WHOLE else "figures; everything adds studies, ledger and report"
         )
 
 
@@ -58,10 +42,8 @@ include: "workflow/rules/targets.smk"
 
 
 onsuccess:
-    say_outdated()
-    end_timers()
+    end()
 
 
 onerror:
-    say_outdated()
-    end_timers()
+    end()

@@ -1,7 +1,5 @@
 """Which rules of the workflow depend on which files of the sources, found from the imports and not from the rules."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path
@@ -43,8 +41,6 @@ NO_RULES = {
     "inputs",
     "job",
     "libraries",
-    "origins",
-    "progress",
     "reach",
     "targets",
     "draw_figure",
@@ -52,7 +48,8 @@ NO_RULES = {
     "simulate_exact",
     "study_grid_exact",
 }
-RULES = (STEPS - NO_RULES) | DRAWN | set(STUDIED)
+SWEEP = "sweep_own"
+RULES = (STEPS - NO_RULES) | DRAWN | set(STUDIED) | {SWEEP}
 # Pages, by the rule that writes them: the template that each begins with.
 PAGE_OF = {
     "draw_scene": "scene.html",
@@ -136,6 +133,8 @@ def modules_of_rule(rule: str) -> tuple[str, ...]:
     """Modules that a rule runs."""
     if rule in DRAWN:
         return ("steps.draw_figure", f"figures.{rule}")
+    if rule == SWEEP:
+        return ("steps.draw_figure", "figures.own_sweep")
     if rule in STUDIED:
         return ("steps.run_study", f"studies.{STUDIED[rule]}")
     return (f"steps.{rule}",)

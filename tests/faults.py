@@ -7,8 +7,6 @@ Each run is killed by SIGKILL: Snakemake alone, a job alone, or everything, in t
 there. Results are compared file by file, byte by byte.
 """
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import math

@@ -1,7 +1,5 @@
 """A copy of the project's sources in which a test may run, edit and break things."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
@@ -43,8 +41,7 @@ class import_module:
         self.name = name
 
     def run(self, files, outputs, settings):
-        from ..data.files import write_text
-        from ..data.origin import configuration
+        from ..data.files import configuration, write_text
         from ..data.records import file_digest
 
         given, made = ([path for value in all.values() for path in ([value] if isinstance(value, str) else value)]

@@ -1,7 +1,5 @@
 """What a step of the workflow gets of the configuration, and small sweeps for tests."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Iterable
 

@@ -6,8 +6,6 @@ Starts a cluster of one node on the loopback, with a configuration and a key of 
 it at the end, whatever happened. Packages that are missing are installed with apt-get; for both it must be root.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shutil

@@ -6,8 +6,6 @@ Files are written whole or not at all, so that a run may be killed at any time: 
 The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -28,12 +26,11 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 def arguments(what: str) -> list[str]:
     """Of Snakemake, for a target of the Makefile."""
-    given = {name: os.environ.get(name, "") for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")}
-    targets = [meant(target) for target in os.environ.get("TARGET", "").split()]
-    values = [f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if given[name]]
-    options = (["--config", *values] if values else []) + (
-        ["--configfile", given["OVERLAY"]] if given["OVERLAY"] else []
-    )
+    given = {name: value for name, value in os.environ.items() if value}
+    targets = [meant(target) for target in given.get("TARGET", "").split()]
+    values = [f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if name in given]
+    options = ["--config", *values] if values else []
+    options += ["--configfile", given["OVERLAY"]] if "OVERLAY" in given else []
     if what == "rulegraph":
         targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
         return [*LOOK, "--rulegraph", "mermaid-js", "--", *targets]
@@ -44,7 +41,7 @@ def arguments(what: str) -> list[str]:
                 called = json.loads(CALL.read_text(encoding="utf-8"))
                 options, targets = called["options"], [*{"everything"} & {*called["targets"]}]
         return [*LOOK, "--cores", "1", *options, "--", "verify", *targets]
-    return ["--cores", os.environ.get("CORES", "2"), *options, "--", *targets]
+    return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
 
 
 def meant(target: str) -> str:
@@ -66,12 +63,12 @@ def answer(seconds: float) -> str:
         from slippulse.claims.reading import Ledger
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        return f"{ledger.summary()}\nOpen results/index.html. It took {took}."
-    if called["targets"] == ["all"]:
-        return (
-            f"Open results/figures; TARGET=everything makes studies, ledger and report too. It took {took}."
-        )
-    return f"Made: {', '.join(called['targets'])}. It took {took}."
+        made = f"{ledger.summary()}\nOpen results/index.html"
+    elif called["targets"] == ["all"]:
+        made = "Open results/figures; TARGET=everything makes studies, ledger and report too"
+    else:
+        made = f"Made: {', '.join(called['targets'])}"
+    return f"{made}. It took {took}."
 
 
 def main(what: str) -> int:

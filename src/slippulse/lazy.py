@@ -1,19 +1,11 @@
 """Names of a package that are loaded when they are first used, so that importing it is light."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from importlib import import_module
 
 
 def lazy_names(package: str, homes: Mapping[str, str]) -> tuple[Callable, Callable]:
-    """``__getattr__`` and ``__dir__`` of a package.
-
-    Parameters
-    ----------
-    package : its ``__name__``
-    homes : per public name the module below the package that defines it; a module by its own name
-    """
+    """``__getattr__`` and ``__dir__`` of a package; per public name its module, or the module itself by its own."""
 
     def get(name: str):
         if name not in homes:

@@ -172,7 +172,7 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
     measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
     predicted = predictions(scenes, config["measure"]["share"], config["measure"]["still"])
-    save_table(own_sweep.table(measured.join(predicted)), tmp_path / "sweep.csv")
+    save_table(own_sweep.table({}, {name: measured.join(predicted)}, {}), tmp_path / "sweep.csv")
     drawn = own_sweep.plot(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
     # Of each line, theory and markers full and open.

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 from pypdf import PdfReader
 
-from slippulse.data.origin import configured_by
+from slippulse.data.files import CONFIGURATION as VARIABLE
 from slippulse.figures.style import COLUMN, new_figure, save_figure
 
 CONFIGURATION = "0123456789abcdef"
@@ -22,7 +22,8 @@ def folder(tmp_path_factory) -> Path:
     axes = figure.subplots()
     axes.set_xlabel("pre-stress AVATAR")
     axes.set_ylabel(r"$\tau_0$")
-    with configured_by(CONFIGURATION):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(VARIABLE, CONFIGURATION)
         save_figure(figure, folder / "figure.png", folder / "figure.pdf")
     return folder
 

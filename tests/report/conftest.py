@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from slippulse.claims.rules import within
-from slippulse.data.origin import configured_by
+from slippulse.data.files import CONFIGURATION
 from slippulse.figures.style import new_figure
 from slippulse.report.manuscript import DOCUMENTS, Inputs
 from slippulse.steps import write_report
@@ -146,7 +146,8 @@ def build(tmp_path_factory):
         folder = tmp_path_factory.mktemp("report")
         outputs = {kind: [folder / f"{name}.{kind}" for name in DOCUMENTS] for kind in ("html", "pdf")}
         outputs |= {"verdicts": folder / "verdicts"}
-        with pytest.MonkeyPatch.context() as patch, configured_by(DIGEST):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv(CONFIGURATION, DIGEST)
             patch.setattr(write_report, "inputs_of", lambda files, settings: inputs)
             write_report.run({}, outputs, {})
         return SimpleNamespace(

@@ -1,15 +1,13 @@
 """Chunks of a sweep: every run in one of them, about equal costs, and the bytes of the sweep when put together."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
 from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import resolve
 from slippulse.data.chunks import runs_of
+from slippulse.data.files import CONFIGURATION as VARIABLE
 from slippulse.data.join import ChunksDiffer
-from slippulse.data.origin import configured_by
 from slippulse.steps import join, measure, simulate, study_grid
 
 # Of the part of the configuration that the files are made by, which each notes.
@@ -86,7 +84,8 @@ def made(project, tmp_path_factory):
         if not files[0].exists():
             data, measured, study, coarser = files
             settings = {"simulation": name, "measure": config["measure"], "threads": 1}
-            with configured_by(CONFIGURATION):
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setenv(VARIABLE, CONFIGURATION)
                 simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})
             measure.run({"data": data}, {"measured": measured}, settings)
             outputs = {"uncertainties": study, "coarser": coarser}
@@ -116,14 +115,14 @@ def join_all(joined, *chunks_and_record) -> None:
         pytest.param("profiles", 2, marks=pytest.mark.slow),
     ],
 )
-def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks):
+def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
     whole = made(name)
     data, measured, studies, coarser = zip(
         *(made(name, [number, chunks]) for number in range(1, chunks + 1)), strict=True
     )
     joined = [tmp_path / file.name for file in whole]
-    with configured_by(CONFIGURATION):
-        join_all(joined, data, measured, studies, coarser, SWEEPS[name]["record"])
+    monkeypatch.setenv(VARIABLE, CONFIGURATION)
+    join_all(joined, data, measured, studies, coarser, SWEEPS[name]["record"])
     for one, other in zip(whole, joined, strict=True):
         assert one.read_bytes() == other.read_bytes(), one.name
 

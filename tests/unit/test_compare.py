@@ -1,7 +1,5 @@
 """Whether two trees of results agree within their uncertainties."""
 
-from __future__ import annotations
-
 import json
 import math
 import shutil

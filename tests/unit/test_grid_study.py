@@ -1,7 +1,5 @@
 """Grid studies and verdicts: the arithmetic behind every error bar."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A lock that the system frees when its holder ends, however that happens."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

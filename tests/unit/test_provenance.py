@@ -1,7 +1,5 @@
 """What results were made from, and their manifest."""
 
-from __future__ import annotations
-
 import getpass
 import json
 import socket

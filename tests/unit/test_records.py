@@ -1,7 +1,5 @@
 """What each job made from what, by which configuration and sources: what is not as made by what is here now."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
@@ -9,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from slippulse.data import records
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times
 from slippulse.data.records import Digests, Tree, digest_of, read_record, read_records, write_record
-from slippulse.data.verify import problems_of
-from slippulse.steps.origins import Job, origins_of
+from slippulse.steps.reach import Job, origins_of
 
 DATA, TABLE, PAGE, OTHER = "data/a.nc", "measurements/a.csv", "index.html", "scenes/other.html"
 JOBS = [
@@ -51,7 +49,7 @@ def test_a_record_says_what_was_made_by_what_from_what(results):
     assert faults(results) == {} and len(read_records(results)) == len(JOBS)
     assert job_times(results)["measure"] == 1.5
     origins = origins_of(JOBS)
-    assert problems_of(results, origins, origins) == ([], len(JOBS))
+    assert Tree(results, origins).problems(origins) == ([], len(JOBS))
 
 
 def record_of(results: Path, name: str, **change) -> None:
@@ -100,7 +98,7 @@ def test_what_is_not_as_made_is_named_and_in_the_way_whatever_its_time(results, 
         os.utime(path, ns=(0, 0))
     assert faults(results) == expected
     origins = origins_of(JOBS)
-    lines, _ = problems_of(results, origins, origins)
+    lines, _ = Tree(results, origins).problems(origins)
     assert lines == [f"{results / name}: {reason}" for name, reason in expected.items()]
     in_the_way = Tree(results, origins).to_remove(origins)
     assert in_the_way == {name: reason for name, reason in expected.items() if reason != "missing"}
@@ -144,7 +142,7 @@ def test_a_file_that_no_rule_makes_is_not_known(results):
     (results / "logs/a.log").write_text("")
     write_text("{}", results / "records/gone.csv.json")
     origins = origins_of(JOBS)
-    lines, _ = problems_of(results, origins, origins)
+    lines, _ = Tree(results, origins).problems(origins)
     assert [line.split(": ")[0].removeprefix(f"{results}/") for line in lines] == [
         "data/mine.nc",
         "records/gone.csv.json",
@@ -155,7 +153,7 @@ def test_a_file_that_no_rule_makes_is_not_known(results):
 def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_same(tmp_path, monkeypatch):
     path, cache = tmp_path / "a", tmp_path / "cache"
     path.write_text("one")
-    monkeypatch.setattr(Digests, "SETTLED", -1.0)
+    monkeypatch.setattr(records, "SETTLED", -1.0)
     digests = Digests(cache)
     first = digests.of(path)
     digests.save()

@@ -1,7 +1,5 @@
 """A long run shows its share done, and stops within a second when it is asked to."""
 
-from __future__ import annotations
-
 import io
 import os
 import signal

@@ -1,7 +1,5 @@
 """Files are written whole or not at all, and equal data give equal bytes."""
 
-from __future__ import annotations
-
 import stat
 
 import numpy as np

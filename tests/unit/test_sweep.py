@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.data.points import FIELDS, FRONTS, point
+from slippulse.data.points import point
 from slippulse.data.store import save_dataset
+from slippulse.data.variables import FIELDS, FRONTS
 from slippulse.simulation.sweep import run_sweep
 
 RECORDS = ("fronts", "fields", "samples")

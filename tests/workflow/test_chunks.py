@@ -1,7 +1,5 @@
 """A sweep in chunks through Snakemake: the bytes of the sweep in one job, and only what is lost is made again."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Every file of the package and of the report's texts marks the rules whose step reaches it, and no others."""
 
-from __future__ import annotations
-
 import html
 import re
 

@@ -1,7 +1,5 @@
 """Every example overlay runs, at draft, and does what its comment promises."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

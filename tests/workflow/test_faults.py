@@ -1,7 +1,5 @@
 """What goes wrong on other people's machines: each works, or fails in one clear line and leaves what was there."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

@@ -1,7 +1,5 @@
 """The pipeline as a user drives it: what a target needs, what the default makes, what the README shows."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

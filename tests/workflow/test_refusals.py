@@ -1,7 +1,5 @@
 """Wrong input is refused before any job: one line that names the key, the value and what is allowed."""
 
-from __future__ import annotations
-
 import re
 import warnings
 

@@ -1,7 +1,5 @@
 """The pipeline's own command refuses wrong input before any job, and goes on where that is asked for."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import site

@@ -1,7 +1,5 @@
 """An alteration runs again exactly what depends on it: dry runs in a copy in which everything is finished."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -130,9 +128,9 @@ CONFIGURATIONS = {
         ),
     ),
     "swapped values": (
-        {"simulations": {"own": {"left": [0.5, 0.3]}}}, dict.fromkeys(CHAIN, 2) | JOINED | {"draw_sweep": 1},
+        {"simulations": {"own": {"left": [0.5, 0.3]}}}, dict.fromkeys(CHAIN, 2) | JOINED | {"sweep_own": 1},
     ),
-    "without chunks": ({"simulations": {"own": {"chunks": 1}}}, CHAIN | {"draw_sweep": 1}),
+    "without chunks": ({"simulations": {"own": {"chunks": 1}}}, CHAIN | {"sweep_own": 1}),
     "another sketch": (
         {"figures": {"fig07_damage_zone": {"thickness_ratios": [0.3, 1.0]}}},
         {"study_of_damage_zone": 1, "fig07_damage_zone": 1},

@@ -3,8 +3,6 @@
 Every job is imitated by one that writes what it is made by and from: what is tested is which jobs run.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

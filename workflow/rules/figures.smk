@@ -1,6 +1,33 @@
-# One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
+# Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
-for figure, needs in NEEDS.items():
+
+for study, needs in STUDY_NEEDS.items():
+
+    rule:
+        name:
+            f"study_of_{study}"
+        input:
+            **inputs_of(needs),
+            **kernels_for(study),
+        output:
+            table=f"results/studies/{study}.csv",
+        priority: 1
+        resources:
+            runtime=20,
+        params:
+            step="run_study",
+            study=study,
+            # Under `sweeps` the resolved simulations that it names.
+            values=selected(config, needs.get("settings", ()))
+            | ({"sweeps": {name: sweep_of(name) for name in needs["sweeps"]}} if "sweeps" in needs else {}),
+        message:
+            f"Studying {study}"
+        run:
+            run_step(rule, wildcards, input, output, params, threads)
+
+
+# One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
+for figure, needs in (NEEDS | SWEEP_NEEDS).items():
 
     rule:
         name:
@@ -10,21 +37,19 @@ for figure, needs in NEEDS.items():
         output:
             png=report(
                 f"results/figures/{figure}.png",
-                category="Figures of the paper" if figure in FIGURES else "Studies",
+                category="Figures of the paper" if figure in FIGURES else "Studies and sweeps",
                 labels={"figure": figure},
             ),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
-        log:
-            f"results/logs/figures/{figure}.log",
         params:
             step="draw_figure",
-            figure=figure,
-            values=settings_of_figure(figure),
+            figure=figure if figure in NEEDS else "own_sweep",
+            values=selected(config, needs.get("settings", ()), config["figures"].get(figure, {})),
         message:
             f"Drawing {figure}"
         run:
-            run_step(rule, wildcards, input, output, params, threads, log)
+            run_step(rule, wildcards, input, output, params, threads)
 
 
 # The short name of each figure of the paper.
@@ -35,3 +60,45 @@ for figure in FIGURES:
             figure.partition("_")[0]
         input:
             figure_files([figure]),
+
+
+rule draw_scene:
+    input:
+        data="results/data/{scene}.nc",
+        measured="results/measurements/{scene}.csv",
+        predicted="results/predictions/{scene}.csv",
+        uncertainties="results/uncertainties/{scene}.csv",
+    output:
+        png=report("results/scenes/{scene}.png", category="Scenes", labels={"scene": "{scene}"}),
+        pdf="results/scenes/{scene}.pdf",
+        csv="results/scenes/{scene}.csv",
+        numbers="results/scenes/{scene}_numbers.csv",
+        html="results/scenes/{scene}.html",
+    params:
+        title=lambda wildcards: SCENES[wildcards.scene]["title"],
+    message:
+        "Drawing scene {wildcards.scene}"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule animate_scene:
+    input:
+        data="results/data/{scene}.nc",
+    output:
+        gif="results/scenes/{scene}.gif",
+    params:
+        title=lambda wildcards: SCENES[wildcards.scene]["title"],
+    message:
+        "Animating scene {wildcards.scene}"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule scenes:
+    input:
+        scene_files(SCENES),
+        expand("results/scenes/{scene}.gif", scene=SCENES),
+        "results/scenes/index.html",
+    message:
+        "Done: every scene is in results/scenes, as HTML, PNG, PDF, CSV and GIF"

@@ -2,18 +2,22 @@
 # A simulation with `chunks` makes these of each chunk, NAME/3-of-8, and then puts them together. The files of the chunks
 # stay: to measure anew, or to make a lost chunk again, needs them.
 
+# What a job that simulates may take.
+BOUNDS = {
+    "runtime": lambda wildcards, attempt: attempt * bound_of_job(wildcards.simulation).minutes,
+    "mem_mb": lambda wildcards, attempt: attempt * bound_of_job(wildcards.simulation).megabytes,
+}
+
 
 rule compile_kernels:
     output:
         kernels="results/kernels.txt",
-    log:
-        "results/logs/compile_kernels.log",
     # Everything waits for it.
     priority: 2
     message:
         "Compiling the lattice kernels (once)"
     run:
-        run_step(rule, wildcards, input, output, params, threads, log)
+        run_step(rule, wildcards, input, output, params, threads)
 
 
 rule simulate:
@@ -21,22 +25,18 @@ rule simulate:
         kernels="results/kernels.txt",
     output:
         data="results/data/{simulation}.nc",
-    log:
-        "results/logs/simulate/{simulation}.log",
     # Before what only draws, as all that the claims wait for: the report waits for them.
     priority: 1
-    threads: job_threads
+    threads: lambda wildcards: bound_of_job(wildcards.simulation).threads
     resources:
-        runtime=job_minutes,
-        mem_mb=job_megabytes,
+        **BOUNDS,
     params:
-        step=lambda wildcards: step_for("simulate", wildcards),
-        simulation=lambda wildcards: wildcards.simulation,
-        sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
+        step=lambda wildcards: step_for("simulate", wildcards.simulation),
+        sweep=lambda wildcards: promised_sweep(wildcards.simulation),
     message:
         "Simulating {wildcards.simulation}"
     run:
-        run_step(rule, wildcards, input, output, params, threads, log)
+        run_step(rule, wildcards, input, output, params, threads)
 
 
 rule measure:
@@ -44,31 +44,27 @@ rule measure:
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
-    log:
-        "results/logs/measure/{simulation}.log",
     priority: 1
     params:
-        measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
+        measure=lambda wildcards: measure_of(wildcards.simulation),
     message:
         "Measuring {wildcards.simulation}"
     run:
-        run_step(rule, wildcards, input, output, params, threads, log)
+        run_step(rule, wildcards, input, output, params, threads)
 
 
 rule predict:
     output:
         predicted="results/predictions/{simulation}.csv",
-    log:
-        "results/logs/predict/{simulation}.log",
     priority: 1
     params:
-        sweep=lambda wildcards: sweep_of_job(wildcards.simulation),
-        share=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]])["share"],
+        sweep=lambda wildcards: promised_sweep(wildcards.simulation),
+        share=lambda wildcards: measure_of(wildcards.simulation)["share"],
         still=config["measure"]["still"],
     message:
         "Predicting {wildcards.simulation}"
     run:
-        run_step(rule, wildcards, input, output, params, threads, log)
+        run_step(rule, wildcards, input, output, params, threads)
 
 
 rule study_grid:
@@ -78,39 +74,47 @@ rule study_grid:
     output:
         uncertainties="results/uncertainties/{simulation}.csv",
         coarser="results/uncertainties/coarser/{simulation}.csv",
-    log:
-        "results/logs/study_grid/{simulation}.log",
     priority: 1
     resources:
-        runtime=job_minutes,
-        mem_mb=job_megabytes,
+        **BOUNDS,
     params:
-        step=lambda wildcards: step_for("study_grid", wildcards),
-        simulation=lambda wildcards: wildcards.simulation,
-        sweeps=lambda wildcards: coarser_sweeps(wildcards.simulation),
-        measure=lambda wildcards: measure_of([Path(wildcards.simulation).parts[0]]),
+        step=lambda wildcards: step_for("study_grid", wildcards.simulation),
+        # On the coarser lattices of the preset, by factor of the spacing.
+        sweeps=lambda wildcards: {
+            float(factor): promised_sweep(wildcards.simulation, float(factor))
+            for factor in ACCURACY["coarser"]
+        },
+        measure=lambda wildcards: measure_of(wildcards.simulation),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     run:
-        run_step(rule, wildcards, input, output, params, threads, log)
+        run_step(rule, wildcards, input, output, params, threads)
 
 
 rule join:
     input:
-        chunks=lambda wildcards: chunks_of(wildcards.joined),
-        finest=lambda wildcards: studied_in(wildcards.joined),
+        # In the order of their numbers.
+        chunks=lambda wildcards: [
+            f"results/{joined_path(wildcards).parent / chunk}{joined_path(wildcards).suffix}"
+            for chunk in CHUNKS[joined_path(wildcards).stem]
+        ],
+        # The measurements that a grid study is of.
+        finest=lambda wildcards: made(
+            "measured",
+            [joined_path(wildcards).stem] * (joined_path(wildcards).parent.name == "uncertainties"),
+        ),
     output:
         joined="results/{joined}",
-    log:
-        "results/logs/join/{joined}.log",
     priority: 1
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
-        mem_mb=joining_megabytes,
+        # Measured over a million runs: 1.2 kB a run, and as much again for other sweeps.
+        mem_mb=lambda wildcards, attempt: attempt
+        * (1000 + run_count(sweep_of(joined_path(wildcards).stem)) // 400),
     params:
-        kind=lambda wildcards: Path(wildcards.joined).parent.as_posix(),
-        record=lambda wildcards: SIMULATIONS[Path(wildcards.joined).stem].record,
+        kind=lambda wildcards: joined_path(wildcards).parent.as_posix(),
+        record=lambda wildcards: SIMULATIONS[joined_path(wildcards).stem].record,
     message:
         "Putting {wildcards.joined} together"
     run:
-        run_step(rule, wildcards, input, output, params, threads, log)
+        run_step(rule, wildcards, input, output, params, threads)

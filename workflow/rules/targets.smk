@@ -2,7 +2,6 @@
 # what its record says.
 
 import json
-import math
 import shlex
 import threading
 import time
@@ -13,11 +12,10 @@ from snakemake.cli import get_argument_parser
 from snakemake.logging import logger
 
 from slippulse.configuration.problems import format_problems
-from slippulse.data.files import write_text
+from slippulse.data.files import write_json
 from slippulse.data.lock import take
 from slippulse.data.records import Tree, record_path
-from slippulse.data.verify import problems_of
-from slippulse.steps.origins import Job, is_result, origins_of
+from slippulse.steps.reach import Job, is_result, origins_of
 from slippulse.steps.targets import check_places, check_targets
 
 # How this run was called, which `make verify` and the last line of a run ask for.
@@ -35,33 +33,27 @@ OPTIONS = [
     *(["--config", *CALLED.config] if CALLED.config else []),
 ]
 # One a step, a figure and a study, and those that name what to make.
-NAMES = [
-    *("all", "everything", "scenes"),
-    *NEEDS,
-    *(figure.partition("_")[0] for figure in FIGURES),
-    *(f"study_of_{name}" for name in ALL_STUDIES),
-    *(path.stem for path in sorted((PACKAGE / "steps").glob("*.py"))),
-]
+STEPS = (path.stem for path in sorted((PACKAGE / "steps").glob("*.py")))
+NAMES = [*NEEDS, *SWEEP_NEEDS, *(f"study_of_{name}" for name in STUDY_NEEDS), *STEPS]
+NAMES += ["all", "everything", "scenes", *(figure.partition("_")[0] for figure in FIGURES)]
 RULES = {name: getattr(rules, name) for name in NAMES if rules.has(name)}
 
 
 def jobs_of(name, rule):
     """The jobs that a rule stands for, one for each value of its wildcard."""
     wildcard = next((key for key in VALUES if f"{{{key}}}" in rule.output[0]), None)
-    for value in VALUES[wildcard] if wildcard else [""]:
-        values = {wildcard: value} if wildcard else {}
-        wildcards = SimpleNamespace(**values)
+    for value in VALUES.get(wildcard, [""]):
+        wildcards = SimpleNamespace(**{wildcard: value} if wildcard else {})
 
-        def filled(item):
-            found = item(wildcards) if callable(item) else item
-            return [str(path).format(**values) for path in ([found] if isinstance(found, str) else found)]
+        def filled(items):
+            for item in items:
+                found = item(wildcards) if callable(item) else item
+                for path in [found] if isinstance(found, str) else found:
+                    yield str(path).format(**vars(wildcards))
 
         settings = {key: entry(wildcards) if callable(entry) else entry for key, entry in rule.params.items()}
-        inputs, outputs = (
-            tuple(path for item in items for path in filled(item)) for items in (rule.input, rule.output)
-        )
         # A rule without another step has that of its own name.
-        yield Job(settings.pop("step", name), inputs, outputs, settings)
+        yield Job(settings.pop("step", name), tuple(filled(rule.input)), tuple(filled(rule.output)), settings)
 
 
 ALL_JOBS = [job for name, rule in RULES.items() if rule.output for job in jobs_of(name, rule)]
@@ -69,36 +61,34 @@ ORIGINS = origins_of(ALL_JOBS)
 MADE = [f"results/{name}" for name in ORIGINS]
 
 
-def files_of(target):
-    """What is made for a target, below results/: a file, or all of a rule."""
-    files = [target]
-    if target in RULES:
-        files = RULES[target].output or RULES[target].input
-    return [below(file) for file in files if is_result(file)]
+def files_of(*targets):
+    """What is made for some targets, below results/: files, or all of a rule."""
+    found = []
+    for target in targets:
+        files = RULES[target].output or RULES[target].input if target in RULES else [target]
+        found += [below(file) for file in files if is_result(file)]
+    return found
 
 
-def refuse_places():
-    """Where a folder or a file goes there is nothing of the other kind, and it may be written."""
-    records = [f"results/{record_path(origin.record)}" for origin in ORIGINS.values()]
-    logs = [rule.log[0] for rule in RULES.values() if rule.log]
-    folders = {parent for file in [*MADE, *records, *logs] for parent in Path(file).parents[:-1]}
-    check_places(Path("results"), [Path(".snakemake"), *sorted(folders)], map(Path, [*MADE, *records]))
-
-
-def refuse_unknown_targets():
-    """A misspelt target is refused with the nearest one that there is."""
+def refuse_targets(targets):
+    """A misspelt target is refused with the nearest one that there is, and a place for results that is taken."""
     patterns = {name: rule.output[0] for name, rule in RULES.items() if rule.output and "{" in rule.output[0]}
-    check_targets(CALLED.targets, [*RULES, *MADE, "verify"], patterns)
+    check_targets(targets, [*RULES, *MADE, "verify"], patterns)
+    records = [f"results/{record_path(origin.record)}" for origin in ORIGINS.values()]
+    logs = [log_of(name, "_") for name in patterns]
+    folders = {parent for file in [*MADE, *records, *logs] for parent in Path(file).parents[:-1]}
+    check_places([Path(".snakemake"), *sorted(folders)], map(Path, [*MADE, *records]))
 
 
-def refuse_expensive_targets(wanted):
+def refuse_expensive(wanted):
     """What is asked for takes no more than is allowed, unless it was asked for twice."""
     names = sorted({Path(file).parts[1].removesuffix(".nc") for file in wanted if file.startswith("data/")})
-    problems = []
-    for name in names if not CONFIG.allow_large else ():
-        if reason := bound_of_job(name).exceeded(SIMULATIONS[name].chunks):
-            problems.append(f"{'scenes' if name in SCENES else 'simulations'}.{name}.{reason}")
-    if problems:
+    bounds = {name: bound_of_job(name).exceeded(SIMULATIONS[name].chunks) for name in names}
+    if problems := [
+        f"{'scenes' if name in SCENES else 'simulations'}.{name}.{reason}"
+        for name, reason in bounds.items()
+        if reason
+    ]:
         raise ConfigError(format_problems(problems))
 
 
@@ -108,48 +98,37 @@ def lock_folder():
     if held is None:
         refuse("Another run is at work in this folder: wait for it, or stop it.")
     stale = [lock for lock in Path(".snakemake/locks").glob("*") if lock.is_file()]
-    for lock in stale:
-        lock.unlink()
+    # Files that a killed job was writing have a hidden name of their own until they are whole.
+    for path in [*stale, *(Path("results").rglob(".*-????????.*") if stale else ())]:
+        path.unlink(missing_ok=True)
     if stale:
-        # Files that a killed job was writing have a hidden name of their own until they are whole.
-        for part in Path("results").rglob(".*-????????.*"):
-            part.unlink(missing_ok=True)
         print("The last run was killed: what it left unfinished is made anew.", file=sys.stderr)
     return held
 
 
-def say_faulty(faulty):
-    """One line on what is not what its record says, with the first reason that is not another's."""
-    if faulty:
-        first = next((name for name, reason in faulty.items() if "older than" not in reason), [*faulty][0])
-        fate = "would be removed" if LOOKING else "removed"
-        print(
-            f"{len(faulty)} results are not as made by what is here now, as results/{first}: {faulty[first]};"
-            f" {fate}, and made anew where needed.",
-            file=sys.stderr,
-        )
+def say_faulty(reasons, fate):
+    """One line on results that are not as made by what is here now, with the first reason that is not another's."""
+    if reasons:
+        first = next((name for name, reason in reasons.items() if "older than" not in reason), [*reasons][0])
+        text = f"{len(reasons)} results are not as made by what is here now, as results/{first}: {reasons[first]}"
+        print(f"{text}{fate}", file=sys.stderr)
 
 
 def settle_times(wanted):
     """Let no wanted result be older than what it is made from, for which Snakemake would make it anew, nor later than now."""
-    made = {f"results/{name}" for name in wanted}
+    made, now = {f"results/{name}" for name in wanted}, time.time()
     jobs = [job for job in ALL_JOBS if job.outputs[0] in made]
-    times = {
-        path: os.path.getmtime(path)
-        for job in jobs
-        for path in (*job.inputs, *job.outputs)
-        if os.path.isfile(path)
-    }
-    late = [path for path, moment in times.items() if moment > time.time()]
+    paths = {path for job in jobs for path in (*job.inputs, *job.outputs) if os.path.isfile(path)}
+    times = {path: os.path.getmtime(path) for path in paths}
+    late = sorted(path for path in times if times[path] > now)
     if late:
         print(f"{len(late)} files have a time in the future, as {late[0]}: set to now.", file=sys.stderr)
     if late or any(
-        times.get(path, 0.0) > min(times.get(output, math.inf) for output in job.outputs)
+        times.get(path, 0.0) > min(times.get(output, now) for output in job.outputs)
         for job in jobs
         for path in job.inputs
     ):
-        now = time.time()
-        for path in {*late, *(path for path in times if path in made)}:
+        for path in {*late, *(paths & made)}:
             with suppress(OSError):
                 os.utime(path, (now, now))
 
@@ -157,7 +136,7 @@ def settle_times(wanted):
 def plan(faulty):
     """Say what would be removed; a dry run begins anew with these files forced, since they are still there."""
     if "SLIPPULSE_PLANNED" not in os.environ:
-        say_faulty(faulty)
+        say_faulty(faulty, "; would be removed, and made anew where needed.")
         if faulty and CALLED.dryrun:
             at = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
             forced = ["--forcerun", *(f"results/{name}" for name in faulty)]
@@ -165,40 +144,33 @@ def plan(faulty):
             os.execve(sys.executable, called, os.environ | {"SLIPPULSE_PLANNED": "yes"})
 
 
-def say_outdated():
+def renewal():
+    """The command that makes everything as this run was called."""
+    if "MAKELEVEL" not in os.environ:
+        return shlex.join(["snakemake", "--cores", str(workflow.cores), *OPTIONS, "--", "everything"])
+    given = [
+        f"{name}={os.environ[name]}" for name in ("PRESET", "OVERLAY", "ALLOW_LARGE") if os.environ.get(name)
+    ]
+    return shlex.join(["make", "replicate", *given, "TARGET=everything"])
+
+
+def end():
     """One line on results that this run has left behind, with the command that renews them."""
     tree = Tree("results", ORIGINS)
-    left = [name for name in ORIGINS if Path("results", name).is_file() and tree.outdated(name)]
-    if left:
-        print(
-            f"{len(left)} results are not as made by what is here now, as results/{left[-1]}:"
-            f" {tree.outdated(left[-1])}. Renew them: {renewal()}",
-            file=sys.stderr,
-        )
-
-
-def end_timers():
-    """Of Snakemake, which would look for jobs again: its process would last until each is due."""
+    left = {name: tree.outdated(name) for name in ORIGINS if Path("results", name).is_file()}
+    say_faulty({name: left[name] for name in reversed(left) if left[name]}, f". Renew them: {renewal()}")
+    # Timers of Snakemake, which would look for jobs again: its process would last until each is due.
     for thread in threading.enumerate():
         if isinstance(thread, threading.Timer):
             thread.cancel()
 
 
-def renewal():
-    """The command that makes everything as this run was called."""
-    if "MAKELEVEL" not in os.environ:
-        return shlex.join(["snakemake", "--cores", str(workflow.cores), *OPTIONS, "--", "everything"])
-    given = {name: os.environ.get(name) for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")}
-    return shlex.join(
-        ["make", "replicate", *(f"{name}={value}" for name, value in given.items() if value)]
-    ) + (" TARGET=everything")
-
-
 def verify(complete):
     """Compare all results with what a complete run would make; ends the process."""
-    problems, count = problems_of("results", ORIGINS, complete)
+    tree = Tree("results", ORIGINS)
+    problems, count = tree.problems(complete)
     print("\n".join(problems) or f"{count} files are as made by what is here now")
-    whole = Tree("results", ORIGINS).behind(files_of("everything"))
+    whole = tree.behind(files_of("everything"))
     if skipped := [name for name in whole if not Path("results", name).exists() and name not in complete]:
         print(f"Not looked at: {len(skipped)} files that TARGET=everything makes besides, as {skipped[0]}")
     raise SystemExit(1 if problems else 0)
@@ -214,29 +186,32 @@ def heard(record):
 logger.addFilter(heard)
 
 
+def begin():
+    """Before anything is planned: refuse, or remove what is to be made anew."""
+    targets, tree = sorted(CALLED.targets) or ["all"], Tree("results", ORIGINS)
+    if "verify" in targets:
+        verify(tree.behind(files_of("all", *({"everything"} & {*targets}))))
+    refuse_targets(CALLED.targets)
+    wanted = tree.behind(files_of(*targets))
+    if not CONFIG.allow_large:
+        refuse_expensive(wanted)
+    if LOOKING:
+        return plan(tree.to_remove(wanted))
+    held, faulty = lock_folder(), tree.to_remove(wanted)
+    say_faulty(faulty, "; removed, and made anew where needed.")
+    for name in faulty:
+        Path("results", name).unlink()
+    settle_times(wanted)
+    if not all(Path("results", name).exists() for name in wanted):
+        JOBS.begin()
+    called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
+    write_json(called, Path("results", CALL))
+    return held
+
+
 try:
     if workflow.is_main_process:
-        refuse_unknown_targets()
-        targets = sorted(CALLED.targets) or ["all"]
-        if "verify" in targets:
-            verify(Tree("results", ORIGINS).behind([*files_of("all"), *files_of(targets[0])]))
-        refuse_places()
-        TREE = Tree("results", ORIGINS)
-        WANTED = TREE.behind(file for target in targets for file in files_of(target))
-        refuse_expensive_targets(WANTED)
-        if LOOKING:
-            plan(TREE.to_remove(WANTED))
-        else:
-            LOCK = lock_folder()
-            FAULTY = TREE.to_remove(WANTED)
-            say_faulty(FAULTY)
-            for name in FAULTY:
-                Path("results", name).unlink()
-            settle_times(WANTED)
-            if not all(Path("results", name).exists() for name in WANTED):
-                JOBS.begin()
-            called = {"options": OPTIONS, "targets": targets, "page": "index.html" in WANTED}
-            write_text(json.dumps(called), Path("results", CALL))
+        LOCK = begin()
 except ConfigError as error:
     refuse(str(error))
 except OSError as error:

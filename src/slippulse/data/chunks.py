@@ -5,8 +5,6 @@ cost about the same, are spread. Who is first changes from round to round at ran
 always the same, a list of as many values as there are chunks would give each chunk a single value of it.
 """
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterator
 

@@ -1,25 +1,26 @@
-"""Files written whole or not at all."""
+"""Files written whole or not at all, and by which configuration."""
 
-from __future__ import annotations
-
+import json
 import os
-import tempfile
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
+
+# Of a job: digest of the configuration behind all that it writes.
+CONFIGURATION = "SLIPPULSE_CONFIGURATION"
+
+
+def configuration() -> str:
+    """Digest of the configuration behind what is being written; empty outside a job of the workflow."""
+    return os.environ.get(CONFIGURATION, "")
 
 
 def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
     """Let ``write`` fill a file beside ``path`` and move it there when it is complete."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
-    os.close(handle)
-    part = Path(name)
+    part = path.with_name(f".{path.stem}-{os.urandom(4).hex()}{path.suffix}")
     try:
         write(part)
-        # mkstemp makes private files; results are as readable as anything else the user writes.
-        part.chmod(0o666 & ~_umask())
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
@@ -30,9 +31,6 @@ def write_text(text: str, path: str | Path) -> None:
     write_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
-@cache
-def _umask() -> int:
-    # It can only be read by setting it, so once: threads would see each other's zero.
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def write_json(value: object, path: str | Path) -> None:
+    """Write builtins as JSON, to be read by people too."""
+    write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", path)

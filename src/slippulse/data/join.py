@@ -3,8 +3,6 @@
 Cells of tables are text: a column of whole numbers in one chunk may be one of fractions in the next.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -13,8 +11,9 @@ import pandas as pd
 import xarray as xr
 
 from .chunks import runs_of
-from .points import combine, point
+from .points import point
 from .store import load_dataset, load_table, save_table
+from .variables import combine
 
 
 class ChunksDiffer(ValueError):
@@ -36,11 +35,8 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     """
     chunks = [load_dataset(path) for path in paths]
     runs = _runs(paths, [chunk.sizes["point"] for chunk in chunks])
-    found = {
-        run: point(chunk, index)
-        for chunk, numbers in zip(chunks, runs, strict=True)
-        for index, run in enumerate(numbers)
-    }
+    of_chunks = zip(chunks, runs, strict=True)
+    found = {run: point(chunk, index) for chunk, own in of_chunks for index, run in enumerate(own)}
     return combine([found[run] for run in sorted(found)], record)
 
 
@@ -56,11 +52,9 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
     last : columns that stand behind all others; by these, several tables are told from each other
     """
     chunks = _texts(paths)
+    keys = [name for name in last if name in chunks[0]]
     blocks = [
-        chunk.groupby([name for name in last if name in chunk], sort=False).ngroup()
-        if set(last) & set(chunk)
-        else pd.Series(0, chunk.index)
-        for chunk in chunks
+        chunk.groupby(keys, sort=False).ngroup() if keys else pd.Series(0, chunk.index) for chunk in chunks
     ]
     if len({block.max() for block in blocks}) > 1:
         raise ChunksDiffer(paths)

@@ -6,8 +6,6 @@
 Needs nothing but Python, since the set-up of the environment uses it too.
 """
 
-from __future__ import annotations
-
 import errno
 import fcntl
 import subprocess
@@ -16,13 +14,12 @@ from pathlib import Path
 from typing import TextIO
 
 
-def take(path: str | Path) -> TextIO | None:
-    """Hold a lock for as long as the file that this returns is open; None where another process holds it."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
+def take(path: str | Path, wait: bool = False) -> TextIO | None:
+    """Hold a lock for as long as the file that this returns is open; None where another process holds it, or wait."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
     file = open(path, "a", encoding="utf-8")  # noqa: SIM115
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
     except OSError as error:
         # Some file systems have no locks: there is then no protection.
         if error.errno in (errno.EAGAIN, errno.EACCES):
@@ -39,10 +36,8 @@ def main(arguments: list[str]) -> int:
         return int(held is None)
     if held is None:
         print("Another set-up is at work in this folder: waiting for it", flush=True)
-        held = open(path, "a", encoding="utf-8")  # noqa: SIM115
-        fcntl.flock(held, fcntl.LOCK_EX)
-    with held:
-        return subprocess.run(command, check=False).returncode
+        held = take(path, wait=True)
+    return subprocess.run(command, check=False).returncode
 
 
 if __name__ == "__main__":

@@ -1,7 +1,5 @@
 """How a number is written, in the report, on the pages and in figures: plain text with Unicode signs."""
 
-from __future__ import annotations
-
 import math
 
 # Smaller or larger than this, a number is written with a power of ten.
@@ -13,13 +11,7 @@ SUPERSCRIPT = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number with a stated count of significant digits.
-
-    Parameters
-    ----------
-    value : None and NaN are written as not measured; a whole number keeps all its digits
-    digits : significant digits, at most `MOST`
-    """
+    """A number with some significant digits, at most `MOST`; a whole number keeps all its digits."""
     if value is None or math.isnan(value):
         return MISSING
     if math.isinf(value):
@@ -58,12 +50,8 @@ def percent(value: float | None, digits: int = 2) -> str:
 def with_uncertainty(value: float | None, uncertainty: float | None, unknown: str = "") -> str:
     """A value with its uncertainty in the last digits, as in 1.476(13), rounded as the Particle Data Group does.
 
-    Parameters
-    ----------
-    value, uncertainty : without an uncertainty, or with 0, the value alone has at most `MOST` digits
-    unknown : what follows a value without an uncertainty
-
-    A value that is known to more than `MOST_WITH_UNCERTAINTY` digits is cut there, and its uncertainty rounded up.
+    A value that is known to more than `MOST_WITH_UNCERTAINTY` digits is cut there, and its uncertainty rounded up;
+    ``unknown`` follows one without an uncertainty.
     """
     if value is None or not math.isfinite(value) or uncertainty == 0.0:
         return number(value, MOST)

@@ -1,7 +1,5 @@
 """Markdown with expressions in double braces: jinja2 templates in which a number that is missing reads so."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from numbers import Real
 from traceback import extract_tb
@@ -41,17 +39,9 @@ PROSE = Prose()
 
 
 def fill(text: str, names: Mapping[str, object]) -> str:
-    """Replace each ``{{ expression }}`` by its value.
+    """Markdown with each ``{{ expression }}`` replaced by its value.
 
-    Parameters
-    ----------
-    text : Markdown
-    names : what the expressions may use
-
-    Raises
-    ------
-    ValueError
-        If an expression fails, with the line it stands on and the reason.
+    Raises ValueError: if an expression fails, with the line it stands on and the reason.
     """
     try:
         return PROSE.from_string(text).render(names)

@@ -1,13 +1,12 @@
 """Who made what from what: the one file of a run that holds times, and the manifest of everything it made."""
 
-from __future__ import annotations
-
 import os
 import platform
 import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from pathlib import Path
 
 import yaml
@@ -26,23 +25,19 @@ PAPER = {
 
 def source_files(root: str | Path) -> list[Path]:
     """Everything that a result may depend on besides the configuration: library, workflow, report."""
-    root = Path(root)
-    found = [root / "Snakefile"]
-    for folder in ("src", "workflow", "manuscript"):
-        found += [
-            path for path in (root / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts
-        ]
-    return found
+    folders = (Path(root, folder).rglob("*") for folder in ("src", "workflow", "manuscript"))
+    below = [
+        path for found in folders for path in found if path.is_file() and "__pycache__" not in path.parts
+    ]
+    return [Path(root, "Snakefile"), *below]
 
 
 def git_state(root: str | Path) -> dict | None:
     """Commit and whether files differ from it; None outside a repository or without git."""
 
     def ask(*arguments: str) -> str:
-        done = subprocess.run(
-            ["git", "-C", str(root), *arguments], capture_output=True, text=True, timeout=30, check=True
-        )
-        return done.stdout.strip()
+        command = ["git", "-C", str(root), *arguments]
+        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=True).stdout.strip()
 
     try:
         changed = ask("status", "--porcelain", "--untracked-files=no").splitlines()
@@ -53,20 +48,17 @@ def git_state(root: str | Path) -> dict | None:
 
 def machine_class() -> dict:
     """What kind of machine: no name of a host or a user."""
-    memory = None
-    if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
-        memory = round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30)
-    model = ""
-    cpuinfo = Path("/proc/cpuinfo")
+    cpuinfo, lines = Path("/proc/cpuinfo"), []
     if cpuinfo.exists():
         lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
-        model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), "")
     return {
         "system": platform.system(),
         "architecture": platform.machine(),
-        "processor": model,
+        "processor": next(
+            (line.partition(":")[2].strip() for line in lines if line[:10] == "model name"), ""
+        ),
         "cores": os.cpu_count(),
-        "memory_GiB": memory,
+        "memory_GiB": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
     }
 
 
@@ -90,8 +82,6 @@ def provenance(
     config, shipped : the configuration with and without overlays
     results : folder of the results, with the records of their jobs
     """
-    from importlib.metadata import version
-
     return {
         "paper": PAPER,
         "overlay": changes(shipped, config),

@@ -3,22 +3,23 @@
 A result is what its record says, made by what is here now; or it is made anew. No time of a file is looked at.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from .files import write_text
+from .files import write_json, write_text
 
 FOLDER = "records"
+# Folders of results in which no rule makes what stands there.
+BESIDE = ("logs", "benchmarks", "reference")
 MISSING, CHANGED, PARTED = "missing", "not what its job wrote", "made with a file that is not as made"
+# In seconds: a file that was just written may change once more within a tick of the clock.
+SETTLED = 2.0
 
 
 class Origin(NamedTuple):
@@ -40,16 +41,15 @@ class Origin(NamedTuple):
     inputs: frozenset[str]
 
 
-@dataclass(frozen=True)
-class Record:
+class Record(NamedTuple):
     """One job: what made it, digests of its outputs and inputs by path below results/, and what it used."""
 
     step: str
     configuration: str
     sources: str
-    outputs: Mapping[str, str]
-    inputs: Mapping[str, str]
-    used: Mapping[str, float]
+    outputs: dict
+    inputs: dict
+    used: dict
 
 
 def digest_of(value: object) -> str:
@@ -74,20 +74,18 @@ def write_record(origin: Origin, outputs: Mapping, used: Mapping) -> None:
     used : seconds, processor_seconds, memory_MB
     """
     made = [
-        str(path) for value in outputs.values() for path in ([value] if isinstance(value, str) else value)
+        Path(path) for value in outputs.values() for path in ([value] if isinstance(value, str) else value)
     ]
-    results = next(parent for parent in Path(made[0]).parents if parent.name == "results")
-
+    results = next(parent for parent in made[0].parents if parent.name == "results")
     record = Record(
         origin.step,
         origin.configuration,
         origin.sources,
-        {Path(path).relative_to(results).as_posix(): file_digest(path) for path in made},
+        {path.relative_to(results).as_posix(): file_digest(path) for path in made},
         {name: file_digest(results / name) for name in sorted(origin.inputs)},
         dict(used),
     )
-    text = json.dumps(asdict(record), indent=1, ensure_ascii=False) + "\n"
-    write_text(text, results / record_path(origin.record))
+    write_json(record._asdict(), results / record_path(origin.record))
 
 
 def record_path(name: str) -> str:
@@ -105,9 +103,7 @@ def read_record(path: str | Path) -> Record:
     """
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
-        step, configuration, sources = (str(content[key]) for key in ("step", "configuration", "sources"))
-        outputs, inputs, used = (dict(content[key]) for key in ("outputs", "inputs", "used"))
-        return Record(step, configuration, sources, outputs, inputs, used)
+        return Record(**{name: kind(content[name]) for name, kind in Record.__annotations__.items()})
     except (KeyError, TypeError, RecursionError) as error:
         raise ValueError(str(error)) from error
 
@@ -180,34 +176,50 @@ class Tree:
             if os.path.lexists(self.results / name) and not (self.results / name).is_dir()
         }
 
+    def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
+        """One line for each file that is not as a complete run would make it, and how many files were compared.
+
+        Parameters
+        ----------
+        complete : what a complete run makes, and all that this is made from; other results are compared where they are
+            there
+        """
+        paths = (path.relative_to(self.results) for path in self.results.rglob("*") if path.is_file())
+        there = {path.as_posix() for path in paths if path.parts[0] not in BESIDE and path.name[0] != "."}
+        wanted = there.union(complete)
+        compared = [name for name in self.origins if name in wanted]
+        unknown = sorted(there - self.origins.keys() - {record_path(job) for job in self._made})
+        reasons = self.faults(compared) | dict.fromkeys(unknown, "not known; no rule makes it")
+        return [f"{self.results / name}: {reason}" for name, reason in reasons.items()], len(compared)
+
     def _fault(self, name: str) -> str:
         path = self.results / name
         if not path.is_file():
             return MISSING
-        reason = self.outdated(name)
-        if reason:
+        if reason := self.outdated(name):
             return reason
-        return "" if self._digests.of(path) == self._record(name).outputs[name] else CHANGED
+        return "" if self._digests.of(path) == self._written(name) else CHANGED
 
-    def _record(self, name: str) -> Record:
-        record = self._read(self.origins[name].record)
+    def _written(self, name: str) -> str:
+        """Digest of a result that is not outdated, as its job wrote it."""
+        record = self._record(self.origins[name].record)
         assert isinstance(record, Record)
-        return record
+        return record.outputs[name]
 
-    def _read(self, name: str) -> Record | str:
-        """A record, or why there is none."""
-        if name not in self._records:
+    def _record(self, job: str) -> Record | str:
+        """The record of a job, or why there is none."""
+        if job not in self._records:
             try:
-                self._records[name] = read_record(self.results / record_path(name))
+                self._records[job] = read_record(self.results / record_path(job))
             except FileNotFoundError:
-                self._records[name] = "no record"
+                self._records[job] = "no record"
             except (OSError, ValueError):
-                self._records[name] = "its record cannot be read"
-        return self._records[name]
+                self._records[job] = "its record cannot be read"
+        return self._records[job]
 
     def _compare(self, name: str) -> str:
         origin = self.origins[name]
-        record = self._read(origin.record)
+        record = self._record(origin.record)
         if isinstance(record, str):
             return record
         if record.step != origin.step or name not in record.outputs or record.inputs.keys() != origin.inputs:
@@ -217,23 +229,16 @@ class Tree:
         if record.sources != origin.sources:
             return "made by other sources"
         for source, digest in record.inputs.items():
-            if self.outdated(source) or self._record(source).outputs[source] != digest:
+            if self.outdated(source) or self._written(source) != digest:
                 return f"older than {source}, which it is made from"
         return ""
 
 
 class Digests:
-    """SHA-256 of files, remembered with what tells that one is still the same: size, inode and its two times.
+    """SHA-256 of files, remembered in a file with what tells that one is still the same: size, inode and its two times.
 
     The time of the inode changes with every change of content, and no program sets it.
-
-    Parameters
-    ----------
-    path : file in which they are remembered
     """
-
-    # In seconds: a file that was just written may change once more within a tick of the clock.
-    SETTLED = 2.0
 
     def __init__(self, path: Path) -> None:
         self._path, self._new = path, False
@@ -245,14 +250,13 @@ class Digests:
         """Digest of a file."""
         status = path.stat()
         state = [status.st_size, status.st_ino, status.st_mtime_ns, status.st_ctime_ns]
-        name = path.as_posix()
-        match self._known.get(name):
+        match self._known.get(path.as_posix()):
             case [*known, str(digest)] if known == state:
                 return digest
-        settled = time.time() - max(status.st_mtime, status.st_ctime) > self.SETTLED
+        settled = time.time() - max(status.st_mtime, status.st_ctime) > SETTLED
         digest = file_digest(path)
         if settled:
-            self._known[name], self._new = [*state, digest], True
+            self._known[path.as_posix()], self._new = [*state, digest], True
         return digest
 
     def save(self) -> None:

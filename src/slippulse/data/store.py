@@ -1,7 +1,5 @@
 """Files: netCDF data, CSV tables and figures, written whole or not at all and with no clock in them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from io import BytesIO
 from pathlib import Path
@@ -12,19 +10,13 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from .files import write_whole
-from .origin import configuration
+from .files import configuration, write_whole
 
 # Through xarray's engine each variable, of which a sweep has fifty, takes five times as long to write and to read.
 # Attributes of HDF5 and of the netCDF-4 library, and what marks a dimension that has no coordinate.
 PLUMBING = {
-    "CLASS",
-    "NAME",
-    "DIMENSION_LIST",
-    "REFERENCE_LIST",
-    "_Netcdf4Dimid",
-    "_Netcdf4Coordinates",
-    "_NCProperties",
+    *("CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"),
+    *("_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties"),
 }
 BARE = "This is a netCDF dimension but not a netCDF variable."
 
@@ -65,10 +57,7 @@ class UnreadableFile(ValueError):
 def load_dataset(path: str | Path) -> xr.Dataset:
     """Read a Dataset into memory and close the file.
 
-    Raises
-    ------
-    UnreadableFile
-        Naming the file and the remedy.
+    Raises UnreadableFile: naming the file and the remedy.
     """
     try:
         with h5py.File(path) as file:
@@ -102,25 +91,16 @@ def save_table(table: pd.DataFrame, path: str | Path, digits: int = 9) -> None:
 
 
 def load_table(path: str | Path, whole: Collection[str] | None = None) -> pd.DataFrame:
-    """Read a table; empty text stays text. With ``whole``, only these columns may hold whole numbers, others fractions.
+    """Read a table. With ``whole``, only these columns may hold whole numbers, others fractions.
 
-    Raises
-    ------
-    UnreadableFile
-        Naming the file and the remedy.
+    Raises UnreadableFile: naming the file and the remedy.
     """
     try:
-        table = pd.read_csv(path, keep_default_na=True, na_filter=True, low_memory=False)
+        table = pd.read_csv(path, low_memory=False)
         if whole is None:
             return table
         # Read again, since -0 as a whole number has lost its sign.
         fractions = [name for name in table if table[name].dtype.kind == "i" and name not in whole]
-        return pd.read_csv(
-            path,
-            keep_default_na=True,
-            na_filter=True,
-            low_memory=False,
-            dtype=dict.fromkeys(fractions, float),
-        )
+        return pd.read_csv(path, low_memory=False, dtype=dict.fromkeys(fractions, float))
     except ValueError as error:
         raise UnreadableFile(path, error) from error

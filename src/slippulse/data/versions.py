@@ -1,7 +1,5 @@
 """Versions of what a number depends on."""
 
-from __future__ import annotations
-
 from functools import cache
 from importlib.metadata import version
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import pandas as pd
 from matplotlib.figure import Figure
 
+from .shared.pulses import prestress_inset
 from .shared.scaling import (
     LEVEL,
     OTHER,
@@ -18,7 +19,7 @@ from .shared.scaling import (
     draw_ratio,
     transition_rows,
 )
-from .style import BLACK, PAGE, new_panels, prestress_inset
+from .style import BLACK, PAGE, new_panels
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],

@@ -23,12 +23,12 @@ AXES = {
 PANELS, ROWS = 6, 2
 
 
-def table(runs: pd.DataFrame) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Every main number of every run.
 
     Parameters
     ----------
-    runs : measured and predicted numbers of the sweep, one row a run
+    tables : of one sweep, measured and predicted numbers, one row a run
 
     Returns
     -------
@@ -36,6 +36,7 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
     value) and the series by all others that vary, empty where none does; a number that equals another one in every run
     is left out
     """
+    (runs,) = tables.values()
     varying: list[str] = []
     alike = (runs["left"] == runs["right"]).all()
     runs = runs.assign(tau_0=runs["left"] if alike else 0.0)

@@ -11,7 +11,6 @@ from typing import Any, TypeAlias
 import matplotlib
 import matplotlib.rcsetup
 import numpy as np
-import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -24,9 +23,7 @@ from matplotlib.ticker import NullFormatter
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from ..data.files import write_whole
-from ..data.origin import configuration
-from ..model.prestress import Prestress
+from ..data.files import configuration, write_whole
 
 # How a thing is drawn: keywords of Matplotlib.
 Look: TypeAlias = dict[str, Any]
@@ -139,20 +136,6 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> Non
     """One legend for all panels, below them."""
     look: dict[str, Any] = {"columnspacing": 1.0, "handlelength": 1.6, "handletextpad": 0.6}
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
-
-
-def prestress_inset(
-    axes: Axes, box: tuple[float, float, float, float], runs: pd.DataFrame, colours: Sequence, widths: float
-) -> None:
-    """Profiles of pre-stress of some runs in a box of a panel, over some widths of the widest Gaussian."""
-    inset = axes.inset_axes(box)
-    x = np.linspace(-widths, widths, 161) * runs["width"].max()
-    for (_, run), colour in zip(runs.iterrows(), colours, strict=True):
-        tau = Prestress(run["left"], run["right"], run["width"])(x)
-        inset.plot(x, tau, color=colour, linewidth=0.8)
-    inset.locator_params(nbins=3, integer=True)
-    inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=1.0)
-    inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
 
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:

@@ -17,8 +17,7 @@ import matplotlib
 import typst
 from PIL import Image
 
-from ..data.files import write_text, write_whole
-from ..data.origin import configuration
+from ..data.files import configuration, write_text, write_whole
 from .html import TEMPLATES, page, pandoc
 
 # Those of the figures, which Matplotlib brings along.

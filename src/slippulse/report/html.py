@@ -10,8 +10,8 @@ import pypandoc
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from ..data.files import configuration
 from ..data.numerals import FILTERS
-from ..data.origin import configuration
 
 # Of every page; what else a page is made with its step names.
 FILES = ("report/templates/base.html", "report/templates/style.css")

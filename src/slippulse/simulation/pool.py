@@ -8,7 +8,7 @@ from threading import Event
 
 import xarray as xr
 
-from ..data.points import combine
+from ..data.variables import combine
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.run import LatticeRun

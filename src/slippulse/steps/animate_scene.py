@@ -1,14 +1,10 @@
 """Write the animation of one scene."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-
 from ..data.points import point
 from ..data.store import load_dataset
 from ..figures.scene_animation import animate, save_animation
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data. Outputs: gif. Settings: title."""
     save_animation(animate(point(load_dataset(files["data"]), 0), settings["title"]), outputs["gif"])

@@ -1,8 +1,5 @@
 """Write the table of one figure, then draw the figure from that table alone."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
 from importlib import import_module
 
 from ..data.store import load_table, save_table
@@ -10,7 +7,7 @@ from ..figures.style import save_figure
 from .inputs import given
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: as `given` takes them. Outputs: csv, png, pdf. Settings: figure (its module), values."""
     module = import_module(f"slippulse.figures.{settings['figure']}")
     save_table(module.table(*given(files), settings["values"]), outputs["csv"])

@@ -1,9 +1,5 @@
 """Write the numbers, the table, the figure and the page of one scene."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-
 from ..data.files import write_text
 from ..data.points import point
 from ..data.store import load_dataset, load_table, save_table
@@ -15,7 +11,7 @@ from ..report.scene_page import scene_page
 FILES = ("report/templates/parts.html", "report/templates/scene.html")
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html.
 
     Settings: scene, title.

@@ -1,6 +1,4 @@
-"""Data and tables that a figure or a study is made from, by name, whatever the step."""
-
-from __future__ import annotations
+"""Data and tables that a figure, a study or a page is made from, by name, whatever the step."""
 
 import json
 from collections.abc import Mapping
@@ -14,27 +12,22 @@ from ..data.store import load_dataset, load_table
 
 
 def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame]]:
-    """Datasets of simulations, and tables.
+    """Datasets by simulation; tables by simulation or study, of grid studies as uncertainties/NAME and coarser/NAME.
+
+    Predictions are joined to the measurements of the same runs.
 
     Parameters
     ----------
     files : data, measured, predicted, studies, coarser, uncertainties, and lists of entries (YAML or JSON): lists of
         paths; what is missing is none
-
-    Returns
-    -------
-    datasets by simulation; tables by simulation or study, predictions joined to the measurements of the same runs,
-    and those of grid studies as uncertainties/NAME and coarser/NAME
     """
-
-    def loaded(kind: str, prefix: str = "") -> dict[str, pd.DataFrame]:
-        return {f"{prefix}{Path(path).stem}": load_table(path) for path in files.get(kind, [])}
-
-    tables = loaded("measured") | loaded("studies")
-    for name, predicted in loaded("predicted").items():
-        tables[name] = tables[name].join(predicted) if name in tables else predicted
+    tables: dict[str, pd.DataFrame] = {}
+    for kind in ("measured", "studies", "predicted", "uncertainties", "coarser"):
+        for path in map(Path, files.get(kind, [])):
+            name = f"{kind}/{path.stem}" if kind in ("uncertainties", "coarser") else path.stem
+            table = load_table(path)
+            tables[name] = tables[name].join(table) if kind == "predicted" and name in tables else table
     for path in map(Path, files.get("lists", [])):
         read = json.loads if path.suffix == ".json" else yaml.safe_load
         tables[path.stem] = pd.DataFrame(read(path.read_text(encoding="utf-8")))
-    tables |= loaded("uncertainties", "uncertainties/") | loaded("coarser", "coarser/")
     return {Path(path).stem: load_dataset(path) for path in files.get("data", [])}, tables

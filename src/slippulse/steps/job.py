@@ -4,8 +4,6 @@ Loading the libraries takes longer than most jobs. So each process is forked fro
 project's own it loads itself, as that stands when the job starts.
 """
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import multiprocessing
@@ -15,16 +13,18 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from threading import Lock, Thread
 
-from ..data.origin import configured_by
+from ..data.files import CONFIGURATION
 from ..data.records import Origin, write_record
-from .progress import lines
+
+# Seconds between two lines of progress.
+BETWEEN = 2.0
 
 
 class JobFailed(Exception):
@@ -52,9 +52,9 @@ class Jobs:
 
     def __init__(self, program: Sequence[str] = ()) -> None:
         # Elsewhere libraries of the system do not all survive a fork.
-        linux = sys.platform == "linux"
+        self._forks = sys.platform == "linux"
         self._processes = (
-            multiprocessing.get_context("forkserver") if linux else multiprocessing.get_context("spawn")
+            multiprocessing.get_context("forkserver") if self._forks else multiprocessing.get_context("spawn")
         )
         self._processes.set_forkserver_preload([*program, "slippulse.steps.libraries"])
         # A process that starts looks after those that have ended: not while another thread does.
@@ -62,7 +62,7 @@ class Jobs:
 
     def begin(self) -> None:
         """Load the libraries while Snakemake still plans."""
-        if sys.platform == "linux":
+        if self._forks:
             Thread(target=self._wait_for, args=(self._processes.Process(),), daemon=True).start()
 
     def run(self, *job) -> None:
@@ -87,9 +87,7 @@ class Jobs:
             raise JobFailed(f"exit code {process.exitcode}")
 
 
-def run_job(
-    origin: Origin, name: str, files: Mapping, outputs: Mapping, settings: Mapping, log: str | Path
-) -> None:
+def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path) -> None:
     """Run one step as all that a process does.
 
     Parameters
@@ -101,26 +99,39 @@ def run_job(
     log : file for what the job says
     """
     began = time.monotonic()
+    os.environ[CONFIGURATION] = origin.configuration
     with logged(log):
-        with configured_by(origin.configuration):
-            import_module(f"slippulse.steps.{origin.step}").run(
-                files, outputs, {**settings, "progress": lines(name)}
-            )
+        step = import_module(f"slippulse.steps.{origin.step}")
+        step.run(files, outputs, {**settings, "progress": progress_of(name)})
         seconds = time.monotonic() - began
         write_record(origin, outputs, used(seconds))
     if not sys.stderr.isatty():
         sys.stderr.write(f"  {name}: {seconds:.1f} s\n")
 
 
+def progress_of(name: str) -> Callable[[float, int], None]:
+    """A function of how many runs are done and of how many there are, which says the time that is left."""
+    began = shown = time.monotonic()
+
+    def say(done: float, total: int) -> None:
+        nonlocal shown
+        now = time.monotonic()
+        if 0 < done < total and now - shown > BETWEEN:
+            shown = now
+            part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
+            left = (now - began) * (total / done - 1.0)
+            sys.stderr.write(f"  {name}: {part}, about {left:.0f} s left\n")
+            sys.stderr.flush()
+
+    return say
+
+
 def used(seconds: float) -> dict[str, float]:
     """What this process has used: time, time of a processor (s) and the most memory (MB)."""
     usage = resource.getrusage(resource.RUSAGE_SELF)
-    unit = 2**20 if sys.platform == "darwin" else 2**10
-    return {
-        "seconds": round(seconds, 2),
-        "processor_seconds": round(usage.ru_utime + usage.ru_stime, 2),
-        "memory_MB": round(usage.ru_maxrss / unit),
-    }
+    memory = usage.ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
+    processor = round(usage.ru_utime + usage.ru_stime, 2)
+    return {"seconds": round(seconds, 2), "processor_seconds": processor, "memory_MB": round(memory)}
 
 
 @contextlib.contextmanager
@@ -169,9 +180,7 @@ class _Both:
         self.streams = streams
 
     def write(self, text: str) -> int:
-        for stream in self.streams:
-            stream.write(text)
-        return len(text)
+        return max(stream.write(text) for stream in self.streams)
 
     def flush(self) -> None:
         for stream in self.streams:

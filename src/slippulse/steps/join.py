@@ -1,16 +1,12 @@
 """Put one file of each chunk of a simulation together: data, or a table of any kind."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-
 from ..data.join import join_datasets, join_grid_studies, join_tables
 from ..data.store import save_dataset
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import quantities
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: chunks, and for grid studies the joined measurements, finest. Outputs: joined. Settings: kind, record."""
     kind, chunks, joined = settings["kind"], files["chunks"], outputs["joined"]
     if kind == "data":

@@ -1,9 +1,5 @@
 """Write what theory predicts of every run of one simulation, or of one chunk of it."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-
 from ..configuration.expand import expand
 from ..data.store import save_table
 from ..predict.table import predictions
@@ -12,7 +8,7 @@ from ..predict.table import predictions
 DIGITS = 15
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: predicted. Settings: sweep (resolved), share and still, as in `measure` of the configuration."""
     scenes, _ = expand(settings["sweep"])
     save_table(predictions(scenes, settings["share"], settings["still"]), outputs["predicted"], DIGITS)

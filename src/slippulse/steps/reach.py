@@ -1,47 +1,90 @@
-"""Which source files a step depends on, from its imports; and what a module declares, without loading it."""
-
-from __future__ import annotations
+"""Which source files a step depends on, from its imports; what every result is made by, from the jobs."""
 
 import ast
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
-from pathlib import Path
+from pathlib import Path, PurePath
+from typing import NamedTuple
+
+from ..data.records import Origin, digest_of
 
 PACKAGE = Path(__file__).resolve().parents[1]
+ROOT = PACKAGE.parents[1]
+RESULTS = PurePath("results")
+# Every step loads libraries that are in it.
+LOCK = "requirements.lock"
 # Import statements as ruff formats them. To parse every module would take a second of each start of Snakemake.
 IMPORT = re.compile(r"^ *from (\.+)([\w.]*) import (?:\(([^)]*)\)|(.*))", re.M)
 
 
-def declared(module: str, name: str, default=None):
-    """The value of a constant of a module of the package, which must be written out there.
+class Job(NamedTuple):
+    """One job of the workflow: its step, the files that it reads and writes, what it takes from the configuration."""
+
+    step: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    settings: Mapping
+
+
+def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
+    """What each result is made by, by path below results/; the configuration is that of all that it is made from.
 
     Parameters
     ----------
-    module : dotted, below slippulse
-    name : of the constant
-    default : where the module has none
+    jobs : all of a configuration; what one reads below results/ another writes
     """
+    makers = {below(output): job for job in jobs for output in job.outputs}
+    found: dict[str, Origin] = {}
+
+    def origin(name: str) -> Origin:
+        if name not in found:
+            job = makers[name]
+            inside = frozenset(below(path) for path in job.inputs if is_result(path))
+            behind = sorted({origin(source).configuration for source in inside})
+            outside = tuple(sorted(path for path in job.inputs if not is_result(path)))
+            made = [below(output) for output in job.outputs]
+            configuration = digest_of([job.settings, *behind])
+            digest = _source_digest(tuple(modules_of(job.step, job.settings)), outside)
+            found.update(dict.fromkeys(made, Origin(made[0], job.step, configuration, digest, inside)))
+        return found[name]
+
+    for name in makers:
+        origin(name)
+    return found
+
+
+def is_result(path: str) -> bool:
+    """Whether a file is below results/."""
+    return PurePath(path).is_relative_to(RESULTS)
+
+
+def below(path: str) -> str:
+    """A path of a result, below results/."""
+    return PurePath(path).relative_to(RESULTS).as_posix()
+
+
+def modules_of(step: str, settings: Mapping) -> list[str]:
+    """Modules that a step runs: its own, and the figure or study that its settings name."""
+    rooms = {"figure": "figures", "study": "studies"}
+    return [f"steps.{step}", *(f"{rooms[key]}.{settings[key]}" for key in rooms if key in settings)]
+
+
+def declared(module: str, name: str, default=None):
+    """The value of a constant that is written out in a module, dotted below slippulse; a default where it has none."""
     text = _text(_file(module))
-    if f"\n{name} = " not in text:
-        return default
-    for node in ast.parse(text).body:
-        if isinstance(node, ast.Assign) and any(getattr(target, "id", "") == name for target in node.targets):
-            return ast.literal_eval(node.value)
+    if f"\n{name} = " in text:
+        for node in ast.parse(text).body:
+            if isinstance(node, ast.Assign) and any(getattr(at, "id", "") == name for at in node.targets):
+                return ast.literal_eval(node.value)
     return default
 
 
 def sources(*modules: str) -> list[str]:
-    """Files that any of some modules reaches by its imports, at its top or inside, and the data files they name.
+    """Files that any of some modules, dotted below slippulse, reaches by its imports, and the FILES that these name.
 
-    Parameters
-    ----------
-    modules : dotted, below slippulse
-
-    Returns
-    -------
-    paths relative to the project, sorted
+    Their paths are relative to the project, and sorted.
     """
     reached: set[Path] = set()
     pending = [_file(module) for module in modules]
@@ -54,29 +97,21 @@ def sources(*modules: str) -> list[str]:
         module = ".".join(path.relative_to(PACKAGE).with_suffix("").parts)
         for pattern in declared(module, "FILES", ()):
             reached.update(PACKAGE.glob(pattern))
-    root = PACKAGE.parents[1]
-    return sorted(path.relative_to(root).as_posix() for path in reached)
-
-
-def modules_of(step: str, settings: Mapping) -> list[str]:
-    """Modules that a step runs: its own, and the figure or study that its settings name."""
-    rooms = {"figure": "figures", "study": "studies"}
-    named = [f"{room}.{settings[key]}" for key, room in rooms.items() if key in settings]
-    return [f"steps.{step}", *named]
+    return sorted(path.relative_to(ROOT).as_posix() for path in reached)
 
 
 def digest_of_files(paths: Iterable[str | Path]) -> str:
     """Short digest of names and contents of files of the project, whatever their order."""
-    digest, root = hashlib.sha256(), PACKAGE.parents[1]
+    digest = hashlib.sha256()
     for path in sorted({str(path) for path in paths}):
-        digest.update(path.encode() + b"\0" + _content(root / path) + b"\0")
+        digest.update(path.encode() + b"\0" + _content(ROOT / path) + b"\0")
     return digest.hexdigest()[:16]
 
 
-def _file(module: str) -> Path:
-    """The file of a module or package below slippulse; empty for slippulse itself."""
-    path = PACKAGE.joinpath(*module.split(".")) if module else PACKAGE
-    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+@cache
+def _source_digest(modules: tuple[str, ...], texts: tuple[str, ...]) -> str:
+    """Of all that some modules reach, of texts of the project that they read, and of the lock."""
+    return digest_of_files([*sources(*modules), *texts, LOCK])
 
 
 @cache
@@ -89,29 +124,22 @@ def _text(path: Path) -> str:
     return path.read_text(encoding="utf-8")
 
 
+def _file(module: str) -> Path:
+    """The file of a module or package below slippulse; empty for slippulse itself."""
+    path = PACKAGE.joinpath(*module.split(".")) if module else PACKAGE
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
 @cache
-def _imported(path: Path) -> tuple[Path, ...]:
+def _imported(path: Path) -> list[Path]:
     """Files of the package that a file imports, with the packages that they are in."""
     inside = path.relative_to(PACKAGE).parent.parts
-    found = []
+    found = [_file(".".join(inside[:depth])) for depth in range(len(inside) + 1)]
     for dots, module, several, one in IMPORT.findall(_text(path)):
-        base = [*inside[: len(inside) - len(dots) + 1], *(module.split(".") if module else [])]
-        names = re.sub(r"#.*| as \w+", "", several or one)
-        found += _targets(base, re.findall(r"\w+", names))
-    packages = [_file(".".join(inside[:depth])) for depth in range(len(inside) + 1)]
-    return (*packages, *found)
-
-
-def _targets(base: list[str], names: list[str]) -> list[Path]:
-    """Files behind ``from base import names``."""
-    home = PACKAGE.joinpath(*base)
-    if not home.is_dir():
-        return [home.with_suffix(".py")]
-    found = [home / "__init__.py"]
-    for name in names:
-        if (home / name).is_dir():
-            # Which of its names are used cannot be seen from here.
+        home = PACKAGE.joinpath(*inside[: len(inside) - len(dots) + 1], *module.split(".") if module else ())
+        found.append(home / "__init__.py" if home.is_dir() else home.with_suffix(".py"))
+        for name in re.findall(r"\w+", re.sub(r"#.*| as \w+", "", several or one)):
+            # Of a package it cannot be seen from here which of its names are used.
             found += (home / name).rglob("*.py")
-        elif (home / f"{name}.py").exists():
-            found.append(home / f"{name}.py")
+            found += [home / f"{name}.py"] if (home / f"{name}.py").exists() else []
     return found

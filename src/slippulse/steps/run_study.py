@@ -1,15 +1,12 @@
 """Make the table of one study."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
 from importlib import import_module
 
 from ..data.store import save_table
 from .inputs import given
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: as `given` takes them. Outputs: table. Settings: study (its module), values (of the configuration)."""
     study = import_module(f"slippulse.studies.{settings['study']}")
     save_table(study.table(*given(files), settings["values"]), outputs["table"])

@@ -1,9 +1,9 @@
 """Run the scenes of one simulation on lattices, or those of one chunk of it, and write their data."""
 
-from __future__ import annotations
-
 import sys
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
 
 from ..configuration.expand import expand
 from ..data.store import save_dataset
@@ -11,19 +11,16 @@ from ..simulation.pool import run_all
 from ..solver.run import run_scene
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def simulate(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: data. Settings: simulation (its name), sweep (resolved), threads, progress (of `run_sweep`)."""
-    simulate(run_scene, outputs, settings)
-
-
-def simulate(solve: Callable, outputs: Mapping, settings: Mapping) -> None:
-    """The same by a solver of one scene."""
-    name, sweep = settings["simulation"], settings["sweep"]
+    sweep = settings["sweep"]
     scenes, samples = expand(sweep)
     data = run_all(solve, scenes, samples, sweep["record"], settings["threads"], settings.get("progress"))
-    flags = [flag for flag in data["run_flags"].values if flag]
-    for kind in sorted(set(flags)):
-        sys.stderr.write(
-            f"  {name}: {flags.count(kind)} of {len(scenes)} runs are flagged {kind}, run by run in the data\n"
-        )
+    flags = Counter(filter(None, data["run_flags"].values))
+    for kind in sorted(flags):
+        what = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
+        sys.stderr.write(f"  {settings['simulation']}: {what}\n")
     save_dataset(data, outputs["data"])
+
+
+run = partial(simulate, run_scene)

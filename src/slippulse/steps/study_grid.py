@@ -4,10 +4,9 @@ The coarser data are not kept; their measured tables are, one below the other wi
 has every number that the whole simulation's may have.
 """
 
-from __future__ import annotations
-
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from functools import partial
 
 import pandas as pd
 
@@ -21,13 +20,8 @@ from ..simulation.pool import run_all
 from ..solver.run import run_scene
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
     """Files: finest. Outputs: uncertainties, coarser. Settings: simulation, sweeps (by factor), measure, threads."""
-    study(run_scene, files, outputs, settings)
-
-
-def study(solve: Callable, files: Mapping, outputs: Mapping, settings: Mapping) -> None:
-    """The same by a solver of one scene."""
     name, sweeps, measure = settings["simulation"], settings["sweeps"], settings["measure"]
     tables = {}
     for factor in sorted(sweeps):
@@ -46,3 +40,6 @@ def study(solve: Callable, files: Mapping, outputs: Mapping, settings: Mapping) 
     save_table(found, outputs["uncertainties"])
     coarser = [table.assign(factor=factor) for factor, table in tables.items()]
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
+
+
+run = partial(study, run_scene)

@@ -1,9 +1,5 @@
 """Compute every claim's verdict and what was found beside, as JSON and as a page to read."""
 
-from __future__ import annotations
-
-import json
-from collections.abc import Mapping
 from pathlib import Path
 
 import yaml
@@ -12,26 +8,25 @@ from ..claims.entries import read_entries
 from ..claims.evidence import Evidence
 from ..claims.findings import findings
 from ..claims.paper import all_claims, finite
-from ..data.files import write_text
+from ..data.files import write_json, write_text
 from ..report.claims_page import claims_page
 from .inputs import given
 
 FILES = ("report/templates/claims.html", "report/templates/parts.html")
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: as `given` takes them, texts, statements. Outputs: json, findings, html.
 
     Settings: claims (tolerances in place of those with the texts), measure, published, damping_ratio, altered.
     """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = yaml.safe_load(Path(files["statements"]).read_text(encoding="utf-8"))["statements"]
-    _, tables = given(files)
-    evidence = Evidence(tables, texts["claims"], settings["measure"]["steady_tolerance"])
+    evidence = Evidence(given(files)[1], texts["claims"], settings["measure"]["steady_tolerance"])
     claims = all_claims(evidence, settings["published"], sentences)
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
-    write_text(json.dumps(claims, indent=1, ensure_ascii=False) + "\n", outputs["json"])
-    write_text(json.dumps(beside, indent=1, ensure_ascii=False) + "\n", outputs["findings"])
+    write_json(claims, outputs["json"])
+    write_json(beside, outputs["findings"])
     here = Path(outputs["html"]).parent
     listed = [path for kind in ("measured", "predicted", "uncertainties", "studies") for path in files[kind]]
     tables_of = [Path(path).relative_to(here).as_posix() for path in listed]

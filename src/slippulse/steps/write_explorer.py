@@ -1,9 +1,5 @@
 """Write the page on which a rupture is explored with sliders."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-
 from ..data.files import write_text
 from ..data.store import load_table
 from ..report.explorer_page import explorer_page
@@ -19,7 +15,7 @@ SIMULATIONS = [
 ]
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: law, measured. Outputs: html."""
     measured = [load_table(path) for path in files["measured"]]
     write_text(explorer_page(load_table(files["law"]), measured), outputs["html"])

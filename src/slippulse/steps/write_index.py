@@ -1,8 +1,5 @@
 """Write the page that leads to all results."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
 from pathlib import Path
 
 from ..data.files import write_text
@@ -11,7 +8,7 @@ from ..report.index_page import index_page
 FILES = ("report/templates/index.html", "report/templates/parts.html")
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: captions, summary, claims, provenance. Outputs: html. Settings: galleries (names by heading), scenes."""
     texts = {key: files[key] for key in ("captions", "summary")}
     page = index_page(Path(outputs["html"]).parent, texts, settings["galleries"], settings["scenes"])

@@ -1,11 +1,8 @@
 """Write the replication report and its supplement, each as HTML and PDF."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from contextvars import copy_context
 from pathlib import Path
 
 import yaml
@@ -19,16 +16,8 @@ from .inputs import given
 FILES = ("report/templates/report.html", "report/templates/report.css", "report/templates/report.typ")
 # What the report quotes.
 NEEDS = {
-    "measured": [
-        "scaling_displacement",
-        "space_time_displacement",
-        "space_time_stress",
-    ],
-    "predicted": [
-        "scaling_displacement",
-        "space_time_displacement",
-        "space_time_stress",
-    ],
+    "measured": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
+    "predicted": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["derivations", "extremes"],
 }
@@ -37,7 +26,7 @@ HEAD = (
 )
 
 
-def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: sources, claims, findings, shipped, citation, figures, and as `given` takes them.
 
     Outputs: html and pdf, lists with a file for each document; verdicts. Settings: figures (names), config.
@@ -49,7 +38,7 @@ def run(files: Mapping, outputs: Mapping, settings: Mapping) -> None:
         for document, *paths in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
             text = execute(inputs.manuscript / f"{document}.md", inputs)
             for write, path in zip((write_html, write_pdf), paths, strict=True):
-                writings.append(pool.submit(copy_context().run, write, text, inputs.manuscript, path))
+                writings.append(pool.submit(write, text, inputs.manuscript, path))
     for writing in writings:
         writing.result()
     verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
@@ -88,15 +77,19 @@ def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[st
     here = Path.cwd()
     project = next(path for path in (here, *here.parents) if (path / "config/config.yaml").exists())
     results = project / "results"
-    config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]
     folders = {"measured": "measurements", "predicted": "predictions"}
+    figures = sorted((results / "figures").glob("*.pdf"))
     files: dict[str, object] = {
         kind: [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
         for kind, names in NEEDS.items()
+    } | {
+        "claims": results / "claims.json",
+        "findings": results / "findings.json",
+        "figures": figures,
+        "shipped": project / "config/config.yaml",
+        "citation": project / "CITATION.cff",
+        "sources": [project / f"manuscript/{document}.md"],
     }
-    figures = sorted((results / "figures").glob("*.pdf"))
-    files |= {"claims": results / "claims.json", "findings": results / "findings.json", "figures": figures}
-    files |= {"shipped": project / "config/config.yaml", "citation": project / "CITATION.cff"}
-    files["sources"] = [project / f"manuscript/{document}.md"]
+    config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]
     names = [figure.stem for figure in figures]
     return names_for(inputs_of(files, {"config": config, "figures": names}), show, document)

@@ -13,7 +13,8 @@ from matplotlib.lines import Line2D
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
-from ..style import BLACK, Look, colour_scale, entry, prestress_inset
+from ...model.prestress import Prestress
+from ..style import BLACK, Look, colour_scale, entry
 from .scaling import chosen
 
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
@@ -142,3 +143,17 @@ def conditions(table: pd.DataFrame) -> str:
     column, symbol = ("gamma", r"\gamma") if held else ("damping_ratio", "b")
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
     return rf"$\Gamma = {int(held)}$, ${symbol} = {values}$"
+
+
+def prestress_inset(
+    axes: Axes, box: tuple[float, float, float, float], runs: pd.DataFrame, colours: Sequence, widths: float
+) -> None:
+    """Profiles of pre-stress of some runs in a box of a panel, over some widths of the widest Gaussian."""
+    inset = axes.inset_axes(box)
+    x = np.linspace(-widths, widths, 161) * runs["width"].max()
+    for (_, run), colour in zip(runs.iterrows(), colours, strict=True):
+        tau = Prestress(run["left"], run["right"], run["width"])(x)
+        inset.plot(x, tau, color=colour, linewidth=0.8)
+    inset.locator_params(nbins=3, integer=True)
+    inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=1.0)
+    inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)

@@ -1,0 +1,165 @@
+# What is read: the claims with their verdicts, the explorer, the report, what the results were made from, and the page
+# that leads to it all.
+
+from slippulse.claims.entries import read_entries
+from slippulse.data.provenance import source_files
+
+CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
+DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
+STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
+MEASURED = sorted({*simulations_of(*NEEDS.values()), *STUDIED})
+OWN_SWEEPS = figure_files(f"sweep_{name}" for name in OWN_SIMULATIONS)
+RESULTS = [
+    *figure_files(NEEDS),
+    *made("data", MEASURED),
+    *made("measured", MEASURED),
+    *made("uncertainties", STUDIED),
+    *made("studies", CONFIG.studies or STUDY_NEEDS),
+    *scene_files(SCENES),
+    *OWN_SWEEPS,
+    *(f"results/{name}" for name in ("claims.json", "findings.json", "claims.html", "explorer.html")),
+    *expand("results/manuscript/{document}.{ending}", document=DOCUMENTS, ending=("html", "pdf")),
+]
+# The claims first, so that they come first in Snakemake's own report too.
+EVERYTHING = ["results/claims.html", RESULTS, "results/provenance.json", "results/index.html"]
+WHOLE = ACCURACY.get("whole", True)
+# What a draft makes unless everything is asked for: the figures of the paper with what they are drawn from, and what
+# an overlay adds.
+FIRST = [
+    *figure_files(FIGURES),
+    *made("data", simulations_of(*(NEEDS[figure] for figure in FIGURES))),
+    *made("measured", {*OWN_SIMULATIONS}.union(*(NEEDS[figure].get("measured", []) for figure in FIGURES))),
+    *scene_files(OWN_SCENES),
+    *OWN_SWEEPS,
+]
+TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
+TITLES = {name: scene["title"] for name, scene in SCENES.items()}
+
+if config["claims"]:
+    try:
+        read_entries("manuscript/claims.yaml", config["claims"])
+    except ValueError as error:
+        refuse(f"The configuration is refused:\n{error}")
+
+
+rule write_claims:
+    input:
+        # Of front speeds at one level, without a grid study.
+        measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
+        coarser=made("coarser", CLAIM_SIMULATIONS),
+        uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
+        predicted=made("predicted", declared("claims.paper", "PREDICTED")),
+        studies=made(
+            "studies",
+            ["derivations", "open_choices", "published_figure", "published_scheme", "rate_dependence"],
+        ),
+        texts="manuscript/claims.yaml",
+        statements="manuscript/statements.yaml",
+    output:
+        json="results/claims.json",
+        findings="results/findings.json",
+        html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
+    priority: 1
+    params:
+        claims=config["claims"],
+        published=config["published"],
+        measure=config["measure"],
+        damping_ratio=config["model"]["damping_ratio"],
+        altered=changes(SHIPPED, config),
+    message:
+        "Judging the claims"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule write_explorer:
+    input:
+        law="results/studies/explorer_law.csv",
+        measured=made("measured", declared("steps.write_explorer", "SIMULATIONS")),
+    output:
+        html="results/explorer.html",
+    message:
+        "Writing results/explorer.html"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule write_report:
+    input:
+        "manuscript/references.bib",
+        expand("manuscript/{text}.yaml", text=TEXTS),
+        **inputs_of(declared("steps.write_report", "NEEDS")),
+        sources=expand("manuscript/{document}.md", document=DOCUMENTS),
+        claims="results/claims.json",
+        findings="results/findings.json",
+        figures=[f"results/figures/{name}.pdf" for name in NEEDS],
+        pictures=[f"results/figures/{name}.png" for name in NEEDS],
+        shipped="config/config.yaml",
+        citation="CITATION.cff",
+    output:
+        html=expand("results/manuscript/{document}.html", document=DOCUMENTS),
+        pdf=expand("results/manuscript/{document}.pdf", document=DOCUMENTS),
+        verdicts="results/manuscript/verdicts.yaml",
+    params:
+        figures=list(NEEDS),
+        config=config,
+    message:
+        "Writing the replication report"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule write_scenes_page:
+    input:
+        expand("results/scenes/{scene}.png", scene=SCENES),
+    output:
+        html="results/scenes/index.html",
+    params:
+        scenes=TITLES,
+    message:
+        "Writing the list of scenes"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule write_provenance:
+    input:
+        # It notes a digest of them all.
+        [path.as_posix() for path in source_files(".")],
+        results=RESULTS,
+        captions="manuscript/captions.yaml",
+    output:
+        provenance="results/provenance.json",
+        checksums="results/checksums.txt",
+        manifest="results/codecheck.yml",
+    params:
+        config=config,
+        shipped=SHIPPED,
+    message:
+        "Noting what the results were made from"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
+
+
+rule write_index:
+    input:
+        captions="manuscript/captions.yaml",
+        summary="manuscript/summary.yaml",
+        pictures=[f"results/figures/{name}.png" for name in NEEDS],
+        sweeps=OWN_SWEEPS,
+        scenes=scene_files(SCENES),
+        claims="results/claims.json",
+        findings="results/findings.json",
+        provenance="results/provenance.json",
+        report="results/manuscript/replication.html",
+        explorer="results/explorer.html",
+    output:
+        html="results/index.html",
+    params:
+        galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES}
+        | ({"Sweeps of your own": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
+        scenes=TITLES,
+    message:
+        "Writing results/index.html, the page to open"
+    run:
+        run_step(rule, wildcards, input, output, params, threads)
