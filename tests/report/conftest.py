@@ -25,7 +25,8 @@ CLAIM = {
     "predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "tolerance": 1e-3, "verdict": "reproduced",
     "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0, "held": None, "failed": None, "undecided": None,
     "ninety": None, "largest": None, "exponent": None, "exponent_uncertainty": None, "tolerance_exponent": None,
-    "exact_median": None, "exact_largest": None, "further": {}, "figure": "fig01_one",
+    "exact_median": None, "exact_largest": None, "further": {}, "flips_at": [], "choices": [],
+    "figure": "fig01_one",
 }  # fmt: skip
 EDGE = {
     "family": "level", "value": "tau_0 = 0.999", "quantity": "front speed", "error": 1e-4, "tolerance": 1e-2,

@@ -11,7 +11,7 @@ import yaml
 from PIL import Image
 from report.conftest import read
 
-from slippulse.claims.entries import AS_PRINTED, WHY_NONE, claims_of, coverage
+from slippulse.claims.reading import AS_PRINTED, WHY_NONE, claims_of, coverage
 from slippulse.claims.rules import KINDS
 from slippulse.report.gallery import NAMED, Gallery
 from slippulse.report.manuscript import DOCUMENTS

@@ -97,7 +97,7 @@ def test_regions_end_where_chi_square_has_risen_enough(table, release, part):
 def test_an_end_beyond_the_fits_is_not_known(table):
     ratio = table["damping_ratio"]
     kept = (table["part"] == "profile") & (table["release"] == "elastic") & (ratio < 0.29) & (ratio > 0.1)
-    low, high = inference(table[kept], ("elastic",))["elastic"]["regions"][0.95]["damping_ratio"]
+    low, high = inference(table[kept])["elastic"]["regions"][0.95]["damping_ratio"]
     assert np.isnan(low) and np.isfinite(high)
 
 

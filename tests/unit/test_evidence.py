@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from slippulse.claims.entries import read_entries
-from slippulse.claims.evidence import Evidence, NoRuns, agreeing
-from slippulse.claims.paper import written
+from slippulse.claims.evidence import Evidence, agreeing
+from slippulse.claims.paper import findings, written
+from slippulse.claims.reading import read_entries
 from slippulse.claims.rules import VERDICTS
 from slippulse.measure.uncertainty import grid_tables
 
@@ -18,13 +18,10 @@ YES, CAVEAT, _, NO, OPEN, NONE = VERDICTS
 ENTRIES = {
     "equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]},
     "estimate": {
-        "kind": "approximate",
-        "tolerance": 0.2,
-        "tolerance_exponent": 0.1,
+        "kind": "approximate", "tolerance": 0.2, "tolerance_exponent": 0.1, "sentences": [],
         "follows_from": ["equation"],
     },
-    "every": {"kind": "qualitative", "tolerance": 0.0},
-}
+}  # fmt: skip
 LEVELS = [0.2, 0.4, 0.6, 0.8]
 
 
@@ -36,23 +33,18 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
     ]
     if flagged is not None:
         tables[0].loc[flagged, "run_flags"] = "unresolved"
-    study = grid_tables(tuple(tables), (2.0, 4.0), ("left", "run_flags"))
     coarser = [table.assign(factor=factor) for table, factor in zip(tables[1:], (2.0, 4.0), strict=True)]
-    finest = tables[0].assign(paper=LEVELS, exact_number=[level / 1.1 for level in LEVELS])
-    return Evidence(
-        {
-            "sweep": finest,
-            "coarser/sweep": pd.concat(coarser, ignore_index=True),
-            "uncertainties/sweep": study,
-        },
-        ENTRIES,
-        0.02,
-    )
+    ends = ["other", "arrested", "arrested", "undecided"]
+    found = {
+        "sweep": tables[0].assign(paper=LEVELS, exact_number=np.array(LEVELS) / 1.1, exact_regime=ends),
+        "coarser/sweep": pd.concat(coarser, ignore_index=True),
+        "uncertainties/sweep": grid_tables(tuple(tables), (2.0, 4.0), ("left", "run_flags")),
+    }
+    return Evidence(found, ENTRIES, 0.02)
 
 
 def exact(found: Evidence):
-    table = found.runs("sweep")
-    return found.exact("equation", table["extrapolated_number"], table["uncertainty_number"], table["paper"])
+    return found.exact("equation", found.lattices("sweep")[0], "number", "paper")
 
 
 def test_an_equation_is_judged_at_spacing_zero_and_one_run_that_is_off_fails_it_unless_it_is_flagged():
@@ -85,52 +77,52 @@ def test_an_estimate_is_judged_by_its_median_and_its_exponent_not_by_the_worst_r
     claim = estimate(lambda level, factor: level**1.2 * 1.1)
     assert claim["verdict"] == NO and claim["exponent"] == pytest.approx(1.2)
     # Its uncertainty is at least what one level moves it.
-    claim = estimate(lambda level, factor: level * (1.15 if level == 0.8 else 1.0))
-    assert claim["exponent_uncertainty"] > 0.03
+    assert (
+        estimate(lambda level, factor: level * (1.15 if level == 0.8 else 1.0))["exponent_uncertainty"] > 0.03
+    )
 
 
 def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
-    def decided(told="", exactly=None):
-        found = evidence(lambda level, factor: level if factor == 1.0 or level != 0.6 else 0.0)
-        return found.agreed("sweep", "left > 0.3", "number > 0.5", told, exactly)
-
-    assert decided() == [False, None, True]
-    theory = decided(exactly=lambda t: (t["left"] > 0.5).where(t["left"] < 0.7, None))
-    assert theory == [False, True, True]
+    found = evidence(lambda level, factor: level if factor == 1.0 or level != 0.6 else 0.0)
+    assert found.agreed("sweep", "left > 0.3", "number > 0.5") == [False, None, True]
+    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["arrested"]) == [False, True, True]
+    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["other"]) == [False, False, True]
     # Where a lattice has not run long enough it is not asked.
-    assert decided("left < 0.7") == [False, None, None]
+    assert found.agreed("sweep", "left > 0.3", "number > 0.5", "left < 0.7") == [False, None, None]
+    assert found.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
     assert agreeing([True, None, False], [True, None, True]) == [True, None, None]
 
 
 def test_a_qualitative_claim_counts_runs():
-    claim = evidence().qualitative("every", [True] * 38 + [None] * 2)
-    counts = {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
-    assert claim == claim | counts
-    assert evidence().qualitative("every", [np.bool_(True), np.bool_(False)])["verdict"] == NO
-    assert evidence().qualitative("every", [])["verdict"] == NONE
+    claim = evidence().qualitative([True] * 38 + [None] * 2)
+    assert claim == claim | {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
+    assert evidence().qualitative([np.bool_(True), np.bool_(False)])["verdict"] == NO
+    assert evidence().qualitative([])["verdict"] == NONE
 
 
 def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
     claim = exact(evidence()) | evidence().compared("sweep", "number")
-    found = written(claim, ENTRIES["equation"], "III A")
+    found = written("equation", claim, ENTRIES["equation"], "III A")
     assert found["exact_median"] == found["exact_largest"] == pytest.approx(0.1)
     expected = {
+        "id": "equation",
         "counted": True,
         "follows_from": [],
         "figure_or_section": "III A",
-        "tolerance": 0.01,
         "why": "",
     }
-    assert found == found | expected
+    assert found == found | expected | {"tolerance": 0.01}
     nothing = evidence().approximate("estimate", [pd.DataFrame({"a": [np.nan], "b": 1.0})], "a", "b")
-    found = written(nothing, ENTRIES["estimate"] | {"sentences": []}, "")
+    found = written("estimate", nothing, ENTRIES["estimate"], "")
     assert found["verdict"] == NONE and found["measured"] is None and not found["counted"]
     json.dumps(found, allow_nan=False)
 
 
 def test_what_is_missing_is_named(tmp_path):
-    with pytest.raises(NoRuns, match="sweep"):
-        evidence().runs("sweep", where="left > 1")
+    texts = {"none": {"numbers": [{"table": "sweep", "where": "left > 1", "take": {"a": "left.max()"}}]}}
+    texts = {"some": {"numbers": [{"table": "sweep", "take": {"a": "left.max()"}}]}} | texts
+    written = findings(evidence(), 0.1, {id: entry | {"text": "{{ n.a }}"} for id, entry in texts.items()})
+    assert [finding["text"] for finding in written] == ["0.800", "not measured"]
     path, other = tmp_path / "claims.yaml", {"tolerance": 0.2}
     path.write_text("claims: {one: {tolerance: 0.1}}\n", encoding="utf-8")
     assert read_entries(path, {"one": other})["claims"]["one"] == other

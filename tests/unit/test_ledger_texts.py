@@ -18,7 +18,7 @@ from slippulse.claims.reading import (
 CLAIM = {
     "id": "one", "kind": "exact", "verdict": "not reproduced", "predicted": 1.0, "measured": 1.25, "uncertainty": 0.01,
     "tolerance": 0.2, "deviation": 0.25, "note": "", "source": "runs", "further": {}, "why": "", "counted": True,
-    "follows_from": [],
+    "follows_from": [], "flips_at": [], "choices": [],
 }  # fmt: skip
 ESTIMATE = {"kind": "approximate", "exponent": None, "exact_largest": None, "largest": None}
 ALWAYS = {"kind": "qualitative", "held": 4, "failed": 0, "undecided": 0, "runs": 5}
@@ -105,9 +105,7 @@ def test_findings_and_further_numbers_are_asked_for_by_name():
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "else": 1.0}
     ledger = Ledger([CLAIM | {"further": further}], found)
     assert ledger.listed("one", "apart") == "3 arrested; 2 growing"
-    assert ledger.found("ours").gap == 0.5 and ledger.found("no").gap is None
-    with pytest.raises(AttributeError):
-        _ = ledger.found("ours").width
+    assert ledger.found("ours").gap == 0.5 and ledger.found("no") is None
     with pytest.raises(ValueError, match="finding: 'none'; allowed: ours, no"):
         ledger.found("none")
     with pytest.raises(ValueError, match="claim: 'no'; allowed: one"):

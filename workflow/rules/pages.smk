@@ -1,7 +1,7 @@
 # What is read: the claims with their verdicts, the explorer, the report, what the results were made from, and the page
 # that leads to it all.
 
-from slippulse.claims.entries import read_entries
+from slippulse.claims.reading import read_entries
 from slippulse.data.provenance import source_files
 
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import permutations
-from typing import Any
+from typing import Any, TypeVar
 
 from ..data.numerals import percent, setting
 from . import rules
@@ -16,34 +16,45 @@ Chosen = dict[str, float | str]
 LAST = "last release"
 # What a combination has beside its choices.
 FOUND = ("deviation", "exponent", "verdict", "holds")
+# What each choice is called in a sentence.
+NAMES = {
+    "fraction": "the fraction of the path that counts as arrest",
+    "release": "the release rule",
+    "damping_ratio": r"the damping ratio $\beta/\Delta x$",
+    "nucleation": "the nucleation",
+}
+Runs = TypeVar("Runs")
 
 
-def over_choices(claims: Sequence[tuple[Chosen, Claim]], shown: Claim | None = None) -> Claim:
+def over_choices(
+    runs: Iterable[tuple[Chosen, Runs]], judge: Callable[[Runs], Claim], shown: Claim | None = None
+) -> Claim:
     """One claim with the verdict over all combinations of choices.
 
     Parameters
     ----------
-    claims : combinations of choices by name, each with the claim judged at it
+    runs : combinations of choices by name, each with what ``judge`` judges the claim by
     shown : whose numbers stand with it; without, those of the first combination
     """
+    pairs = [(choice, judge(tables)) for choice, tables in runs]
+    claims = [claim for _, claim in pairs]
     rows: list[dict[str, Any]] = [
-        {**choice, "deviation": claim.get("deviation"), "exponent": claim.get("exponent")}
-        | {"verdict": claim["verdict"], "holds": rules.HOLDS.get(claim["verdict"])}
-        for choice, claim in claims
+        choice
+        | {name: claim.get(name) for name in ("deviation", "exponent", "verdict")}
+        | {"holds": rules.HOLDS.get(claim["verdict"])}
+        for choice, claim in pairs
     ]
-    verdict, pairs = rules.over_choices([row["verdict"] for row in rows]), decisive(rows)
-    found = (claims[0][1] if shown is None else shown) | {
-        "choices": rows, "choice": next(iter(pairs), ""), "verdict": verdict,
+    verdict, decided = rules.over_choices([row["verdict"] for row in rows]), decisive(rows)
+    found = (shown or claims[0]) | {
+        "choices": rows, "choice": next(iter(decided), ""), "verdict": verdict,
         "combinations": len(rows), "holds_at": sum(row["holds"] is True for row in rows),
     }  # fmt: skip
-    if all("at" in claim for _, claim in claims):
-        ats = [claim["at"] for _, claim in claims]
-        found["at"] = lambda tolerance: rules.over_choices([at(tolerance) for at in ats])
+    if all("at" in claim for claim in claims):
+        found["at"] = lambda tolerance: rules.over_choices([claim["at"](tolerance) for claim in claims])
     if verdict == rules.DEPENDS:
-        sides = "; on ".join(
-            f"{NAMES[name]}: {sides_of(name, pair, 'held' in found)}" for name, pair in pairs.items()
-        )
-        found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations. It depends on {sides}."
+        sides = [f"{NAMES[name]}: {sides_of(name, pair, 'held' in found)}" for name, pair in decided.items()]
+        found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations."
+        found["why"] += f" It depends on {'; on '.join(sides)}."
     elif verdict == "reproduced with caveat":
         unsure = next(row for row in rows if row["verdict"] == verdict)
         where = " and ".join(f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure)
@@ -62,21 +73,12 @@ def sides_of(name: str, pair: Iterable[Mapping], counted: bool) -> str:
     return " and ".join(map(side, pair))
 
 
-# What each choice is called in a sentence.
-NAMES = {
-    "fraction": "the fraction of the path that counts as arrest",
-    "release": "the release rule",
-    "damping_ratio": r"the damping ratio $\beta/\Delta x$",
-    "nucleation": "the nucleation",
-}
-
-
 def named(value: float | str) -> str:
     """A value of a choice."""
     return value if isinstance(value, str) else setting(value)
 
 
-def decisive(choices: Sequence[Mapping]) -> dict[str, tuple[Mapping, Mapping]]:
+def decisive(choices: Sequence[Mapping]) -> dict[str, Sequence[Mapping]]:
     """Choices that, changed alone, decide whether a claim holds, first the one that moves the deviation most.
 
     Returns
@@ -85,7 +87,7 @@ def decisive(choices: Sequence[Mapping]) -> dict[str, tuple[Mapping, Mapping]]:
     none decides, the choice that moves the deviation most, without a pair that does
     """
     moves: dict[str, list[tuple[float, Mapping, Mapping]]] = {}
-    quiet: dict[str, tuple[bool, float]] = {}
+    largest: dict[str, tuple[bool, float]] = {}
     for one, other in permutations(choices, 2):
         apart = [name for name in {*one, *other} - {*FOUND} if one.get(name) != other.get(name)]
         if len(apart) != 1 or apart[0] not in NAMES or None in (one["deviation"], other["deviation"]):
@@ -93,9 +95,11 @@ def decisive(choices: Sequence[Mapping]) -> dict[str, tuple[Mapping, Mapping]]:
         move = abs(one["deviation"] - other["deviation"])
         # A lattice is a corner; the exact solution has every combination.
         rank = one.get("solution") == "exact", move
-        quiet[apart[0]] = max(rank, quiet.get(apart[0], rank))
+        largest[apart[0]] = max(rank, largest.get(apart[0], rank))
         if one["holds"] and other["holds"] is False:
             moves.setdefault(apart[0], []).append((move, one, other))
-    order = sorted(moves, key=quiet.__getitem__, reverse=True)
-    closest = {name: min(moves[name], key=lambda each: each[0])[1:] for name in order}
-    return closest or dict.fromkeys(sorted(quiet, key=quiet.__getitem__)[-1:], ({}, {}))
+    order = sorted(largest, key=largest.__getitem__)
+    closest: dict[str, Sequence[Mapping]] = {
+        name: min(moves[name], key=lambda each: each[0])[1:] for name in order[::-1] if name in moves
+    }
+    return closest or dict.fromkeys(order[-1:], ())

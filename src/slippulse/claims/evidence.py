@@ -12,17 +12,17 @@ import numpy as np
 import pandas as pd
 
 from ..measure.fronts import straight_line
+from ..measure.regime import UNDECIDED
 from ..measure.uncertainty import GridStudy, grid_study
 from . import rules
 
 NAN = float("nan")
-# What was found about one claim: id and verdict, and where it has them
+# What was found about one claim: its verdict, and where it has them
 # predicted, measured: numbers; for an approximate claim 1 and the median ratio, for a qualitative one the runs and how
 #     many it holds in, for a reading the degrees of freedom and chi-square;
 # uncertainty: of `measured`, numerically; for a qualitative claim how many runs are undecided;
 # deviation: what stands beside the tolerance: relative deviation, its median, fraction of runs that contradict, p;
-# runs and left_out (those without numbers), held, failed and undecided; ninety and largest (quantile and largest
-#     deviation of the runs), exponent and exponent_uncertainty, exact_median and exact_largest (`Evidence.compared`);
+# runs and left_out (those without numbers), held, failed and undecided; `ESTIMATE`;
 # choices: of each admissible combination of what the paper leaves open its values by name, deviation, exponent, verdict
 #     and holds (None where that is undecided); combinations and holds_at: how many there are, and how many hold;
 #     choice: the one that moves the deviation most;
@@ -30,6 +30,8 @@ NAN = float("nan")
 # further: other numbers, by what they are; why: one sentence, where the numbers do not say it; note and source in place
 #     of those that stand with the text.
 Claim = dict[str, Any]
+# Of an approximate claim: quantile and largest deviation of the runs, exponent, distance from the exact theory.
+ESTIMATE = ("ninety", "largest", "exponent", "exponent_uncertainty", "exact_median", "exact_largest")
 
 
 class NoRuns(Exception):
@@ -44,21 +46,16 @@ def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
     return np.broadcast_to(np.asarray(found), len(table))
 
 
+def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
+    """measured/predicted of each run, both expressions; NaN where it has none."""
+    return pd.Series(evaluated(table, measured) / evaluated(table, predicted), table.index, float)
+
+
 def exponent(table: pd.DataFrame) -> float:
     """Exponent of column measured against predicted: slope of a straight line in logarithmic axes."""
-    x, y = np.log(table["predicted"]), np.log(table["measured"])
-    good = np.isfinite(x) & np.isfinite(y)
-    return straight_line(x[good], y[good])[0] if good.sum() > 2 else NAN
-
-
-def ratios(table: pd.DataFrame, measured: str, predicted: str) -> np.ndarray:
-    """measured/predicted of each run, NaN where it has none."""
-    return evaluated(table, measured).astype(float) / evaluated(table, predicted).astype(float)
-
-
-def deviations(table: pd.DataFrame, measured: str, predicted: str) -> np.ndarray:
-    """|measured/predicted - 1| of each run, NaN where it has none."""
-    return np.abs(ratios(table, measured, predicted) - 1.0)
+    logs = np.log(table[["predicted", "measured"]].astype(float))
+    x, y = logs[np.isfinite(logs).all(axis=1)].to_numpy().T
+    return straight_line(x, y)[0] if len(x) > 2 else NAN
 
 
 def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
@@ -97,9 +94,9 @@ class Evidence:
             kept = finest["run_flags"].isna() | (finest["run_flags"] == "")
             self._lattices[name] = [level[kept] for level in levels]
 
-    def assign(self, simulation: str, **columns: Callable[[pd.DataFrame], pd.Series]) -> None:
+    def assign(self, simulation: str, more: Callable[[pd.DataFrame], Mapping[str, pd.Series]]) -> None:
         """Add columns that are computed from the others on each lattice."""
-        self._lattices[simulation] = [level.assign(**columns) for level in self._lattices[simulation]]
+        self._lattices[simulation] = [level.assign(**more(level)) for level in self._lattices[simulation]]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
         """Runs of some simulations one below the other, by number: on the finest lattice, the middle and the coarsest.
@@ -113,43 +110,32 @@ class Evidence:
             chosen.append([level[kept] for level in self._lattices[name]])
         return [pd.concat(level) for level in zip(*chosen, strict=True)]
 
-    def runs(self, simulation: str, where: str = "") -> pd.DataFrame:
-        """Runs on the finest lattice.
-
-        Raises
-        ------
-        NoRuns
-        """
-        table = self.lattices(simulation, where=where)[0]
-        if table.empty:
-            raise NoRuns(simulation)
-        return table
-
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
         return float(self.entries[id]["tolerance"])
 
     # A claim of each kind
 
-    def exact(self, id: str, extrapolated: Any, uncertainty: Any, predicted: Any) -> Claim:
-        """An equation, by values of its runs at spacing 0, and what the paper has: 0 is compared without division."""
-        value, blur = (np.asarray(each, float) for each in (extrapolated, uncertainty))
-        paper = np.broadcast_to(np.asarray(predicted, float), value.shape)
+    def exact(self, id: str, table: pd.DataFrame, quantity: str, predicted: str) -> Claim:
+        """An equation, by values of its runs at spacing 0; where 0 is predicted, without division."""
+        names = f"extrapolated_{quantity}", f"uncertainty_{quantity}", predicted
+        value, blur, paper = (evaluated(table, name).astype(float) for name in names)
         scale = np.where(paper == 0.0, 1.0, np.abs(paper))
-        deviation = np.abs(value - paper) / scale
-
-        def at(tolerance: float) -> str:
-            return rules.exact(deviation, blur / scale, tolerance)[0]
-
-        verdict, run = rules.exact(deviation, blur / scale, self.tolerance(id))
-        usable = int(np.isfinite(deviation + blur).sum())
-        claim = {"id": id, "verdict": verdict, "at": at, "runs": usable, "left_out": len(value) - usable}
-        numbers = {"predicted": paper, "measured": value, "uncertainty": blur, "deviation": deviation}
-        return claim if run is None else claim | {name: float(each[run]) for name, each in numbers.items()}
+        numbers = {"predicted": paper, "measured": value, "uncertainty": blur}
+        numbers["deviation"] = off = np.abs(value - paper) / scale
+        verdict, run = rules.exact(off, blur / scale, self.tolerance(id))
+        usable = int(np.isfinite(off + blur).sum())
+        return {
+            "verdict": verdict,
+            "at": lambda tolerance: rules.exact(off, blur / scale, tolerance)[0],
+            "runs": usable,
+            "left_out": len(value) - usable,
+            **({} if run is None else {name: float(each[run]) for name, each in numbers.items()}),
+        }
 
     def studied(self, tables: Sequence[pd.DataFrame], number: Callable[[pd.DataFrame], float]) -> GridStudy:
         """Grid study of a number that is computed from a table, as a median is; of one table, no uncertainty."""
-        values = [number(table) for table in tables]
+        values = [float(number(table)) for table in tables]
         if len(tables) == 1:
             return GridStudy(values[0], values[0], NAN, 0.0)
         return grid_study(values, [float(table["factor"].dropna().iloc[0]) for table in tables[1:]])
@@ -165,29 +151,25 @@ class Evidence:
         measured, predicted : expressions over columns
         levels : columns of which one level at a time is left out, for the uncertainty of the exponent
         """
-        what = "measured", "predicted"
         tables = [
             table.reindex(columns=[*levels, "factor"]).assign(
-                measured=evaluated(table, measured).astype(float),
-                predicted=evaluated(table, predicted).astype(float),
+                measured=evaluated(table, measured),
+                predicted=evaluated(table, predicted),
+                ratio=lambda t: t["measured"].astype(float) / t["predicted"],
             )
             for table in tables
         ]
-        each = deviations(tables[0], *what)
+        finest = tables[0]
+        each = (finest["ratio"] - 1.0).abs()
         each = each[np.isfinite(each)]
-        names = ("ninety", "largest", "exponent", "exponent_uncertainty", "exact_median", "exact_largest")
-        claim: Claim = dict.fromkeys(names) | {
-            "id": id,
-            "runs": each.size,
-            "left_out": len(tables[0]) - each.size,
-        }
+        claim: Claim = {"runs": each.size, "left_out": len(finest) - each.size}
         if not each.size:
             return claim | {"verdict": "not testable"}
-        median = self.studied(tables, lambda t: float(np.nanmedian(deviations(t, *what))))
-        ratio = self.studied(tables, lambda t: float(np.nanmedian(ratios(t, *what))))
+        median = self.studied(tables, lambda t: (t["ratio"] - 1.0).abs().median())
+        ratio = self.studied(tables, lambda t: t["ratio"].median())
         slope, allowed = None, self.entries[id].get("tolerance_exponent")
         if allowed is not None:
-            found, finest = self.studied(tables, exponent), tables[0]
+            found = self.studied(tables, exponent)
             without = [
                 exponent(finest[finest[name] != level]) for name in levels for level in finest[name].unique()
             ]
@@ -196,17 +178,15 @@ class Evidence:
             claim |= {"exponent": slope[0], "exponent_uncertainty": slope[1]}
 
         def at(tolerance: float) -> str:
-            return rules.approximate(
-                (median.value, median.uncertainty), tolerance, slope, float(allowed or 0.0)
-            )
+            return rules.approximate(median[::3], tolerance, slope, float(allowed or 0.0))
 
         return claim | {
             "verdict": at(self.tolerance(id)), "at": at, "predicted": 1.0, "measured": ratio.value,
             "uncertainty": ratio.uncertainty, "deviation": median.value,
-            "ninety": float(np.quantile(each, 0.9)), "largest": float(each.max()),
+            "ninety": float(each.quantile(0.9)), "largest": float(each.max()),
         }  # fmt: skip
 
-    def qualitative(self, id: str, decided: Iterable[bool | None], condition: bool = False) -> Claim:
+    def qualitative(self, decided: Iterable[bool | None], condition: bool = False) -> Claim:
         """An always, never or every, by whether it holds in each run, None where that is undecided.
 
         ``condition``: whether it needs one that the paper does not state.
@@ -216,18 +196,13 @@ class Evidence:
         held = sum(bool(found) for found in decided)
         failed = runs - undecided - held
         return {
-            "id": id, "verdict": rules.qualitative(held, failed, undecided, condition), "predicted": runs,
+            "verdict": rules.qualitative(held, failed, undecided, condition), "predicted": runs,
             "measured": held, "uncertainty": undecided, "deviation": failed / runs if runs else NAN,
             "runs": runs, "held": held, "failed": failed, "undecided": undecided,
         }  # fmt: skip
 
     def agreed(
-        self,
-        simulation: str,
-        where: str,
-        holds: str,
-        told: str = "",
-        exactly: Callable[[pd.DataFrame], pd.Series] | None = None,
+        self, simulation: str, where: str, holds: str, told: str = "", ends: Sequence[str] = ()
     ) -> list[bool | None]:
         """Whether something holds in each chosen run: by both finest lattices, else by the exact solution, else None.
 
@@ -236,19 +211,22 @@ class Evidence:
         where : which runs
         holds : what is to hold, on one lattice
         told : which runs last long enough for a lattice to tell
-        exactly : whether it holds by the exact solution; None or NA where that does not tell
+        ends : it holds by the exact solution where the run ends in one of these regimes; without, that is not asked
         """
         finest, middle, *_ = self.lattices(simulation, where=where)
         both = agreeing(evaluated(finest, holds), evaluated(middle, holds))
-        theory = [None] * len(finest) if exactly is None else exactly(finest).tolist()
+        exact = finest["exact_regime"] if ends else [UNDECIDED] * len(finest)
         return [
-            found if seen and found is not None else None if exact is None or pd.isna(exact) else bool(exact)
-            for seen, found, exact in zip(evaluated(finest, told), both, theory, strict=True)
+            found if seen and found is not None else None if end == UNDECIDED else end in ends
+            for seen, found, end in zip(evaluated(finest, told), both, exact, strict=True)
         ]
 
     def compared(self, simulation: str, quantity: str) -> dict[str, float]:
         """Median and largest deviation of runs at spacing 0 from the exact theory."""
-        table = self.lattices(simulation)[0]
-        off = deviations(table, f"extrapolated_{quantity}", f"exact_{quantity}")
+        off = (
+            ratios(self.lattices(simulation)[0], f"extrapolated_{quantity}", f"exact_{quantity}")
+            .sub(1.0)
+            .abs()
+        )
         off = off[np.isfinite(off)]
-        return {"exact_median": float(np.median(off)), "exact_largest": float(off.max())} if off.size else {}
+        return {"exact_median": float(off.median()), "exact_largest": float(off.max())} if off.size else {}

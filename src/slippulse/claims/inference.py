@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -30,8 +29,7 @@ def curve(profile: pd.DataFrame) -> pd.DataFrame:
     fine = np.linspace(at[0], at[-1], FINE)
     out = pd.DataFrame(CubicSpline(at, nodes.to_numpy())(fine), columns=nodes.columns)
     fitted = profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    out["chi2"] = (out[fitted] ** 2).sum(axis=1)
-    return out.assign(damping_ratio=np.exp(fine))
+    return out.assign(chi2=(out[fitted] ** 2).sum(axis=1), damping_ratio=np.exp(fine))
 
 
 def likely(level: float, parameters: int = 1) -> float:
@@ -39,15 +37,12 @@ def likely(level: float, parameters: int = 1) -> float:
     return float(chdtri(parameters, 1.0 - level))
 
 
-def inference(
-    table: pd.DataFrame, releases: Sequence[str] = ("total", "elastic"), part: str = "profile"
-) -> dict[str, Any]:
+def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
     """What the figure says of its parameters, under each release rule and over both.
 
     Parameters
     ----------
     table : results/studies/published_figure.csv, or the figure's own table
-    releases : rules that were fitted
     part : "profile", or "arrows" for the fit of the drawn arrows too
 
     Returns
@@ -58,23 +53,19 @@ def inference(
 
     Source: profile likelihood; the readings have independent Gaussian errors.
     """
-    profile = table[table["part"] == part]
-    found: dict[str, dict[str, Any]] = {}
-    for release in releases:
-        rows = profile[profile["release"] == release]
-        names = list(rows["reading"].unique())
+    found: dict[str, Any] = {}
+    for release, rows in table[table["part"] == part].groupby("release"):
         line = curve(rows)
         best = line.loc[line["chi2"].idxmin()]
         # tau_0, gamma and the damping ratio.
         dof = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
-        found[release] = {
+        found[str(release)] = {
             "release": release,
-            "chi2": float(best["chi2"]),
             "dof": dof,
             "p_value": float(chdtrc(dof, best["chi2"])),
-            **{name: float(best[name]) for name in ("damping_ratio", "dx", "tau0", "gamma")},
+            **{name: float(best[name]) for name in ("chi2", "damping_ratio", "dx", "tau0", "gamma")},
             "regions": {level: _regions(line, level) for level in CONFIDENCE},
-            "pulls": {name: float(best[name]) for name in names},
+            "pulls": {name: float(best[name]) for name in rows["reading"].unique()},
         }
     order = sorted(found.values(), key=lambda entry: entry["chi2"])
     return found | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
@@ -82,10 +73,6 @@ def inference(
 
 def right_panel(table: pd.DataFrame) -> dict:
     """What the largest velocity of the right panel says, its pre-stress being read off and not fitted.
-
-    Parameters
-    ----------
-    table : as of `inference`
 
     Returns
     -------
@@ -96,13 +83,13 @@ def right_panel(table: pd.DataFrame) -> dict:
     """
     rows = table[table["part"] == "stress"]
     worst = rows.loc[rows["pull"].abs().idxmax()]
-    fit = worst["width"] * rows["drawn"] / (rows["exact"] + rows["correction"])
+    chi2 = float(worst["pull"] ** 2)
     return {
-        "chi2": float(worst["pull"] ** 2),
+        "chi2": chi2,
         "dof": 1,
-        "p_value": float(chdtrc(1, worst["pull"] ** 2)),
+        "p_value": float(chdtrc(1, chi2)),
         "spread": float(np.ptp(rows["pull"])),
-        "width": float(fit.mean()),
+        "width": float((worst["width"] * rows["drawn"] / (rows["exact"] + rows["correction"])).mean()),
         "width_error": float(worst["width"] * worst["reading_error"] / worst["exact"]),
     }
 

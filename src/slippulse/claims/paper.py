@@ -1,22 +1,21 @@
-"""The whole ledger: every claim with its text, in the order of manuscript/claims.yaml."""
+"""The whole ledger: every claim with its text, and what we found beside, in the order of manuscript/claims.yaml."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
 
+import numpy as np
+
 from ..data.numerals import number, rounded
-from . import rules
-from .entries import positions
-from .evidence import Claim, Evidence
+from ..data.prose import fill
+from . import pulses, regimes, rules, transition
+from .evidence import ESTIMATE, Claim, Evidence, NoRuns, evaluated
 from .inference import inference, right_panel
-from .pulses import pulse_claims
-from .rate import rate_claims
-from .reading import why_text
-from .regimes import regime_claims
-from .transition import transition_claims
+from .reading import namespace, positions, why_text
 
 # The claims about the two panels of the published figure.
 LEFT, RIGHT = "published_space_time_figure", "published_space_time_figure_right"
@@ -53,16 +52,16 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
     ValueError
         If the entries and what is computed are not about the same claims.
     """
-    claims = [*pulse_claims(evidence), *transition_claims(evidence), *regime_claims(evidence)]
-    claims += rate_claims(evidence)
-    found = {claim["id"]: claim for claim in [*claims, *published_figure(evidence, readings)]}
+    evidence.assign("regimes_beyond", regimes.meet)
+    judges = pulses.JUDGES | regimes.JUDGES | transition.JUDGES
+    found = {id: judge(evidence, id) for id, judge in judges.items()} | published_figure(evidence, readings)
     if odd := sorted({*evidence.entries} ^ {*found}):
         raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
     where = positions(evidence.entries, sentences)
-    return [written(found[id], entry, where[id]) for id, entry in evidence.entries.items()]
+    return [written(id, found[id], entry, where[id]) for id, entry in evidence.entries.items()]
 
 
-def published_figure(evidence: Evidence, readings: Mapping) -> list[Claim]:
+def published_figure(evidence: Evidence, readings: Mapping) -> dict[str, Claim]:
     """The published space-time figure, a claim a panel: is there a run of this model that it may show?
 
     The left one at the best fit of its readings, the drawn arrows among them; the right one without a fit.
@@ -73,10 +72,8 @@ def published_figure(evidence: Evidence, readings: Mapping) -> list[Claim]:
     further, why = {}, []
     for fit, found in {"with": left, "without": inference(study)["best"]}.items():
         further[f"chi-square {fit} the arrows"] = found["chi2"]
-        further |= {
-            f"pull of the {text} at the fit {fit} the arrows": found["pulls"][name]
-            for name, text in arrows.items()
-        }
+        for name, text in arrows.items():
+            further[f"pull of the {text} at the fit {fit} the arrows"] = found["pulls"][name]
         pulls = " and ".join(number(found["pulls"][name], 2) for name in arrows)
         why.append(f"{fit} its arrows p is {number(found['p_value'], 2)} and they are off by {pulls}")
 
@@ -85,33 +82,33 @@ def published_figure(evidence: Evidence, readings: Mapping) -> list[Claim]:
         of_panel = [entry for entry in readings.values() if entry["simulation"] == sweep]
         ours = {entry["statement"]: float(run[entry["quantity"]]) for entry in of_panel}
         return {
-            "id": id, "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
+            "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
             "measured": found["chi2"], "deviation": p, "further": ours | further,
             "note": f"chi-square of {of}; then the readings in our own figure",
             "why": why, "at": partial(rules.reading, p, degrees),
         }  # fmt: skip
 
     fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
-    return [
-        claim(
-            LEFT, "space_time_displacement", left,
-            f"all readings of the panel, its arrows among them, at their best fit, {fit}, release rule"
-            f" `{left['release']}`",
+    best = f"their best fit, {fit}, release rule `{left['release']}`"
+    return {
+        LEFT: claim(
+            LEFT, "space_time_displacement", left, f"all readings of the panel, its arrows among them, at {best}",
             f"Fitted {'; '.join(why)} reading errors." if arrows else "", **further,
         ),
-        claim(
+        RIGHT: claim(
             RIGHT, "space_time_stress", right, "its one reading, the pre-stress being read off",
             "One reading is left when its pre-stress is read off.",
         ),
-    ]  # fmt: skip
+    }  # fmt: skip
 
 
-def written(claim: Claim, entry: Mapping, where: str) -> dict:
+def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     """One claim with its text, as JSON has it."""
-    numbers = dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
     out = {
         "figure": "", "follows_from": [], "note": "", "source": "", "further": {}, "why": "", "caveat": "",
-        "choices": [], "choice": "", "combinations": 0, "holds_at": 0, "flips_at": [], **numbers, **entry, **claim,
+        "choices": [], "choice": "", "combinations": 0, "holds_at": 0, "flips_at": [],
+        **dict.fromkeys(("predicted", "measured", "uncertainty", "deviation")), **entry,
+        **dict.fromkeys(ESTIMATE if entry["kind"] == "approximate" else ()), "id": id, **claim,
         "figure_or_section": where, "counted": "follows_from" not in entry,
     }  # fmt: skip
     if at := out.pop("at", None):
@@ -133,3 +130,79 @@ def finite(value):
     if hasattr(value, "item"):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]) -> list[dict]:
+    """Each finding: id, its numbers by name (none where an altered configuration left no runs), and its text.
+
+    Parameters
+    ----------
+    damping_ratio : beta/dx of the figures
+    entries : per finding, as in manuscript/claims.yaml, its text and the tables that its numbers are taken from
+
+    Raises
+    ------
+    ValueError
+        If a text asks for a number that there is not.
+    """
+    out = []
+    for id, entry in entries.items():
+        found: dict = {}
+        with suppress(NoRuns):
+            for rows in entry.get("numbers", []):
+                found |= numbers(evidence, damping_ratio, **rows)
+            if id in COMPUTED:
+                found |= COMPUTED[id](evidence)
+        out.append({"id": id, "numbers": found, "text": fill(entry["text"], {"n": namespace(found)})})
+    return out
+
+
+def numbers(
+    evidence: Evidence, damping_ratio: float, table: str, take: Mapping[str, str], where: str = ""
+) -> dict[str, float]:
+    """Expressions over columns of the chosen rows of one table; `NoRuns` without rows."""
+    rows = evidence.lattices(table)[0] if table in evidence.swept else evidence.tables[table]
+    rows = rows.assign(figures=damping_ratio)
+    if (rows := rows[evaluated(rows, where)]).empty:
+        raise NoRuns(table)
+    return {name: float(rows.eval(expression, engine="python")) for name, expression in take.items()}
+
+
+def collapse(evidence: Evidence) -> dict[str, float]:
+    """Median change of L_trans between no damping and the largest ratio, over the scenes that have it at both."""
+    out: dict[str, float] = {}
+    for boundary in ("displacement", "stress"):
+        table = evidence.lattices(f"damping_{boundary}")[0].fillna({"gamma": 0.0})
+        lengths = table.pivot(
+            index=["left", "width", "gamma"], columns="damping_ratio", values="transition_length"
+        )
+        if lengths.empty:
+            raise NoRuns(boundary)
+        change = lengths.iloc[:, -1] / lengths.iloc[:, 0]
+        numbers = {"change": change.median(), "runs": change.count(), "scenes": len(change)}
+        out |= {f"{boundary}_{name}": float(number) for name, number in numbers.items()}
+    return out | {"ratio": float(lengths.columns[-1])}
+
+
+def best_fit(evidence: Evidence) -> dict[str, float | str]:
+    """What the published figure was made with: best fit, confidence region, how much worse the other rule is."""
+    found = inference(evidence.tables["published_figure"])
+    best = found["best"]
+    low, high = best["regions"][0.95]["damping_ratio"]
+    return {
+        "release": best["release"], "chi_square": best["chi2"], "degrees": float(best["dof"]),
+        "ratio": best["damping_ratio"], "low": low, "high": high, "difference": found["difference"],
+    }  # fmt: skip
+
+
+# Numbers that are no expression over the columns of one table.
+COMPUTED: dict[str, Callable[[Evidence], dict]] = {
+    "collapse_against_damping": collapse,
+    # Median ratio of the exact time at each fraction of the way to the predicted one.
+    "front_never_arrives": lambda evidence: {
+        f"median_{100.0 * fraction:.0f}": ratio
+        for fraction, ratio in transition.medians(evidence, "time", "distance").items()
+    },
+    "published_figure_made_with": best_fit,
+    "duration_criterion": lambda _: {"factor": float(np.pi / np.sqrt(2.0))},
+}

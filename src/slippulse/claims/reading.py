@@ -1,31 +1,70 @@
-"""The entries of claims.json as texts ask for them."""
+"""Entries of manuscript/claims.yaml with the sentences that they test; those of claims.json as texts ask for them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-from ..data.numerals import number, percent, rounded, setting, with_uncertainty
-from .rules import VERDICTS, WORST_FIRST
+import yaml
 
-# What a reader looks for first.
-FAILURES_FIRST = WORST_FIRST
+from ..data.numerals import number, percent, rounded, setting, with_uncertainty
+from ..model.checks import nearest
+from .rules import VERDICTS
+
+# Why a sentence has no claim of its own; a repetition names the sentence that it repeats.
+WHY_NONE = ("background", "definition", "other work", "no model")
+# Whether a sentence that is tested holds itself, whatever the claim that it led to.
+AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold")
 # A tolerance below this is for rounding alone.
 SLIGHT = 1e-6
 # Whether a tolerance that is this much larger or smaller would change a verdict is said with the claim.
 BAND = 1.5
 
 
-class Numbers(SimpleNamespace):
-    """Numbers by name; None for every name of a finding that this run has no runs for."""
+def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
+    """Claims, algebra and findings, the claims with other tolerances where the configuration has them.
 
-    def __init__(self, numbers: Mapping[str, float | None]) -> None:
-        super().__init__(**numbers)
+    Raises
+    ------
+    ValueError
+        Naming a claim of the configuration that there is not.
+    """
+    texts = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    claims = texts["claims"]
+    for id, other in tolerances.items():
+        if id not in claims:
+            raise ValueError(f"claims.{id}: unknown claim{nearest(id, claims)}; allowed: those in {path}")
+        claims[id] |= other
+    return texts
 
-    def __getattr__(self, name: str) -> None:
-        if self.__dict__:
-            raise AttributeError(name)
+
+def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
+    """The claims, and the algebra, that test a sentence."""
+    return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
+
+
+def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
+    """How many sentences there are, how many are tested, and how many are not for each reason."""
+    why = [str(sentence.get("why_none", "tested")) for sentence in sentences]
+    counts = Counter("repeats" if reason.startswith("repeats") else reason for reason in why)
+    return {"all": len(sentences), **{key: counts[key] for key in ("tested", "repeats", *WHY_NONE)}}
+
+
+def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
+    """Per claim the sections, appendices and figures whose sentences it tests."""
+    where = [(sentence["id"], sentence["place"].split(",")[0]) for sentence in sentences]
+    return {
+        name: "; ".join(dict.fromkeys(place for id, place in where if id in entry["sentences"]))
+        for name, entry in entries.items()
+    }
+
+
+def namespace(numbers: Mapping[str, float | None]) -> SimpleNamespace | None:
+    """Numbers of a finding by name; None if this run has no runs for them."""
+    return SimpleNamespace(**numbers) if numbers else None
 
 
 class Ledger:
@@ -33,8 +72,7 @@ class Ledger:
 
     Parameters
     ----------
-    claims : the ledger, as in claims.json
-    findings : numbers of ours, as in findings.json
+    claims, findings : as in claims.json and findings.json
     """
 
     def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
@@ -48,9 +86,9 @@ class Ledger:
         """One claim; of an unknown name a ValueError says which there are, here and in `found`."""
         return _known("claim", id, self.claims)
 
-    def found(self, id: str) -> Numbers:
-        """The numbers of one finding."""
-        return Numbers(_known("finding", id, self.findings)["numbers"])
+    def found(self, id: str) -> SimpleNamespace | None:
+        """The numbers of one finding, as `namespace`."""
+        return namespace(_known("finding", id, self.findings)["numbers"])
 
     def measured(self, id: str) -> str:
         """Measured value, as `measured_text`."""
@@ -63,12 +101,8 @@ class Ledger:
 
     def deviation_at(self, id: str, **chosen: float | str) -> float:
         """The deviation of a claim at a combination of choices; NaN where it was not judged at it."""
-        rows = [row["deviation"] for row in getattr(self(id), "choices", []) if chosen.items() <= row.items()]
+        rows = [row["deviation"] for row in self(id).choices if chosen.items() <= row.items()]
         return rows[0] if rows else float("nan")
-
-    def verdict(self, id: str) -> str:
-        """The verdict, emphasised."""
-        return f"*{self(id).verdict}*"
 
     def listed(self, id: str, words: str) -> str:
         """The further numbers of a claim whose name has these words before its colon, each with what is behind it."""
@@ -81,15 +115,14 @@ class Ledger:
 
     def following(self) -> int:
         """How many claims follow from others."""
-        return sum(not claim.counted for claim in self)
+        return len(self.claims) - self.count()
 
     def summary(self) -> str:
         """How many claims there are of each verdict, in words."""
-        counts = {name: self.count(name) for name in VERDICTS}
-        several = {name: name.replace("depends", "depend") if counts[name] > 1 else name for name in VERDICTS}
-        listed = ", ".join(f"{counts[name]} {several[name]}" for name in VERDICTS if counts[name])
+        counts = {name: count for name in VERDICTS if (count := self.count(name))}
+        listed = [f"{n} {name.replace('depends', 'depend') if n > 1 else name}" for name, n in counts.items()]
         rest = f" {self.following()} more follow from these." if self.following() else ""
-        return f"{self.count()} claims: {listed}.{rest}"
+        return f"{self.count()} claims: {', '.join(listed)}.{rest}"
 
 
 def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
@@ -98,16 +131,15 @@ def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
     return entries[id]
 
 
-# By kind, what the paper has and what was measured; others have numbers.
-PREDICTED = {"qualitative": "all of {:.0f}", "reading": "{:.0f} degrees of freedom"}
-
-
 def predicted_text(claim: SimpleNamespace) -> str:
     """What the paper has, as its kind says it."""
     if claim.predicted is None:
         return number(None)
-    text = PREDICTED.get(claim.kind, number(claim.predicted, 5)).format(claim.predicted)
-    return text.replace("degrees", "degree") if claim.predicted == 1 else text
+    if claim.kind == "qualitative":
+        return f"all of {claim.predicted:.0f}"
+    if claim.kind == "reading":
+        return f"{claim.predicted:.0f} degree{'s' * (claim.predicted != 1)} of freedom"
+    return number(claim.predicted, 5)
 
 
 def measured_text(claim: SimpleNamespace) -> str:
@@ -134,12 +166,13 @@ def compared_text(claim: SimpleNamespace) -> str:
         return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"
     if claim.kind == "arithmetic" or claim.predicted == 0.0:
         return f"{number(claim.deviation, 2)}, tolerance {setting(claim.tolerance)}"
-    middle = "median " if claim.kind == "approximate" else ""
-    text = f"{middle}{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
-    if claim.kind == "exact" or claim.exponent is None:
+    text = f"{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
+    if claim.kind == "exact":
         return text
-    exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
-    return f"{text}; exponent {exponent}, tolerance {setting(claim.tolerance_exponent)}"
+    if claim.exponent is not None:
+        exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
+        text += f"; exponent {exponent}, tolerance {setting(claim.tolerance_exponent)}"
+    return f"median {text}"
 
 
 def why_text(claim: SimpleNamespace) -> str:
@@ -152,7 +185,7 @@ def why_text(claim: SimpleNamespace) -> str:
         held, _, rest = measured_text(claim).partition(", ")
         if rest:
             return f"It holds in {held} cases, with {rest}."
-        condition = getattr(claim, "note", "").partition("condition: ")[2]
+        condition = claim.note.partition("condition: ")[2]
         return f"It needs a condition that the paper does not state{condition and ': '}{condition}."
     if claim.kind == "arithmetic":
         return f"The printed formula gives {measured_text(claim)} of the derived value."
@@ -170,22 +203,18 @@ def evidence_text(claim: SimpleNamespace) -> str:
     if counted and claim.runs:
         parts.append(f"{claim.runs} runs")
     if estimate and claim.largest is not None:
-        parts.append(
-            f"90 % of them within {percent(claim.ninety)}, the largest deviation {percent(claim.largest)}"
-        )
+        ninety, largest = percent(claim.ninety), percent(claim.largest)
+        parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
     if counted and claim.left_out:
         parts.append(f"left out, without numbers: {claim.left_out}")
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
     if estimate and claim.exact_largest is not None:
         median, largest = percent(claim.exact_median), percent(claim.exact_largest)
         parts.append(f"runs off the exact theory by {median} (median) to {largest}")
-    for flip in getattr(claim, "flips_at", []):
-        larger = flip["tolerance"] > claim.tolerance
+    for flip in claim.flips_at:
+        side = "above" if flip["tolerance"] > claim.tolerance else "below"
         if 1.0 / BAND <= flip["tolerance"] / claim.tolerance <= BAND:
-            other = flip["above" if larger else "below"]
-            parts.append(
-                f"with a tolerance {'above' if larger else 'below'} {number(flip['tolerance'], 3)}: {other}"
-            )
+            parts.append(f"with a tolerance {side} {number(flip['tolerance'], 3)}: {flip[side]}")
     if claim.follows_from:
         names = ", ".join(f"`{id}`" for id in claim.follows_from)
         parts.append(f"follows from {names} and is not counted again")

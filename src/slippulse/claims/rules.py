@@ -11,7 +11,7 @@ DEPENDS = "depends on an open choice"
 VERDICTS = (
     "reproduced", "reproduced with caveat", DEPENDS, "not reproduced", "inconclusive", "not testable"
 )  # fmt: skip
-# Of several verdicts the first of these counts.
+# Of several verdicts the first of these counts; and what a reader looks for first.
 WORST_FIRST = (
     "not reproduced", DEPENDS, "inconclusive", "not testable", "reproduced with caveat", "reproduced"
 )  # fmt: skip
@@ -45,17 +45,19 @@ def worst(verdicts: Iterable[str]) -> str:
     return min(verdicts, key=WORST_FIRST.index, default="not testable")
 
 
+def worst_tested(verdicts: Iterable[str]) -> str:
+    """The worst of those that have numbers."""
+    return worst(verdict for verdict in verdicts if verdict != "not testable")
+
+
 def exact(
     deviations: Sequence[float] | np.ndarray, uncertainties: Sequence[float] | np.ndarray, tolerance: float
 ) -> tuple[str, int | None]:
     """Verdict on an equation, the worst of the runs that have numbers, and of the runs with it the farthest off."""
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
-    found = worst(verdict for verdict in verdicts if verdict != "not testable")
-    if found == "not testable":
+    if (found := worst_tested(verdicts)) == "not testable":
         return found, None
-    return found, max(
-        (i for i, verdict in enumerate(verdicts) if verdict == found), key=lambda i: deviations[i]
-    )
+    return found, max((i for i in range(len(verdicts)) if verdicts[i] == found), key=deviations.__getitem__)
 
 
 def approximate(
@@ -72,10 +74,10 @@ def approximate(
     exponent : of measured against predicted in logarithmic axes, and its uncertainty; None where none is claimed
     tolerance, tolerance_exponent : of the median, and of the distance of the exponent from 1
     """
-    verdicts = [within(*median, tolerance)]
-    if exponent is not None:
-        verdicts.append(within(abs(exponent[0] - 1.0), exponent[1], tolerance_exponent))
-    return worst(verdicts)
+    found = within(*median, tolerance)
+    if exponent is None:
+        return found
+    return worst([found, within(abs(exponent[0] - 1.0), exponent[1], tolerance_exponent)])
 
 
 def over_choices(verdicts: Sequence[str]) -> str:
@@ -83,17 +85,14 @@ def over_choices(verdicts: Sequence[str]) -> str:
 
     "depends on an open choice" if it holds at some and fails at others; else the worst of those that have numbers.
     """
-    if {True, False} <= {HOLDS.get(verdict) for verdict in verdicts}:
-        return DEPENDS
-    return worst(verdict for verdict in verdicts if verdict != "not testable")
+    held = {HOLDS.get(verdict) for verdict in verdicts}
+    return DEPENDS if {True, False} <= held else worst_tested(verdicts)
 
 
 def flips(at: Callable[[float], str], tolerance: float) -> list[dict]:
     """Tolerances at which a verdict changes, from a tenth to ten times its own, each with the verdict on both sides.
 
-    Parameters
-    ----------
-    at : the verdict at a tolerance
+    ``at``: the verdict at a tolerance.
     """
     if not tolerance:
         return []
@@ -116,12 +115,11 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
     caveat" if some are, or under a condition that the paper does not state; "not testable" without runs; else
     "reproduced".
     """
-    runs = held + failed + undecided
-    if runs == 0:
+    if not held + failed + undecided:
         return "not testable"
     if failed:
         return "not reproduced"
-    if undecided > UNDECIDED * runs:
+    if undecided > UNDECIDED * (held + undecided):
         return "inconclusive"
     return "reproduced with caveat" if undecided or condition else "reproduced"
 

@@ -1,4 +1,7 @@
-"""Claims about the transition from crack to pulse, and where a front ends, at every choice the paper leaves open."""
+"""Claims about the transition from crack to pulse, and where a front ends, at every choice the paper leaves open.
+
+A function is named as its claim.
+"""
 
 from __future__ import annotations
 
@@ -33,16 +36,6 @@ SIMULATED = {
 Tables = list[tuple[Chosen, list[pd.DataFrame]]]
 
 
-def transition_claims(evidence: Evidence) -> list[Claim]:
-    """T_trans and L_trans under both boundary conditions, the position of arrest, and how they depend on what."""
-    others = (diverges, arrest_position, speeds_near_one, underestimate, shorter_at_low, pulses_widen)
-    return [
-        *(displacement(evidence, name) for name in ESTIMATES),
-        *(stress(evidence, name) for name in ESTIMATES),
-        *(judge(evidence) for judge in others),
-    ]
-
-
 def chosen(tables: list[pd.DataFrame], **more: float | str) -> Chosen:
     """The release rule and the damping ratio of runs that have them in common."""
     return {name: tables[0][name].iloc[0] for name in ("release", "damping_ratio")} | more
@@ -50,9 +43,9 @@ def chosen(tables: list[pd.DataFrame], **more: float | str) -> Chosen:
 
 def simulated(evidence: Evidence, boundary: str, where: str = "") -> Tables:
     """Runs of figure 5, and those of the figures with more damping that are undamped, on three lattices."""
-    runs = [evidence.lattices(f"scaling_{boundary}", where=where)]
     undamped = " and ".join(filter(None, [where, "damping_ratio == 0"]))
-    runs.append(evidence.lattices(f"damping_{boundary}", where=undamped))
+    sweeps = {f"scaling_{boundary}": where, f"damping_{boundary}": undamped}
+    runs = [evidence.lattices(name, where=where) for name, where in sweeps.items()]
     return [(chosen(tables, solution="lattice"), tables) for tables in runs if len(tables[0])]
 
 
@@ -68,36 +61,47 @@ def solved(evidence: Evidence, boundary: str) -> Tables:
     return sorted(found, key=lambda pair: any(pair[0].get(name, ours[name]) != ours[name] for name in ours))
 
 
-def displacement(evidence: Evidence, name: str) -> Claim:
-    """An estimate under a displacement boundary, at the first stick."""
-    id, quantity = f"{name}_trans_displacement", f"transition_{ESTIMATES[name][0]}"
-    claims = [
-        (choice, evidence.approximate(id, tables, quantity, f"paper_{quantity}", "left", "gamma"))
-        for choice, tables in simulated(evidence, "displacement") + solved(evidence, "displacement")
-    ]
-    return over_choices(claims) | evidence.compared("scaling_displacement", quantity)
-
-
-def arrests(evidence: Evidence, where: str = INSIDE) -> Tables:
+def arrests(evidence: Evidence) -> Tables:
     """When the left front has covered fractions of |x_minus| by the exact solution, and its last release on lattices.
 
     Returns
     -------
     tables with distance (|x_minus|), covered, time, length (between the fronts)
     """
-    found = [
+    last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
+    return [
         (choice, [rows.rename(columns=SOLVED).eval("covered = fraction * distance") for rows in tables])
         for choice, tables in solved(evidence, "stress")
+    ] + [
+        (choice | last, [rows.rename(columns=SIMULATED) for rows in tables])
+        for choice, tables in simulated(evidence, "stress", INSIDE)
     ]
-    runs = simulated(evidence, "stress", where)
-    last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    return found + [(choice | last, [t.rename(columns=SIMULATED) for t in tables]) for choice, tables in runs]
 
 
 def at_ours(tables: Tables) -> Tables:
     """Those of our own release rule and damping, by the exact solution and on lattices."""
     ours = {name: tables[0][0][name] for name in ("release", "damping_ratio", "nucleation")}
     return [pair for pair in tables if ours.items() <= pair[0].items()]
+
+
+def medians(evidence: Evidence, measured: str, predicted: str) -> dict[float, float]:
+    """Median ratio at each fraction of the way, by the exact solution at our release rule and damping."""
+    return {
+        float(choice["fraction"]): float(ratios(tables[0], measured, predicted).median())
+        for choice, tables in at_ours(arrests(evidence))
+        if choice["fraction"] != LAST
+    }
+
+
+def under_displacement(evidence: Evidence, id: str) -> Claim:
+    """An estimate under a displacement boundary, at the first stick."""
+    quantity = f"transition_{ESTIMATES[id[0]][0]}"
+
+    def judge(tables: list[pd.DataFrame]) -> Claim:
+        return evidence.approximate(id, tables, quantity, f"paper_{quantity}", "left", "gamma")
+
+    tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
+    return over_choices(tables, judge) | evidence.compared("scaling_displacement", quantity)
 
 
 def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim]) -> Claim:
@@ -107,12 +111,12 @@ def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim
         f"median ratio: at {named(choice['fraction'])}": judge(found)["measured"]
         for choice, found in sorted(at_ours(tables), key=lambda pair: named(pair[0]["fraction"]))
     }
-    return over_choices([(choice, judge(found)) for choice, found in tables]) | {"further": further}
+    return over_choices(tables, judge) | {"further": further}
 
 
-def stress(evidence: Evidence, name: str) -> Claim:
+def under_stress(evidence: Evidence, id: str) -> Claim:
     """An estimate under a stress boundary, at each fraction and at the last release."""
-    id, estimate = f"{name}_trans_stress", ESTIMATES[name]
+    estimate = ESTIMATES[id[0]]
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
         return evidence.approximate(id, tables, *estimate, "left", "width")
@@ -120,26 +124,17 @@ def stress(evidence: Evidence, name: str) -> Claim:
     claim = at_fractions(evidence, judge) | evidence.compared("scaling_stress", f"transition_{estimate[0]}")
     fractions, ratio = zip(*sorted(medians(evidence, *estimate).items()), strict=True)
     over = np.array(ratio) - 1.0
-    reached = float(np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN))
-    name = "fraction of the way at which the median ratio leaves the tolerance"
-    return claim | {"further": claim["further"] | {name: reached}}
+    claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(
+        np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN)
+    )
+    return claim
 
 
-def medians(evidence: Evidence, measured: str, predicted: str) -> dict[float, float]:
-    """Median ratio at each fraction of the way, by the exact solution at our release rule and damping."""
-    return {
-        float(choice["fraction"]): float(np.nanmedian(ratios(tables[0], measured, predicted)))
-        for choice, tables in at_ours(arrests(evidence))
-        if choice["fraction"] != LAST
-    }
-
-
-def speeds_near_one(evidence: Evidence) -> Claim:
+def stress_front_speeds_near_one(evidence: Evidence, id: str) -> Claim:
     """Mean speeds of both fronts; the front that is farther off counts."""
-    id = "stress_front_speeds_near_one"
+    ways = {"left": "covered", "right": "(length - covered)"}
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
-        ways = {"left": "covered", "right": "(length - covered)"}
         fronts = [
             evidence.approximate(id, tables, f"{way} / time", "1")
             | {"note": f"mean speed of the {side} front, which is the farther off"}
@@ -150,85 +145,90 @@ def speeds_near_one(evidence: Evidence) -> Claim:
     return at_fractions(evidence, judge)
 
 
-def underestimate(evidence: Evidence) -> Claim:
+def T_trans_stress_underestimate(evidence: Evidence, id: str) -> Claim:
     """T_trans is longer than |x_minus|, in every run."""
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
         longer = [table["time"] > table["distance"] for table in tables[:2]]
-        return evidence.qualitative("T_trans_stress_underestimate", agreeing(longer[0], longer[-1]))
+        return evidence.qualitative(agreeing(longer[0], longer[-1]))
 
-    return over_choices([(choice, judge(tables)) for choice, tables in arrests(evidence)])
+    return over_choices(arrests(evidence), judge)
 
 
-def arrest_position(evidence: Evidence) -> Claim:
+def front_arrest_position(evidence: Evidence, id: str) -> Claim:
     """The last release on the left over |x_minus|, for every profile and damping; and the gap in units of H."""
-    id, what = "front_arrest_position", ("last_release_distance", "balance_distance")
+    what = "last_release_distance", "balance_distance"
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
         claim = evidence.approximate(id, tables, *what, "left", "width")
-        gap = evidence.studied(tables, lambda t: float((t[what[1]] - t[what[0]]).abs().median()))
+        gap = evidence.studied(tables, lambda t: (t[what[1]] - t[what[0]]).abs().median())
         far = rules.within(gap.value, gap.uncertainty, GAP)
         further = {"median gap in H, over all sweeps": gap.value}
         return claim | {"verdict": rules.worst([claim["verdict"], far]), "further": further}
 
     whole = evidence.lattices(*sweeps, where=INSIDE)
-    claims = []
-    for ratio in sorted({*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}):
-        tables = evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {ratio}")
-        claims.append((chosen(tables, solution="lattice"), judge(tables)))
-    shown, ratio = judge(whole), ratios(whole[0], *what)
-    extremes = {"smallest ratio": float(np.nanmin(ratio)), "largest ratio": float(np.nanmax(ratio))}
-    return over_choices(claims, shown | {"further": shown["further"] | extremes})
-
-
-def diverges(evidence: Evidence) -> Claim:
-    """T_trans and L_trans grow at every step down in gamma, with exponents below zero."""
-    quantities = {"T": "transition_time", "L": "transition_length"}
-
-    def power(rows: pd.DataFrame, quantity: str) -> tuple[float, float, float]:
-        return straight_line(np.log(rows["gamma"]), np.log(rows[quantity]))
-
-    def grows_without_bound(rows: pd.DataFrame) -> bool | None:
-        if len(rows) < 3:
-            return None
-        lines = [power(rows.head(3), quantity) for quantity in quantities.values()]
-        falls = [(np.diff(rows[quantity]) < 0.0).all() for quantity in quantities.values()]
-        return bool(all(falls) and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
-
-    tables = [table.sort_values("gamma") for table in evidence.lattices("scaling_displacement")]
-    finest, middle = ([grows_without_bound(rows) for _, rows in t.groupby("left")] for t in tables[:2])
-    smallest = tables[0][tables[0]["gamma"].isin(tables[0]["gamma"].unique()[:3])]
-    exponents = {
-        rf"mean exponent of $\gamma$ in ${name}_\mathrm{{trans}}$": float(
-            np.mean([power(rows, quantity)[0] for _, rows in smallest.groupby("left")])
+    each = [
+        evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {ratio}")
+        for ratio in sorted(
+            {*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}
         )
-        for name, quantity in quantities.items()
+    ]
+    shown, ratio = judge(whole), ratios(whole[0], *what)
+    shown["further"] |= {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
+    return over_choices([(chosen(tables, solution="lattice"), tables) for tables in each], judge, shown)
+
+
+def transition_diverges(evidence: Evidence, id: str) -> Claim:
+    """T_trans and L_trans grow at every step down in gamma, with exponents below zero at the smallest three."""
+    quantities, decided, slopes = ["transition_time", "transition_length"], [], []
+    for table in evidence.lattices("scaling_displacement")[:2]:
+        found: list[bool | None] = []
+        for _, rows in table.sort_values("gamma").groupby("left"):
+            smallest = np.log(rows[["gamma", *quantities]].head(3))
+            lines = [straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
+            falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
+            grows = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
+            found.append(grows if len(rows) >= 3 else None)
+            slopes.append([slope for slope, *_ in lines])
+        decided.append(found)
+    means = np.mean(slopes[: len(decided[0])], axis=0)
+    further = {
+        rf"mean exponent of $\gamma$ in ${name}_\mathrm{{trans}}$": float(mean)
+        for name, mean in zip(ESTIMATES, means, strict=True)
     }
-    return evidence.qualitative("transition_diverges", agreeing(finest, middle)) | {"further": exponents}
+    return evidence.qualitative(agreeing(*decided)) | {"further": further}
 
 
-def rises(evidence: Evidence, id: str, table: pd.DataFrame, quantity: str) -> Claim:
+def rises(evidence: Evidence, table: pd.DataFrame, quantity: str) -> Claim:
     """Whether each step up in the pre-stress, at each gamma, makes a number larger; undecided within uncertainties."""
     decided: list[bool | None] = []
     unsure = f"uncertainty_{quantity}"
     for _, rows in table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left").groupby("gamma"):
         change, blur = rows[quantity].diff()[1:], rows[unsure].rolling(2).sum()[1:]
         decided += [bool(c > 0.0) if abs(c) > b else None for c, b in zip(change, blur, strict=True)]
-    return evidence.qualitative(id, decided)
+    return evidence.qualitative(decided)
 
 
-def shorter_at_low(evidence: Evidence) -> Claim:
+def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
     """The transition gets longer with the pre-stress."""
-    return over_choices(
-        [
-            (choice, rises(evidence, "shorter_transition_low_prestress", tables[0], "transition_length"))
-            for choice, tables in simulated(evidence, "displacement") + solved(evidence, "displacement")
-        ]
-    )
+    tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
+    return over_choices(tables, lambda found: rises(evidence, found[0], "transition_length"))
 
 
-def pulses_widen(evidence: Evidence) -> Claim:
+def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:
     """The pulse gets wider with the pre-stress."""
-    table = evidence.lattices("any_prestress")[0]
-    return rises(evidence, "pulses_widen_with_prestress", table, "pulse_width")
+    return rises(evidence, evidence.lattices("any_prestress")[0], "pulse_width")
+
+
+JUDGES = (
+    {f"{name}_trans_displacement": under_displacement for name in ESTIMATES}
+    | {f"{name}_trans_stress": under_stress for name in ESTIMATES}
+    | {
+        judge.__name__: judge
+        for judge in (
+            stress_front_speeds_near_one, T_trans_stress_underestimate, front_arrest_position,
+            transition_diverges, shorter_transition_low_prestress, pulses_widen_with_prestress,
+        )
+    }
+)  # fmt: skip

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import SimpleNamespace
 from typing import NamedTuple
 
-from ..claims.reading import FAILURES_FIRST, Ledger
+from ..claims.reading import Ledger
+from ..claims.rules import WORST_FIRST
 
 # What the answer says of one thing with each verdict, and of several.
 EXCEPTIONS = {
@@ -40,7 +41,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     """The lines of the summary in their order, their expressions evaluated by ``fill``."""
 
     def worst(claims: Iterable[str]) -> SimpleNamespace:
-        return min(map(ledger, claims), key=lambda claim: FAILURES_FIRST.index(claim.verdict))
+        return min(map(ledger, claims), key=lambda claim: WORST_FIRST.index(claim.verdict))
 
     return [
         Line(line["topic"], line["named"], fill(line["text"]), worst(line["claims"]))

@@ -10,8 +10,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from ..claims import reading
-from ..claims.reading import FAILURES_FIRST, Ledger
-from ..claims.rules import VERDICTS
+from ..claims.reading import Ledger
+from ..claims.rules import VERDICTS, WORST_FIRST
 from ..data.numerals import rounded
 from .html import markup_of, page
 
@@ -61,7 +61,7 @@ def claims_page(
 def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
     """What templates that show claims ask for; `html` has the HTML of each of their texts, and of others."""
     asked = [(claim.statement, claim.why, reading.evidence_text(claim)) for claim in ledger]
-    by_verdict = {name: [claim for claim in ledger if claim.verdict == name] for name in FAILURES_FIRST}
+    by_verdict = {name: [claim for claim in ledger if claim.verdict == name] for name in WORST_FIRST}
     return {
         "html": markup_of([*texts, *chain.from_iterable(asked)]),
         "summary": ledger.summary(),

@@ -11,8 +11,7 @@ from pathlib import Path
 import jupytext
 import pandas as pd
 
-from ..claims.entries import coverage
-from ..claims.reading import Ledger
+from ..claims.reading import Ledger, coverage
 from ..data.alterations import changes
 from ..data.numerals import FILTERS, percent
 from ..data.prose import fill

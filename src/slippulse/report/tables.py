@@ -10,15 +10,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from ..claims.entries import claims_of, coverage, positions
 from ..claims.reading import (
-    FAILURES_FIRST,
     Ledger,
+    claims_of,
     compared_text,
+    coverage,
     evidence_text,
     measured_text,
+    positions,
     predicted_text,
 )
+from ..claims.rules import WORST_FIRST
 from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .answer import Line
 from .texts import ERRATUM
@@ -87,7 +89,7 @@ def failures(ledger: Ledger) -> str:
     """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
     rows = [
         [f"{claim.statement} `{claim.id}`", claim.verdict, claim.why]
-        for verdict in FAILURES_FIRST[:-1]
+        for verdict in WORST_FIRST[:-1]
         for claim in ledger
         if claim.verdict == verdict
     ]

@@ -4,10 +4,9 @@ from pathlib import Path
 
 import yaml
 
-from ..claims.entries import read_entries
 from ..claims.evidence import Evidence
-from ..claims.findings import findings
-from ..claims.paper import all_claims, finite
+from ..claims.paper import all_claims, findings, finite
+from ..claims.reading import read_entries
 from ..data.files import write_json, write_text
 from ..report.claims_page import claims_page
 from .inputs import given
