@@ -108,7 +108,7 @@ reference: $(READY)
 
 replicate: $(READY)
 	@$(CHECK_OPTIONS)
-	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.overlay "$$OVERLAY"
+	@test -z "$$OVERLAY" || "$(BIN)/python" -m slippulse.configuration.read "$$OVERLAY"
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)

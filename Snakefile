@@ -5,7 +5,7 @@
 #   snakemake --cores 2 --config preset=draft -- everything    studies, ledger and report too
 #   snakemake --cores 2 --configfile mine.yaml                 any part of the configuration overlaid
 
-from slippulse.configuration.overlay import main as check_files
+from slippulse.configuration.read import main as check_files
 
 # Snakemake itself would name no line.
 if check_files([f"{workflow.basedir}/config/config.yaml"]):

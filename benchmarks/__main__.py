@@ -7,8 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from slippulse.configuration.overlay import read_overlay
-from slippulse.configuration.read import read_config
+from slippulse.configuration.read import read_config, read_overlay
 from slippulse.data.files import write_whole
 from slippulse.model.checks import ConfigError
 

@@ -13,8 +13,7 @@ from typing import Any
 
 import yaml
 
-from slippulse.configuration.overlay import read_overlay
-from slippulse.configuration.problems import json_schema, resolved, words
+from slippulse.configuration.read import json_schema, read_overlay, resolved, words
 
 README, SCHEMA, SHIPPED = "config/README.md", "workflow/schemas/config.schema.yaml", "config/config.yaml"
 # A table stands between these two lines; the first names the model, and where its values stand in config/config.yaml.

@@ -8,7 +8,7 @@ import pytest
 from reference.wide_scenes import wide_scene
 
 import slippulse as sp
-from slippulse.configuration.bound import bound_of
+from slippulse.configuration.resolve import bound_of
 
 # Undamped blocks that slip again and again cut steps short.
 SMALL_FACTOR = 3.0

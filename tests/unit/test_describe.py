@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from docs import describe
-from slippulse.configuration.overlay import read_overlay
+from slippulse.configuration.read import read_overlay
 
 
 def test_the_schema_is_the_one_that_the_definition_makes(project):

@@ -9,7 +9,7 @@ import tolerances as tol
 from pipeline_copy import copy_project, snakemake
 
 from slippulse import Prestress, theory
-from slippulse.configuration.overlay import read_overlay
+from slippulse.configuration.read import read_overlay
 
 pytestmark = pytest.mark.workflow
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from slippulse.configuration.bound import HOW_TO_GO_ON
+from slippulse.configuration.resolve import HOW_TO_GO_ON
 
 STEADY = "simulations: {steady_displacement: "
 
@@ -142,7 +142,7 @@ def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
 
 # Commands with too few or wrong arguments, the exit code, and what is said.
 USES = {
-    "overlay": ("-m slippulse.configuration.overlay", 2, "usage: "),
+    "overlay": ("-m slippulse.configuration.read", 2, "usage: "),
     "benchmarks": ("-m benchmarks", 2, "usage: "),
     "benchmarks without a configuration": ("-m benchmarks {project}/Makefile {folder}", 1, "Makefile: "),
     "benchmarks into a file": ("-m benchmarks {project}/config/config.yaml {folder}/file", 1, "file: "),

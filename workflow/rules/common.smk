@@ -7,11 +7,9 @@ from functools import cache
 from pathlib import Path
 
 from slippulse.configuration.accuracy import promised
-from slippulse.configuration.bound import bound_of_sweep
 from slippulse.configuration.expand import run_count
-from slippulse.configuration.overlay import read_overlay
-from slippulse.configuration.read import read_config
-from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
+from slippulse.configuration.read import read_config, read_overlay
+from slippulse.configuration.resolve import accuracy_of, all_simulations, bound_of_sweep, resolve
 from slippulse.data.alterations import changes
 from slippulse.model.checks import ConfigError
 from slippulse.steps.job import Jobs, end_with

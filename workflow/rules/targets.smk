@@ -11,7 +11,7 @@ from types import SimpleNamespace
 from snakemake.cli import get_argument_parser
 from snakemake.logging import logger
 
-from slippulse.configuration.problems import format_problems
+from slippulse.configuration.read import format_problems
 from slippulse.data.files import write_json
 from slippulse.data.lock import take
 from slippulse.data.records import Tree, record_path

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any, TypedDict
+from typing import Any
 
 from ..model.checks import ConfigError, check_choice, check_kind, check_number, short_repr
 from ..model.prestress import Prestress
@@ -25,16 +25,16 @@ SMALLEST, LARGEST = 1e-4, 0.1
 # At beta/dx = 10 the longest stable step alone errs by 3e-3 in the front speed, at any spacing, which a grid study does
 # not see; the constants below were found up to 1.
 STRONGEST_DAMPING = 1.0
-# Share of the promise that the spacing may take; the rest is left to the step and to the scatter of a grid study, which
-# with factors of 1.5 and 2 finds up to a third more than the error is.
-SHARE = 0.7
+# Fraction of the promise that the spacing may take; the rest is left to the step and to the scatter of a grid study,
+# which with factors of 1.5 and 2 finds up to a third more than the error is.
+FRACTION = 0.7
 # Blocks across the narrowest length at the least, so that a lattice four times coarser still has 8.
 BLOCKS = 32
 # Largest step in units of dx, and order: `studies.accuracy_cost` finds errors of 4e-6 by them at any spacing, in the
 # worst of its numbers, and by the next cheaper ones 2e-5.
 STEP, ORDER = 1.0, 8
 
-# Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its share of the width from slip and peak
+# Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its fraction of the width from slip and peak
 # (steady pulse to first order in beta). The front takes blocks from the width: at most 1/(2 tau_0 v^2).
 LAYER, FRONT_BLOCKS = 0.25 * math.pi**2, 0.5
 # Front speed over leaf springs, second order in dx over the pulse width: transient, and layer times v.
@@ -48,14 +48,8 @@ VELOCITY, VELOCITY_DAMPED = 0.6, 0.6
 # Front speed without leaf springs, over the width of the Gaussian.
 FREE_SPEED = 0.25
 
-
-class Settings(TypedDict):
-    """Arguments of a `Scene`."""
-
-    dx: float
-    beta: float
-    max_step: float
-    order: int
+# Runs of a sweep have it in common, and it takes milliseconds.
+speed_of = lru_cache(maxsize=4096)(front_speed)
 
 
 def settings_for(
@@ -67,7 +61,7 @@ def settings_for(
     damping_ratio: float = 0.0,
     release: str = "total",
     fields: bool = True,
-) -> Settings:
+) -> dict[str, Any]:
     """Spacing, step and order that keep a scene's numbers within a largest relative error.
 
     Parameters
@@ -77,15 +71,9 @@ def settings_for(
     damping_ratio : beta/dx, which stays as the spacing changes, 0 to 1
     fields : whether the numbers of the pulse at the end (width, slip, peak velocity) are wanted too
 
-    Returns
-    -------
-    dict of dx, beta, max_step and order, to be passed on: ``Scene(..., **settings)``
+    Returns a dict of dx, beta, max_step and order, to be passed on: ``Scene(..., **settings)``
 
-    Raises
-    ------
-    ValueError
-        One line naming the key, the value and what is allowed.
-
+    Raises ValueError: one line naming the key, the value and what is allowed.
     Source: module docstring; the numbers that are covered are listed in `slippulse.measure.promise`.
     """
     check_number("accuracy", accuracy, at_least=SMALLEST, at_most=LARGEST)
@@ -96,17 +84,15 @@ def settings_for(
         raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
-    error = SHARE * accuracy
-    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
-    peak = min(prestress.width, *(width for *_, width in prestress.bumps), math.inf)
-    if boundary == "displacement":
-        check_number("gamma", gamma, above=0.0)
-        spacings = _over_springs(error, levels, peak, gamma, damping_ratio, release, fields)
-    else:
-        spacings = _free(error, levels, peak, prestress, damping_ratio, fields)
+    spacings = _spacings(FRACTION * accuracy, prestress, gamma, damping_ratio, release, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
     bound = MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2)
-    settings: Settings = {"dx": dx, "beta": damping_ratio * dx, "max_step": min(STEP, bound), "order": ORDER}
+    settings: dict[str, Any] = {
+        "dx": dx,
+        "beta": damping_ratio * dx,
+        "max_step": min(STEP, bound),
+        "order": ORDER,
+    }
     # Refuses what is left to refuse.
     Scene(boundary=boundary, prestress=prestress, gamma=gamma, release=release, duration=1.0, **settings)
     return settings
@@ -115,51 +101,48 @@ def settings_for(
 def promised(simulation: Mapping) -> Mapping[str, Any]:
     """A resolved simulation, with the spacing of each run where an accuracy is promised; raises ConfigError."""
     promise = promise_of(simulation)
-    # The error of another scheme's step is not seen by a grid study.
-    if promise is not None and simulation["scheme"] != "localised":
-        raise ConfigError(f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given")
-    if promise is None or math.isnan(promise):
+    if promise is None:
         return simulation
-    if any(run.alpha for run in runs(simulation)):
+    if simulation["scheme"] != "localised":
+        # The error of another scheme's step is not seen by a grid study.
+        raise ConfigError(f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given")
+    if math.isnan(promise):
+        return simulation
+    if any(alphas := simulation.get("rate_strengthening", [])):
         # The constants above are those without it; beyond alpha_c no pulse has a width, near -alpha_c slip diverges.
-        given = f"rate_strengthening: {short_repr(simulation['rate_strengthening'])}"
-        raise ConfigError(f"{given}; allowed: 0 where accuracy is given, or a dx of its own")
-    spacings = [
-        settings_for(
-            promise, boundary=simulation["boundary"], prestress=run.profile, gamma=run.gamma,
-            damping_ratio=run.damping[1], release=run.release, fields="fields" in simulation["record"],
-        )["dx"]
-        for run in runs(simulation)
-    ]  # fmt: skip
-    return {**simulation, "spacings": spacings}
+        allowed = "0 where accuracy is given, or a dx of its own"
+        raise ConfigError(f"rate_strengthening: {short_repr(alphas)}; allowed: {allowed}")
+    common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
+    settings = [
+        settings_for(promise, prestress=profile, gamma=gamma, damping_ratio=ratio, release=release, **common)
+        for release, profile, gamma, _, ratio, _ in runs(simulation)
+    ]
+    return {**simulation, "spacings": [found["dx"] for found in settings]}
 
 
-def _over_springs(
-    error: float, levels: list[float], peak: float, gamma: float, ratio: float, release: str, fields: bool
+def _spacings(
+    error: float, prestress: Prestress, gamma: float, ratio: float, release: str, fields: bool
 ) -> list[float]:
-    """Spacings that each number under a displacement boundary allows."""
-    nucleation = min(peak, 1.0 / math.sqrt(gamma))
-    start = NUCLEATION * (1.0 + ratio) / nucleation
-    spacings = [nucleation / BLOCKS, error / start]
-    for level in (level for level in levels if level > 0.0):
-        speed = _speed(level, ratio, release)
-        # In the limit dx -> 0 damping acts through the speed alone.
-        width = pulse_behind_front(level, gamma, 0.0, speed).width
-        layer = ratio * speed / ((speed - 1.0) * (speed + 1.0))
-        spacings += [
-            width / BLOCKS,
-            width * math.sqrt(error / (SPEED + SPEED_LAYER * layer * speed)),
-            error / (start + SLOW_FRONT / width),
-        ]
-        if fields:
-            spacings.append(error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer))
-    return spacings
-
-
-def _free(
-    error: float, levels: list[float], peak: float, prestress: Prestress, ratio: float, fields: bool
-) -> list[float]:
-    """Spacings that each number under a stress boundary allows."""
+    """Spacings that each number allows, with leaf springs or (gamma = 0) under a stress boundary."""
+    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
+    peak = min(prestress.width, *(width for *_, width in prestress.bumps), math.inf)
+    if gamma:
+        nucleation = min(peak, 1.0 / math.sqrt(gamma))
+        start = NUCLEATION * (1.0 + ratio) / nucleation
+        spacings = [nucleation / BLOCKS, error / start]
+        for level in (level for level in levels if level > 0.0):
+            speed = speed_of(level, ratio, release)
+            # In the limit dx -> 0 damping acts through the speed alone.
+            width = pulse_behind_front(level, gamma, 0.0, speed).width
+            layer = ratio * speed / ((speed - 1.0) * (speed + 1.0))
+            spacings += [
+                width / BLOCKS,
+                width * math.sqrt(error / (SPEED + SPEED_LAYER * layer * speed)),
+                error / (start + SLOW_FRONT / width),
+            ]
+            if fields:
+                spacings.append(error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer))
+        return spacings
     spacings = [peak / BLOCKS]
     if max(levels) > 0.0:
         spacings.append(error * peak / FREE_SPEED)
@@ -172,8 +155,3 @@ def _free(
         if fields:
             spacings.append(error * reaches[0] / (VELOCITY + VELOCITY_DAMPED * ratio))
     return spacings
-
-
-@lru_cache(maxsize=4096)
-def _speed(level: float, ratio: float, release: str) -> float:
-    return float(front_speed(level, ratio, release))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache, partial
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -24,7 +24,7 @@ class Run(NamedTuple):
     profile: Prestress
     gamma: float
     dx: float | None
-    damping: tuple[str, float]
+    damping: float
     alpha: float
 
 
@@ -38,20 +38,13 @@ def promise_of(simulation: Mapping) -> float | None:
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     """Scenes of a resolved simulation, in the order of its lists, and what each records.
 
-    Parameters
-    ----------
-    simulation : as `resolve` returns it; with ``chunk``, its number and how many there are, only the runs of that chunk
-
-    Raises
-    ------
-    ValueError
-        If a scene is refused, naming the key, the value and what is allowed.
+    With ``chunk``, its number and how many there are, only of that chunk.
+    Raises ValueError: if a scene is refused, naming the key, the value and what is allowed.
     """
-    scenes, samples = [], []
+    scenes = []
     for place, run in enumerate(runs(simulation)):
-        kind, value = run.damping
         dx = _spacing(simulation, run, place)
-        beta = value if kind == "beta" else value * dx
+        beta = run.damping if "beta" in simulation else run.damping * dx
         scene = Scene(
             prestress=run.profile,
             duration=_duration(simulation["duration"], run.profile, run.gamma),
@@ -65,51 +58,50 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
             **{key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")},
         )
         scenes.append(scene)
-        samples.append(_samples(simulation.get("samples"), scene))
-    return scenes, samples
+    return scenes, [_samples(simulation.get("samples"), scene.duration) for scene in scenes]
 
 
 def runs(simulation: Mapping) -> Iterator[Run]:
     """The runs of a resolved simulation or of a chunk of it, one after the other."""
-    axes, profile_of = _axes(simulation), cache(partial(_profile, simulation))
-    count, chunk = run_count(simulation), simulation.get("chunk")
-    for run in runs_of(chunk[0], chunk[1], count) if chunk else range(count):
-        places = np.unravel_index(run, [len(axis) for axis in axes])
-        release, *shape, gamma, dx, damping, alpha = (
-            axis[int(at)] for axis, at in zip(axes, places, strict=True)
-        )
-        yield Run(release, profile_of(*shape), gamma, dx, damping, alpha)
+    chunk = simulation.get("chunk")
+    wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
+    for number, (release, *shape, gamma, dx, damping, alpha) in enumerate(product(*_axes(simulation))):
+        if wanted is None or number in wanted:
+            yield Run(release, _profile(*shape), gamma, dx, damping, alpha)
 
 
 def run_count(simulation: Mapping) -> int:
     """How many runs a resolved simulation is the product of."""
-    return math.prod(len(axis) for axis in _axes(simulation))
+    return math.prod(map(len, _axes(simulation)))
 
 
 def _axes(simulation: Mapping) -> list[Sequence]:
     """The lists whose product the runs are."""
-    release, rule = simulation["release"], simulation.get("beyond")
-    shapes: list[Sequence] = [range(len(simulation.get("profiles", ())))]
-    if "profiles" not in simulation:
-        right = simulation["right"]
-        # One step a level, at the position from which the level holds.
-        steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
-        shapes = [simulation["left"], [None] if right == "same" else right, simulation["width"], steps]
-    kind = "beta" if "beta" in simulation else "damping_ratio"
+    release, right, rule = simulation["release"], simulation.get("right"), simulation.get("beyond")
+    shapes = (
+        [simulation["profiles"]]
+        if "profiles" in simulation
+        else [
+            simulation["left"],
+            [None] if right == "same" else right,
+            simulation["width"],
+            # One step a level, at the position from which the level holds.
+            [((rule["position"], level),) for level in rule["levels"]] if rule else [()],
+        ]
+    )
     return [
         [release] if isinstance(release, str) else release,
         *shapes,
         simulation.get("gamma", [0.0]),
         simulation.get("dx", [None]),
-        [(kind, value) for value in simulation[kind]],
+        simulation.get("beta", simulation["damping_ratio"]),
         simulation.get("rate_strengthening", [0.0]),
     ]
 
 
-def _profile(simulation: Mapping, *shape) -> Prestress:
-    if "profiles" in simulation:
-        return Prestress(**simulation["profiles"][shape[0]])
-    left, right, width, steps = shape
+def _profile(left, right=None, width=1.0, steps=()) -> Prestress:
+    if isinstance(left, Mapping):
+        return Prestress(**left)
     return Prestress(left=left, right=left if right is None else right, width=width, steps=steps)
 
 
@@ -127,10 +119,11 @@ def _spacing(simulation: Mapping, run: Run, place: int) -> float:
 
 def _step(simulation: Mapping, gamma_dx2: float, ratio: float, alpha_dx: float) -> float:
     """The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less."""
-    bound = largest_step(simulation["scheme"], simulation["accuracy"]["order"], ratio, gamma_dx2, alpha_dx)
-    step = simulation.get("max_step", min(simulation["accuracy"]["max_step"], MARGIN * bound))
-    if "promise" in simulation["accuracy"]:
-        step = min(step, simulation["accuracy"]["max_step"])
+    accuracy = simulation["accuracy"]
+    bound = largest_step(simulation["scheme"], accuracy["order"], ratio, gamma_dx2, alpha_dx)
+    step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
+    if "promise" in accuracy:
+        step = min(step, accuracy["max_step"])
     return float(step * simulation["coarser"] if "fixed" in simulation["spacing"] else step)
 
 
@@ -148,10 +141,9 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
     return float(value)
 
 
-def _samples(rule: Mapping | None, scene: Scene) -> Samples | None:
+def _samples(rule: Mapping | None, duration: float) -> Samples | None:
     if rule is None:
         return None
-    positions = np.zeros(1)
-    if rule["positions"] > 1:
-        positions = np.linspace(-rule["extent"], rule["extent"], rule["positions"])
-    return Samples(times=np.linspace(0.0, scene.duration, rule["times"]), positions=positions)
+    extent, count = rule["extent"], rule["positions"]
+    positions = np.linspace(-extent, extent, count) if count > 1 else np.zeros(1)
+    return Samples(times=np.linspace(0.0, duration, rule["times"]), positions=positions)

@@ -1,11 +1,12 @@
 """Every key of the configuration, once: type, range, default, meaning with unit (in brackets) and origin.
 
-From these come the refusals (`problems`), and through docs/describe.py the JSON Schema in
-workflow/schemas and the tables of config/README.md.
+From these come the refusals (`read`), and through docs/describe.py the JSON Schema in workflow/schemas and the
+tables of config/README.md. What a key says of a mapping is not said again of its class.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
@@ -39,14 +40,20 @@ def key(description: str, default: Any = ..., words: str | None = None, **limits
     return Field(default, description=description, **extra, **limits)
 
 
-def require(condition: bool, problem: str) -> None:
-    """Raise with a problem, as "key: value; allowed: ...", unless a condition holds."""
+def require(condition: bool, found: str, allowed: str) -> None:
+    """Refuse a key and its value with what is allowed, unless a condition holds."""
     if not condition:
-        raise ValueError(problem)
+        raise ValueError(f"{found}; allowed: {allowed}")
+
+
+def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
+    """Refuse a name that is none of some, with the nearest of them."""
+    if name not in names:
+        raise ValueError(f"{key}: {short_repr(name)}{nearest(name, names)}; allowed: {allowed}")
 
 
 def _all_different(values: list[T]) -> list[T]:
-    if len({repr(value) for value in values}) < len(values):
+    if len({*map(repr, values)}) < len(values):
         raise PydanticCustomError("different", "an entry twice")
     return values
 
@@ -78,7 +85,8 @@ Title = Annotated[
     ),
 ]
 
-ROWS_OF_STEPS, ROWS_OF_BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width]"
+STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width]"
+STUDIES = "a list of different names, at least one"
 UNITS, RULE = "one of time, half_periods, balance_distances", "fixed, or scale, width_power and gamma_power"
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
@@ -90,29 +98,23 @@ class Profile(Block):
     right: float = key("level far to the right [S]")
     width: Positive = key("standard deviation W of the Gaussian at nucleation, >= dx [H] (paper)", 1.0)
     peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
-    steps: list[Step] = key(
-        "beyond each position, away from x = 0, its level holds [H, S]", [], ROWS_OF_STEPS
-    )
-    bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], ROWS_OF_BUMPS)
+    steps: list[Step] = key("beyond each position, away from x = 0, its level holds [H, S]", [], STEPS)
+    bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
 
 
 class Beyond(Block):
-    """Another level on one side, one run a level."""
-
     position: float = key("from here on, away from x = 0 and not there, the level is replaced [H]")
     levels: Distinct[float] = key("by each of these in turn [S]")
 
 
 class Duration(Block):
-    """How long a run is, in one of three units."""
-
     time: Positive | None = key("the duration itself [H/c]", None)
     half_periods: Positive | None = key("in pi/sqrt(gamma); under `displacement`", None)
     balance_distances: Positive | None = key("in |x_minus|; left level < 0, right 0", None)
 
 
 class SpacingRule(Block):
-    """A rule for the block spacing: the preset's dx times scale W^width_power gamma^gamma_power, or a fixed one."""
+    """The block spacing: the preset's dx times scale W^width_power gamma^gamma_power, or a fixed one."""
 
     fixed: Spacing | None = key("the spacing, in the grid study too; alone [H]", None)
     scale: Positive = key("factor of the preset's dx", 1.0)
@@ -121,8 +123,6 @@ class SpacingRule(Block):
 
 
 class Recording(Block):
-    """Where and when slip and slip velocity are sampled."""
-
     times: int = key("how many, evenly over the duration", ge=2, le=100_000)
     positions: int = key("how many, from -extent to extent; 1: at x = 0", ge=1, le=100_000)
     extent: NonNegative = key("how far to each side [H]")
@@ -138,17 +138,16 @@ class Physics(Block):
 
     def alone(self, key: str, *others: str) -> None:
         """Refuse a key that is given with another."""
-        given = [other for other in (key, *others) if other in self.model_fields_set]
-        text = f"{key}: given with {', '.join(given[1:])}; allowed: one or the other (null removes a key)"
-        require(key not in given or len(given) == 1, text)
+        given = ", ".join(other for other in others if other in self.model_fields_set)
+        allowed = "one or the other (null removes a key)"
+        require(key not in self.model_fields_set or not given, f"{key}: given with {given}", allowed)
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
         gamma, springs = getattr(self, "gamma", None), self.boundary == "displacement"
-        missing = "gamma: missing; allowed: > 0 under boundary 'displacement'"
-        require(not springs or gamma is not None, missing)
+        require(not springs or gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
         none = "left out under boundary 'stress', which has no leaf springs (gamma: null removes it)"
-        require(springs or gamma is None, f"gamma: {gamma!r}; allowed: {none}")
+        require(springs or gamma is None, f"gamma: {gamma!r}", none)
         self.alone("beta", "damping_ratio")
         return self
 
@@ -159,11 +158,7 @@ class Simulation(Physics):
     left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
     right: Literal["same"] | Distinct[float] | None = key("on the right [S]", None)
     width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
-    profiles: Distinct[Profile] | None = key(
-        "whole profiles, below, instead of the three above",
-        None,
-        "a list of different profiles, at least one",
-    )
+    profiles: Distinct[Profile] | None = key("whole profiles, below, instead of the three above", None)
     beyond: Beyond | None = key("another level on one side, below", None)
     gamma: Distinct[Positive] | None = key(
         "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)", None
@@ -181,7 +176,7 @@ class Simulation(Physics):
     )
     friction_ratio: NonNegative | None = key("by default the model's", None)
     record: Distinct[Record] = key(
-        "what is kept: release and stick times; slip, velocity and acceleration at the end; samples",
+        "what is kept: release and stick times; slip, velocity, acceleration at the end; samples",
         words=RECORDED,
     )
     samples: Recording | None = key("what `record: [fronts, samples]` samples, below", None)
@@ -194,17 +189,17 @@ class Simulation(Physics):
         rule, units = self.spacing.model_fields_set, sorted(self.duration.model_fields_set)
         springs, recorded = self.boundary == "displacement", "samples" in self.record
         levels = self.left is not None and self.right is not None
-        require(levels or self.profiles is not None, "left, right: missing; allowed: lists, or profiles")
-        require(rule == {"fixed"} or "fixed" not in rule, "spacing.fixed: given with others; allowed: alone")
-        require(len(units) == 1, f"duration: {units}; allowed: {UNITS} (null removes a key)")
-        only = "given; allowed: only under boundary 'displacement'"
-        require(springs or "half_periods" not in units, f"duration.half_periods: {only}")
-        require(springs or "gamma_power" not in rule, f"spacing.gamma_power: {only}")
-        require("fronts" in self.record, f"record: {self.record}; allowed: {RECORDED}")
-        text = "samples: missing; allowed: times, positions and extent when record has 'samples'"
-        require(self.samples is not None or not recorded, text)
-        text = "samples: given, but not recorded; allowed: with samples in record (samples: null removes it)"
-        require(self.samples is None or recorded, text)
+        require(levels or self.profiles is not None, "left, right: missing", "lists, or profiles")
+        require(rule == {"fixed"} or "fixed" not in rule, "spacing.fixed: given with others", "alone")
+        require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
+        only = "only under boundary 'displacement'"
+        require(springs or "half_periods" not in units, "duration.half_periods: given", only)
+        require(springs or "gamma_power" not in rule, "spacing.gamma_power: given", only)
+        require("fronts" in self.record, f"record: {self.record}", RECORDED)
+        sampled, parts = self.samples is not None, "times, positions and extent when record has 'samples'"
+        require(sampled or not recorded, "samples: missing", parts)
+        only = "with samples in record (samples: null removes it)"
+        require(recorded or not sampled, "samples: given, but not recorded", only)
         return self
 
 
@@ -222,8 +217,6 @@ class NamedScene(Profile, Physics):
 
 
 class Preset(Block):
-    """One trade of speed for accuracy."""
-
     dx: Spacing = key("block spacing where a simulation does not scale it [H]")
     max_step: Positive = key("largest time step; strong damping may need less [dx]")
     order: int = key("order of the Taylor step", ge=3, le=8)
@@ -234,8 +227,6 @@ class Preset(Block):
 
 
 class Model(Block):
-    """What holds for every simulation that does not say otherwise."""
-
     damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
     release: Release = key(
         "whether stress at release has the damping force (`total`) or not (figure; `elastic` is printed)"
@@ -253,8 +244,6 @@ class Model(Block):
 
 
 class Measure(Block):
-    """How numbers are read off a run."""
-
     share: Fraction = key(
         "under a stress boundary T_trans is when the left front has covered this fraction of |x_minus|; the"
         " arrest itself never comes in the continuum"
@@ -268,8 +257,6 @@ class Measure(Block):
 
 
 class Sketch(Block):
-    """The layer of figure 1."""
-
     thickness: float = key("of the layer in the sketch [H]", ge=0.01, le=100.0)
     strip_width: float = key("of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
 
@@ -278,35 +265,27 @@ Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
 class Steps(Block):
-    """Numbers in steps of equal ratio."""
-
     from_: Ratio = key("the first", alias="from")
     to: Ratio = key("the last, above the first")
     count: int = key("how many", ge=2, le=10_000)
 
     @model_validator(mode="after")
     def _upwards(self) -> Self:
-        require(self.to > self.from_, f"to: {self.to}; allowed: > from = {self.from_}")
+        require(self.to > self.from_, f"to: {self.to}", f"> from = {self.from_}")
         return self
 
 
 class DamageZone(Block):
-    """The curves of figure 7."""
-
     stiffness_ratios: Steps = key("G/G_r")
     thickness_ratios: Distinct[Ratio] = key("H_r/H, one curve each")
 
 
 class Figures(Block):
-    """Settings of figures that draw no simulation."""
-
     fig01_system_sketch: Sketch = key("the sketch of the system")
     fig07_damage_zone: DamageZone = key("the damage zone")
 
 
 class Claim(Block):
-    """When a claim counts as reproduced, in place of what stands with it in manuscript/claims.yaml."""
-
     tolerance: NonNegative | None = key("what counts as agreement, by kind", None)
     tolerance_exponent: Positive | None = key(
         "of an approximate claim: largest distance of the exponent from 1", None
@@ -314,8 +293,6 @@ class Claim(Block):
 
 
 class Reading(Block):
-    """A number read off a published figure."""
-
     simulation: str = key("name of the simulation whose run is compared with it")
     quantity: str = key("which of its measured numbers: a column of the measured table")
     statement: str = key("what was read off (figure)", min_length=1)
@@ -332,7 +309,10 @@ class Configuration(Block):
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
         "largest relative numerical error of measured numbers, instead of a preset's spacing and step", None
     )
-    allow_large: bool = key("whether simulations above the limits of cost run", False)
+    # As make and the command line may say it: yes, on, 1.
+    allow_large: Annotated[bool, Field(strict=False)] = key(
+        "whether simulations above the limits of cost run", False
+    )
     model: Model = key("for every simulation that does not say otherwise")
     simulations: dict[Name, Simulation] = key("sweeps by name, each the product of its lists")
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
@@ -340,34 +320,27 @@ class Configuration(Block):
     figures: Figures = key("of figures that draw no simulation")
     claims: dict[str, Claim] = key("other tolerances than those of manuscript/claims.yaml, by claim", {})
     published: dict[str, Reading] = key("numbers read off a published figure, by name")
-    studies: Distinct[Name] | None = key(
-        "studies run for their tables, by name; by default all",
-        None,
-        "a list of different names, at least one",
-    )
+    studies: Distinct[Name] | None = key("studies run for their tables; by default all", None, STUDIES)
 
     @model_validator(mode="after")
     def _names(self) -> Self:
-        hint = nearest(self.preset, self.presets)
-        text = f"preset: {short_repr(self.preset)}{hint}; allowed: {', '.join(self.presets)}"
-        require(self.preset in self.presets, text)
-        text = f"model.scheme: {self.model.scheme!r}; allowed: 'localised' where accuracy is given"
-        require(self.accuracy is None or self.model.scheme == "localised", text)
+        check_name("preset", self.preset, self.presets, ", ".join(self.presets))
+        localised, scheme = "'localised' where accuracy is given", self.model.scheme
+        require(self.accuracy is None or scheme == "localised", f"model.scheme: {scheme!r}", localised)
         for name in self.scenes:
-            text = "also the name of a simulation; allowed: another name"
-            require(name not in self.simulations, f"scenes.{name}: {text}")
+            found = f"scenes.{name}: also the name of a simulation"
+            require(name not in self.simulations, found, "another name")
             taken = name == "index" or name.removesuffix("_numbers") in {*self.scenes} - {name}
-            text = "another file of that name is there; allowed: neither index nor SCENE_numbers"
-            require(not taken, f"scenes.{name}: {text}")
+            found = f"scenes.{name}: another file of that name is there"
+            require(not taken, found, "neither index nor SCENE_numbers")
         known = QUANTITIES | {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
         for entry, reading in self.published.items():
-            name, quantity = reading.simulation, reading.quantity
-            text = f"{short_repr(name)}{nearest(name, self.simulations)}; allowed: a name under simulations"
-            require(name in self.simulations, f"published.{entry}.simulation: {text}")
-            where = f"published.{entry}.quantity: {short_repr(quantity)}"
-            text = f"{where}{nearest(quantity, known)}; allowed: a column of the measured table"
-            require(quantity in known, text)
-            text = f"what simulations.{name} records; this takes record: [fronts, {known[quantity]}]"
-            recorded = ("fronts", *self.simulations[name].record)
-            require(known[quantity] in recorded, f"{where}; allowed: {text}")
+            where, quantity = f"published.{entry}", reading.quantity
+            check_name(
+                f"{where}.simulation", reading.simulation, self.simulations, "a name under simulations"
+            )
+            check_name(f"{where}.quantity", quantity, known, "a column of the measured table")
+            needed, recorded = known[quantity], self.simulations[reading.simulation].record
+            allowed = f"what simulations.{reading.simulation} records; this takes record: [fronts, {needed}]"
+            require(needed in recorded, f"{where}.quantity: {short_repr(quantity)}", allowed)
         return self
