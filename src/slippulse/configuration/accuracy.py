@@ -15,7 +15,7 @@ from typing import Any
 
 from ..model.checks import ConfigError, check_choice, check_kind, check_number, short_repr
 from ..model.prestress import Prestress
-from ..model.scene import BOUNDARIES, RELEASES, Scene
+from ..model.scene import RELEASES, Scene
 from ..model.stability import MARGIN, largest_step
 from ..theory.front_law import front_speed
 from ..theory.pulse import pulse_behind_front
@@ -77,7 +77,6 @@ def settings_for(
     Source: module docstring; the numbers that are covered are listed in `slippulse.measure.promise`.
     """
     check_number("accuracy", accuracy, at_least=SMALLEST, at_most=LARGEST)
-    check_choice("boundary", boundary, BOUNDARIES)
     check_choice("release", release, RELEASES)
     check_kind("prestress", prestress, Prestress)
     if not isinstance(fields, bool):

@@ -41,10 +41,15 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     With ``chunk``, its number and how many there are, only of that chunk.
     Raises ValueError: if a scene is refused, naming the key, the value and what is allowed.
     """
-    scenes = []
+    scenes, accuracy, order = [], simulation["accuracy"], simulation["accuracy"]["order"]
     for place, run in enumerate(runs(simulation)):
         dx = _spacing(simulation, run, place)
         beta = run.damping if "beta" in simulation else run.damping * dx
+        bound = largest_step(simulation["scheme"], order, beta / dx, run.gamma * dx**2, run.alpha * dx)
+        # The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less.
+        step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
+        if "promise" in accuracy:
+            step = min(step, accuracy["max_step"])
         scene = Scene(
             prestress=run.profile,
             duration=_duration(simulation["duration"], run.profile, run.gamma),
@@ -53,8 +58,8 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
             beta=beta,
             release=run.release,
             rate_strengthening=run.alpha,
-            max_step=_step(simulation, run.gamma * dx**2, beta / dx, run.alpha * dx),
-            order=simulation["accuracy"]["order"],
+            max_step=step * simulation["coarser"] if "fixed" in simulation["spacing"] else step,
+            order=order,
             **{key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")},
         )
         scenes.append(scene)
@@ -115,16 +120,6 @@ def _spacing(simulation: Mapping, run: Run, place: int) -> float:
         dx = simulation["accuracy"]["dx"] * rule["scale"]
         dx *= run.profile.width ** rule["width_power"] * run.gamma ** rule["gamma_power"]
     return float(f"{simulation['coarser'] * dx:.12g}")
-
-
-def _step(simulation: Mapping, gamma_dx2: float, ratio: float, alpha_dx: float) -> float:
-    """The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less."""
-    accuracy = simulation["accuracy"]
-    bound = largest_step(simulation["scheme"], accuracy["order"], ratio, gamma_dx2, alpha_dx)
-    step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
-    if "promise" in accuracy:
-        step = min(step, accuracy["max_step"])
-    return float(step * simulation["coarser"] if "fixed" in simulation["spacing"] else step)
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:

@@ -33,6 +33,7 @@ LARGEST_FILE = 1_000_000
 LIKE_SHIPPED = "allowed: keys and values as in config/config.yaml"
 # Lines of a refusal; a reader mends a few at a time.
 LINES = 20
+json_schema = cache(Configuration.model_json_schema)
 SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
 
 
@@ -64,7 +65,9 @@ def read_config(
     try:
         config = Configuration.model_validate(merged)
     except ValidationError as error:
-        raise ConfigError(format_problems(refused(error, merged))) from None
+        # Errors inside of an alternative, as 'same' or a list, are one line about the key.
+        lines = sorted({_line(problem, merged) for problem in error.errors(include_url=False)})
+        raise ConfigError(format_problems(lines)) from None
     if every_run and (problems := simulation_problems(config)):
         raise ConfigError(format_problems(problems))
     return config
@@ -80,7 +83,7 @@ def _merge(base: Mapping, overlay: Mapping, place: tuple[str, ...] = ()) -> dict
         elif value is not None:
             merged[key] = value
         elif key not in merged and (hint := nearest(key, merged)):
-            raise ConfigError(f"{dotted((*place, key))}: null{hint}; allowed: null for a key that there is")
+            raise ConfigError(f"{_dotted((*place, key))}: null{hint}; allowed: null for a key that there is")
         else:
             merged.pop(key, None)
     return merged
@@ -170,22 +173,10 @@ def format_problems(problems: Sequence[str]) -> str:
     return "\n".join([*problems[:LINES], *rest])
 
 
-@cache
-def json_schema() -> dict[str, Any]:
-    """The JSON Schema of the configuration."""
-    return Configuration.model_json_schema()
-
-
-def refused(error: ValidationError, config: Mapping) -> list[str]:
-    """One line for each key of a configuration, builtins, that its validation refuses."""
-    # Errors inside of an alternative, as 'same' or a list, are one line about the key.
-    return sorted({_line(problem, config) for problem in error.errors(include_url=False)})
-
-
 def _line(problem: Mapping, config: Mapping) -> str:
     kind, place = problem["type"], problem["loc"]
     if kind == "value_error":
-        return ".".join(filter(None, [dotted(place) if place else "", str(problem["ctx"]["error"])]))
+        return ".".join(filter(None, [_dotted(place) if place else "", str(problem["ctx"]["error"])]))
     depth, node, value = _walk(place, config)
     if kind == "missing":
         # An incomplete new entry may be a misspelt one.
@@ -193,14 +184,14 @@ def _line(problem: Mapping, config: Mapping) -> str:
         hint = nearest(place[-2], {*others} - {place[-2]}) if others else ""
         presets = config.get("presets", ()) if place == ("preset",) else ()
         names = f"; allowed: {', '.join(presets)}" if presets else ""
-        return f"{dotted(place)}: missing; it is required (null removes a key){hint}{names}"
+        return f"{_dotted(place)}: missing; it is required (null removes a key){hint}{names}"
     if kind == "extra_forbidden":
         known = [*node["properties"]]
-        return f"{dotted(place)}: unknown key{nearest(place[-1], known)}; allowed: {', '.join(known)}"
+        return f"{_dotted(place)}: unknown key{nearest(place[-1], known)}; allowed: {', '.join(known)}"
     if place[-1] == "[key]":
-        return f"{dotted(place[:-2])}: {short_repr(place[-2])}; allowed: {NAME_WORDS}"
+        return f"{_dotted(place[:-2])}: {short_repr(place[-2])}; allowed: {NAME_WORDS}"
     allowed = "a finite number" if kind == "finite_number" else words(node)
-    return f"{dotted(place[:depth])}: {short_repr(value)}; allowed: {allowed}{_remedy(value)}"
+    return f"{_dotted(place[:depth])}: {short_repr(value)}; allowed: {allowed}{_remedy(value)}"
 
 
 def _walk(place: Sequence[str | int], config: Any) -> tuple[int, dict[str, Any], Any]:
@@ -208,9 +199,8 @@ def _walk(place: Sequence[str | int], config: Any) -> tuple[int, dict[str, Any],
     node, value = resolved(json_schema()), config
     for depth, part in enumerate(place):
         named = [*node.get("patternProperties", {}).values(), node.get("additionalProperties")]
-        inside = (
-            node.get("items") if isinstance(part, int) else node.get("properties", {}).get(part, named[0])
-        )
+        fields = node.get("properties", {})
+        inside = node.get("items") if isinstance(part, int) else fields.get(part, named[0])
         there = isinstance(value, list) or (isinstance(value, Mapping) and part in value)
         if not isinstance(inside, dict) or not there or part == "[key]":
             return depth, node, value
@@ -242,24 +232,22 @@ def words(node: dict[str, Any]) -> str:
         different = "different " if node.get("uniqueItems") else ""
         return f"a list of {different}{item}" + (", at least one" if node.get("minItems") else "")
     if kind in ("number", "integer"):
-        text = " and ".join(f"{sign} {_plain(node[key])}" for key, sign in SIGNS.items() if key in node)
-        if "minimum" in node and "maximum" in node:
-            text = f"from {_plain(node['minimum'])} to {_plain(node['maximum'])}"
+        limits = {
+            key: f"{node[key]:g}".replace("e+0", "e").replace("e-0", "e-") for key in SIGNS if key in node
+        }
+        text = " and ".join(f"{SIGNS[key]} {limit}" for key, limit in limits.items())
+        if {*limits} == {"minimum", "maximum"}:
+            text = f"from {limits['minimum']} to {limits['maximum']}"
         return f"{'a number' if kind == 'number' else 'a whole number'} {text}".strip()
     return {"boolean": "true or false", "string": "text"}.get(str(kind), "a mapping")
 
 
-def _plain(bound: float) -> str:
-    """A bound as it is written."""
-    return f"{bound:g}".replace("e-0", "e-").replace("e+0", "e")
-
-
-def dotted(place: Sequence[str | int]) -> str:
+def _dotted(place: Sequence[str | int]) -> str:
     """A key as a refusal names it."""
-    parts = (
-        str(part) if re.fullmatch(r"\w{1,80}", str(part), re.ASCII) else short_repr(part) for part in place
+    plain = re.compile(r"\w{1,80}", re.ASCII).fullmatch
+    return (
+        ".".join(str(part) if plain(str(part)) else short_repr(part) for part in place) or "the configuration"
     )
-    return ".".join(parts) or "the configuration"
 
 
 def _remedy(value: object) -> str:

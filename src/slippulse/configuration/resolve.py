@@ -94,15 +94,10 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     del given["title"]
     profile = {key: given.pop(key) for key in Profile.model_fields}
     given |= {key: [given[key]] for key in LISTED if key in given}
-    return Simulation.model_validate(
-        given
-        | {
-            "profiles": [profile],
-            "duration": {"time": scene.duration},
-            "record": ["fronts", "fields", "samples"],
-            "samples": {"times": TIMES, "positions": POSITIONS, "extent": extent},
-        }
-    )
+    given["profiles"], given["duration"] = [profile], {"time": scene.duration}
+    given["record"] = ["fronts", "fields", "samples"]
+    given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": extent}
+    return Simulation.model_validate(given)
 
 
 @np.errstate(all="ignore")
@@ -120,8 +115,7 @@ def simulation_problems(config: Configuration) -> list[str]:
             if simulation.chunks > (count := run_count(sweep)):
                 raise ValueError(f"chunks: {simulation.chunks}; allowed: up to the number of runs, {count}")
             scenes, _ = expand(promised(corners(sweep)))
-            _check_nucleation(scenes)
-            _check_resolved(scenes)
+            _check_runs(scenes)
             where = f" (on the lattice {coarsest:g} times coarser of the grid study)"
             expand(promised(corners(sweep | {"coarser": coarsest})))
         except ArithmeticError:
@@ -132,18 +126,14 @@ def simulation_problems(config: Configuration) -> list[str]:
     return problems
 
 
-def _check_nucleation(scenes: Sequence[Scene]) -> None:
-    """Refuse a profile that reaches the threshold at no block, so that nothing ever moves."""
+def _check_runs(scenes: Sequence[Scene]) -> None:
+    """Refuse profiles by which nothing ever moves, and scenes none of which comes near resolving its pulse."""
     for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
         if (profile.bumps or profile.peak < 1.0) and not (largest := profile.largest(dx)) >= 1.0:
             raise ValueError(
                 f"peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
                 f" (dx = {dx:g}); allowed: a pre-stress that reaches 1 somewhere, or nothing moves"
             )
-
-
-def _check_resolved(scenes: Sequence[Scene]) -> None:
-    """Refuse scenes none of which comes near resolving its pulse; those of somewhat few blocks are flagged."""
     least = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Wide pulses first, so that the first run usually settles it.
     ordered = sorted(scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left))

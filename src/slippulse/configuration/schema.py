@@ -76,15 +76,9 @@ Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, float], Field(strict=False)]
 NAME_WORDS = "a name of lower-case letters, digits and underscores that begins with a letter"
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
-Title = Annotated[
-    str,
-    Field(
-        max_length=120,
-        pattern=r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$",
-        json_schema_extra={"allowed": "one line of at most 120 printable characters, not blank"},
-    ),
-]
+PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
 
+TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width]"
 STUDIES = "a list of different names, at least one"
 UNITS, RULE = "one of time, half_periods, balance_distances", "fixed, or scale, width_power and gamma_power"
@@ -206,7 +200,7 @@ class Simulation(Physics):
 class NamedScene(Profile, Physics):
     """One run by name."""
 
-    title: Title = key("one line above figure and page")
+    title: str = key("one line above figure and page", ..., TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key("as under `simulations` (paper: near 2/3)", None)
     damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
     beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
@@ -228,29 +222,18 @@ class Preset(Block):
 
 class Model(Block):
     damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
-    release: Release = key(
-        "whether stress at release has the damping force (`total`) or not (figure; `elastic` is printed)"
-    )
+    release: Release = key("`total`: the damping force counts at release (figure); `elastic`: not (printed)")
     scheme: Scheme = key(
         "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
         " `continuum`: the exact solution of the continuum limit, to which `max_step` and `order` mean nothing"
     )
-    friction_ratio: NonNegative = key(
-        "mu_k/(mu_s - mu_k): beyond stress -(1 + 2 friction_ratio) blocks slide back: flagged"
-    )
-    resolved_blocks: Count = key(
-        "a pulse of fewer blocks (under a stress boundary: a Gaussian of fewer) is flagged as unresolved"
-    )
+    friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): sliding back, beyond -(1 + 2 of it), is flagged")
+    resolved_blocks: Count = key("pulses (under `stress` Gaussians) of fewer blocks are flagged unresolved")
 
 
 class Measure(Block):
-    share: Fraction = key(
-        "under a stress boundary T_trans is when the left front has covered this fraction of |x_minus|; the"
-        " arrest itself never comes in the continuum"
-    )
-    front_window: float = key(
-        "a front speed is a straight line through this last fraction of its path", ge=0.05, lt=1.0
-    )
+    share: Fraction = key("T_trans under `stress`: the left front has covered this fraction of |x_minus|")
+    front_window: float = key("last fraction of a path whose slope is the front speed", ge=0.05, lt=1.0)
     steady_tolerance: Fraction = key("a largest velocity changing less over the last third is steady")
     trailing_times: Distinct[Positive] = key("when the trailing edge is tabulated [H/c] (figure)")
     still: Fraction = key("slower than this fraction of the largest slip velocity is at rest")
@@ -287,9 +270,7 @@ class Figures(Block):
 
 class Claim(Block):
     tolerance: NonNegative | None = key("what counts as agreement, by kind", None)
-    tolerance_exponent: Positive | None = key(
-        "of an approximate claim: largest distance of the exponent from 1", None
-    )
+    tolerance_exponent: Positive | None = key("approximate claims: largest distance of exponent from 1", None)
 
 
 class Reading(Block):
