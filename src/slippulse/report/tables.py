@@ -93,7 +93,7 @@ def failures(ledger: Ledger) -> str:
         for claim in ledger
         if claim.verdict == verdict
     ]
-    return table(["claim", "verdict", "why"], rows, [46, 14, 40], "lll")
+    return table(["claim", "verdict", "why"], rows, [34, 13, 53], "lll")
 
 
 def whole_ledger(ledger: Ledger) -> str:
