@@ -15,11 +15,12 @@ from threading import Thread
 
 import pytest
 import yaml
-from selection import selected, small_sweep
+from selection import small_sweep
 
 from slippulse.data.store import load_table, save_table
 from slippulse.steps.inputs import given
 from slippulse.steps.reach import declared
+from slippulse.steps.targets import selected
 
 PROJECT = Path(__file__).resolve().parents[1]
 # Two workers share two cores.

@@ -67,10 +67,21 @@ def prepare(folder: Path) -> Path:
 def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
     """A run in a process group of its own."""
     command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
-    command += ["--force-use-threads"]
-    command += ["--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
-    with open(folder / "said.txt", "a", encoding="utf-8") as said:
-        return subprocess.Popen(command, cwd=folder, stdout=said, stderr=said, start_new_session=True)
+    command += ["--force-use-threads", "--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
+    return _begun(folder, command)
+
+
+def start_by_make(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
+    """The same as `make replicate` starts it."""
+    options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
+    return _begun(folder, [sys.executable, "workflow/run.py", "replicate"], **options)
+
+
+def _begun(folder: Path, command: list[str], **more: str) -> subprocess.Popen:
+    with open(folder / "said.txt", "w", encoding="utf-8") as said:
+        return subprocess.Popen(
+            command, cwd=folder, env=os.environ | more, stdout=said, stderr=said, start_new_session=True
+        )
 
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
@@ -83,16 +94,6 @@ def digests(folder: Path, results: str = "results") -> dict[str, str]:
         and not path.name.startswith(".")
         and path.relative_to(results).parts[0] not in ("logs", "benchmarks", "records")
     }
-
-
-def start_by_make(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
-    """The same as `make replicate` starts it."""
-    options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
-    with open(folder / "said.txt", "w", encoding="utf-8") as said:
-        return subprocess.Popen(
-            [sys.executable, "workflow/run.py", "replicate"], cwd=folder, env=os.environ | options,
-            stdout=said, stderr=said, start_new_session=True,
-        )  # fmt: skip
 
 
 def at_work(folder: Path) -> list[int]:
@@ -123,31 +124,18 @@ def stop_at(folder: Path, number: int, instant: float, targets: Iterable[str] = 
     return time.monotonic() - sent
 
 
-def group(leader: int) -> list[int]:
-    """Live members of a process group."""
-    members = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                fields = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-            except OSError:
-                continue
-            if int(fields[2]) == leader and fields[0] != "Z":
-                members.append(int(entry.name))
-    return members
+def kill(run: subprocess.Popen, folder: Path, whom: str, chance: random.Random) -> None:
+    """SIGKILL to Snakemake, a job or everything; waits for Snakemake's end.
 
-
-def kill(run: subprocess.Popen, whom: str, chance: random.Random) -> None:
-    """SIGKILL to one kind of victim; all that is left of the run is waited for, or killed, before this returns."""
-    members = group(run.pid)
-    jobs = [member for member in members if member != run.pid]
-    if whom == "Snakemake" or not jobs:
-        os.kill(run.pid, signal.SIGKILL)
-        # Jobs in hand go on as orphans and may still write; the next run starts among them.
-    elif whom == "a job":
-        os.kill(chance.choice(jobs), signal.SIGKILL)
-    else:
+    Jobs of a Snakemake that was killed alone may still write; the next run starts among them.
+    """
+    jobs = [process for process in at_work(folder) if process != run.pid]
+    if whom == "everything":
         os.killpg(run.pid, signal.SIGKILL)
+    else:
+        victim = chance.choice(jobs) if whom == "a job" and jobs else run.pid
+        with suppress(ProcessLookupError):
+            os.kill(victim, signal.SIGKILL)
     run.wait(timeout=300)
 
 
@@ -178,7 +166,7 @@ def fault_run(folder: Path, kills: int, seed: int, say=print, targets: Iterable[
         try:
             run.wait(timeout=instant)
         except subprocess.TimeoutExpired:
-            kill(run, whom, chance)
+            kill(run, harmed, whom, chance)
             report.kills[whom] += 1
             say(f"killed {whom} after {instant:.1f} s: {len(digests(harmed))} files there")
             continue
@@ -192,17 +180,10 @@ def fault_run(folder: Path, kills: int, seed: int, say=print, targets: Iterable[
 
 
 def _finish(folder: Path, expected: dict[str, str], report: Report) -> None:
-    targets = [f"results/{name}" for name in expected]
-    assert start(folder, targets).wait(timeout=1200) == 0, (folder / "said.txt").read_text(encoding="utf-8")[
-        -4000:
-    ]
-    found = digests(folder)
-    differing = [
-        f"{name}: {'missing' if name not in found else 'other' if name in expected else 'not expected'}"
-        for name in sorted({*expected, *found})
-        if expected.get(name) != found.get(name)
-    ]
-    assert not differing, f"other than in a quiet run: {differing}"
+    ended = start(folder, [f"results/{name}" for name in expected]).wait(timeout=1200)
+    assert ended == 0, (folder / "said.txt").read_text(encoding="utf-8")[-4000:]
+    differing = dict(digests(folder).items() ^ expected.items())
+    assert not differing, f"other than in a quiet run: {sorted(differing)}"
     report.comparisons += 1
 
 

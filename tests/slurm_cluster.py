@@ -6,8 +6,8 @@ Starts a cluster of one node on the loopback, with a configuration and a key of 
 it at the end, whatever happened. Packages that are missing are installed with apt-get; for both it must be root.
 """
 
-import hashlib
 import os
+import re
 import shutil
 import signal
 import socket
@@ -16,9 +16,10 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
+from faults import digests
 from pipeline_copy import copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]
@@ -33,8 +34,8 @@ NOT_RUN = "slurm-test: not run"
 SLURM_CONF = """\
 ClusterName=loopback
 SlurmctldHost=localhost
-SlurmctldPort={controller_port}
-SlurmdPort={node_port}
+SlurmctldPort={ports[0]}
+SlurmdPort={ports[1]}
 SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
@@ -81,17 +82,11 @@ def install() -> None:
     quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
     for command in (["update", "-qq"], ["install", "-y", "-qq", "--no-install-recommends", *missing]):
         done = subprocess.run(
-            ["apt-get", *command],
-            env=quiet,
-            capture_output=True,
-            text=True,
-            check=False,
-            stdin=subprocess.DEVNULL,
-        )
+            ["apt-get", *command], env=quiet, capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False
+        )  # fmt: skip
         if done.returncode:
-            raise Unable(
-                f"apt-get {command[0]} failed: {(done.stderr.strip().splitlines() or ['no reason given'])[-1]}"
-            )
+            words = done.stderr.strip().splitlines() or ["no reason given"]
+            raise Unable(f"apt-get {command[0]} failed: {words[-1]}")
 
 
 def find(program: str) -> str | None:
@@ -101,14 +96,11 @@ def find(program: str) -> str | None:
 
 def free_ports(count: int) -> list[int]:
     """Ports of the loopback that nobody listens at."""
-    sockets = [socket.socket() for _ in range(count)]
-    try:
+    with ExitStack() as open_ones:
+        sockets = [open_ones.enter_context(socket.socket()) for _ in range(count)]
         for each in sockets:
             each.bind(("127.0.0.1", 0))
         return [each.getsockname()[1] for each in sockets]
-    finally:
-        for each in sockets:
-            each.close()
 
 
 def processes_of(folder: Path) -> list[int]:
@@ -127,20 +119,12 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
     """A Slurm of one node; gives the environment that leads to it, and ends every process of it."""
     for name in ("state", "spool", "bin"):
         (folder / name).mkdir()
-    controller_port, node_port = free_ports(2)
-    cores = len(os.sched_getaffinity(0))
-    megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10
+    machine = {
+        "cores": len(os.sched_getaffinity(0)),
+        "megabytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10,
+    }
     conf = folder / "slurm.conf"
-    conf.write_text(
-        SLURM_CONF.format(
-            folder=folder,
-            controller_port=controller_port,
-            node_port=node_port,
-            cores=cores,
-            megabytes=megabytes,
-        ),
-        encoding="ascii",
-    )
+    conf.write_text(SLURM_CONF.format(folder=folder, ports=free_ports(2), **machine), encoding="ascii")
     key = folder / "munge.key"
     key.write_bytes(os.urandom(1024))
     key.chmod(0o400)
@@ -149,25 +133,17 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
     srun = folder / "bin/srun"
     srun.write_text(f'#!/bin/sh\nSLURM_CONF={conf} exec {find("srun")} "$@"\n', encoding="ascii")
     srun.chmod(0o755)
-    bin_folder = Path(sys.executable).parent
-    environment = os.environ | {
-        "SLURM_CONF": str(conf),
-        "PATH": f"{folder}/bin:{bin_folder}:{os.environ.get('PATH', '')}",
-    }
+    path = f"{folder}/bin:{Path(sys.executable).parent}:{os.environ.get('PATH', '')}"
+    environment = os.environ | {"SLURM_CONF": str(conf), "PATH": path}
     daemons = []
 
     def daemon(name: str, *arguments: str) -> None:
         with open(folder / f"{name}.out", "wb") as said:
-            daemons.append(
-                subprocess.Popen(
-                    [find(name), *arguments],
-                    env=environment,
-                    stdin=subprocess.DEVNULL,
-                    stdout=said,
-                    stderr=said,
-                    start_new_session=True,
-                )
-            )
+            process = subprocess.Popen(
+                [find(name), *arguments], env=environment, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
+                start_new_session=True,
+            )  # fmt: skip
+            daemons.append(process)
 
     try:
         munge = [f"--{option}={folder}/munge.{ending}" for option, ending in (
@@ -204,13 +180,12 @@ def end_all(folder: Path) -> None:
 
 def asked(environment: dict[str, str], *command: str) -> str:
     """What a command of Slurm answers; nothing while there is no answer."""
-    try:
+    with suppress(OSError, subprocess.TimeoutExpired):
         done = subprocess.run(
             command, env=environment, capture_output=True, text=True, timeout=10, check=False
         )
-    except (OSError, subprocess.TimeoutExpired):
-        return ""
-    return done.stdout.strip()
+        return done.stdout.strip()
+    return ""
 
 
 def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
@@ -218,13 +193,10 @@ def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
     until = time.monotonic() + seconds
     while not ready():
         if time.monotonic() > until:
-            words = [
-                line
-                for path in (folder / f"{name}.out", folder / f"{name}.log")
-                if path.exists()
-                for line in path.read_text(encoding="utf-8", errors="replace").splitlines()
-            ]
-            raise Unable(f"{name} did not start within {seconds:g} s: {(words or ['it said nothing'])[-1]}")
+            paths = [path for path in (folder / f"{name}.out", folder / f"{name}.log") if path.exists()]
+            said = "".join(path.read_text(encoding="utf-8", errors="replace") for path in paths)
+            words = said.splitlines() or ["it said nothing"]
+            raise Unable(f"{name} did not start within {seconds:g} s: {words[-1]}")
         time.sleep(0.1)
 
 
@@ -242,34 +214,22 @@ def draft(folder: Path, environment: dict[str, str], *arguments: str) -> float:
     ]
     with open(folder / "said.txt", "wb") as said:
         done = subprocess.run(
-            [*command, "--config", "preset=draft", "--", "all"],
-            cwd=folder,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=said,
-            stderr=said,
-            check=False,
-        )
+            [*command, "--config", "preset=draft", "--", "all"], cwd=folder, env=environment, check=False,
+            stdin=subprocess.DEVNULL, stdout=said, stderr=said,
+        )  # fmt: skip
     assert done.returncode == 0, (folder / "said.txt").read_text(encoding="utf-8")[-6000:]
     return time.monotonic() - began
 
 
-def digests(folder: Path) -> dict[str, str]:
+def data_of(folder: Path) -> dict[str, str]:
     """Checksums of the data in a folder's results."""
-    results = folder / "results"
-    return {
-        str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(results.rglob("*"))
-        if path.suffix in COMPARED
-    }
+    return {name: digest for name, digest in digests(folder).items() if name.endswith(COMPARED)}
 
 
 def finished(folder: Path) -> list[str]:
     """State in which each job of the cluster ended."""
-    lines = (folder / "finished.txt").read_text(encoding="utf-8").splitlines()
-    return [
-        field.partition("=")[2] for line in lines for field in line.split() if field.startswith("JobState=")
-    ]
+    text = (folder / "finished.txt").read_text(encoding="utf-8")
+    return re.findall(r"\bJobState=(\S*)", text)
 
 
 def compare(folder: Path) -> str:
@@ -290,7 +250,7 @@ def compare(folder: Path) -> str:
     cores = len(os.sched_getaffinity(0))
     with cluster(daemons) as environment:
         seconds = draft(local, dict(os.environ), "--cores", str(cores))
-        expected = digests(local)
+        expected = data_of(local)
         print(f"Without Slurm: {len(expected)} data files in {seconds:.0f} s", flush=True)
         # There is no accounting here, and nobody else in the queue.
         seconds = draft(
@@ -300,7 +260,7 @@ def compare(folder: Path) -> str:
             "--slurm-status-command=squeue",
             "--slurm-init-seconds-before-status-checks=1",
         )
-    states, found = finished(daemons), digests(remote)
+    states, found = finished(daemons), data_of(remote)
     print(f"Through Slurm: {len(states)} jobs, {len(found)} data files in {seconds:.0f} s", flush=True)
     left = processes_of(daemons)
     assert not left, f"still running: {left}"

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 import yaml
-from selection import selected, small_sweep
+from selection import small_sweep
 
 from slippulse.configuration.expand import expand
 from slippulse.data.store import load_table, save_table
@@ -16,6 +16,7 @@ from slippulse.predict.measured import measured_table
 from slippulse.predict.table import predictions
 from slippulse.simulation.sweep import run_sweep
 from slippulse.steps.reach import declared
+from slippulse.steps.targets import selected
 
 # A claim that a choice decides, and one without a choice, as in claims.json.
 CLAIMS = [

@@ -169,7 +169,7 @@ def test_an_unreadable_table_is_named(finished):
 
 # A file where a folder goes, or a folder where a file goes.
 PLACES = {
-    "results": "file", "results/data": "file", "results/logs": "file", "results/logs/simulate": "file",
+    "results": "file", "results/data": "file", "results/logs": "file",
     ".snakemake": "file", "results/kernels.txt": "folder", "results/measurements/arrest.csv": "folder",
     "results/records/data/arrest.nc.json": "folder",
 }  # fmt: skip

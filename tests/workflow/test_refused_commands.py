@@ -27,7 +27,7 @@ COMMANDS = {
         ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
     ),
     "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
-    "rule for many files": ("preset: draft\n", ["simulate"], ["target: 'simulate'", "results/data/{simulation}.nc"]),
+    "rule for many files": ("preset: draft\n", ["simulate"], ["target: 'simulate'", "a rule of a single job"]),
     "unknown scene": ("preset: draft\n", ["results/scenes/bariere.html"], ["did you mean 'results/scenes/barrier"]),
 }  # fmt: skip
 

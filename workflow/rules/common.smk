@@ -13,7 +13,7 @@ from slippulse.configuration.resolve import accuracy_of, all_simulations, bound_
 from slippulse.data.alterations import changes
 from slippulse.model.checks import ConfigError
 from slippulse.steps.job import Jobs, end_with
-from slippulse.steps.reach import PACKAGE, below, declared, sources
+from slippulse.steps.reach import PACKAGE, below, declared, needs_of, sources
 from slippulse.steps.targets import selected
 
 
@@ -62,15 +62,8 @@ def run_step(rule, wildcards, input, output, params, threads):
 
 # Each figure and study by name; what it is made from stands in its module: simulations by kind of file, studies, and
 # dotted keys of the configuration.
-FIGURES, STUDIES = (
-    sorted(path.stem for path in (PACKAGE / "figures").glob(pattern)) for pattern in ("fig*.py", "study_*.py")
-)
-NEEDS = {name: declared(f"figures.{name}", "NEEDS") for name in FIGURES + STUDIES}
-STUDY_NEEDS = {
-    path.stem: needs
-    for path in sorted((PACKAGE / "studies").glob("*.py"))
-    if (needs := declared(f"studies.{path.stem}", "NEEDS")) is not None
-}
+NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
+FIGURES = [name for name in NEEDS if name.startswith("fig")]
 if unknown := {*(CONFIG.studies or ())} - {*STUDY_NEEDS}:
     refuse(f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(STUDY_NEEDS)}")
 SWEEP_NEEDS = {f"sweep_{name}": {"measured": [name], "predicted": [name]} for name in CONFIG.simulations}

@@ -18,7 +18,7 @@ for study, needs in STUDY_NEEDS.items():
             step="run_study",
             study=study,
             # Under `sweeps` the resolved simulations that it names.
-            values=selected(config, needs.get("settings", ()))
+            values=selected(config, needs.get("settings", ()), {})
             | ({"sweeps": {name: sweep_of(name) for name in needs["sweeps"]}} if "sweeps" in needs else {}),
         message:
             f"Studying {study}"

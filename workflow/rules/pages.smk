@@ -156,7 +156,10 @@ rule write_index:
     output:
         html="results/index.html",
     params:
-        galleries={"The figures of the paper": FIGURES, "Beyond the paper": STUDIES}
+        galleries={
+            "The figures of the paper": FIGURES,
+            "Beyond the paper": [name for name in NEEDS if name not in FIGURES],
+        }
         | ({"Sweeps of your own": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
         scenes=TITLES,
     message:

@@ -72,12 +72,11 @@ def files_of(*targets):
 
 def refuse_targets(targets):
     """A misspelt target is refused with the nearest one that there is, and a place for results that is taken."""
-    patterns = {name: rule.output[0] for name, rule in RULES.items() if rule.output and "{" in rule.output[0]}
-    check_targets(targets, [*RULES, *MADE, "verify"], patterns)
-    records = [f"results/{record_path(origin.record)}" for origin in ORIGINS.values()]
-    logs = [log_of(name, "_") for name in patterns]
-    folders = {parent for file in [*MADE, *records, *logs] for parent in Path(file).parents[:-1]}
-    check_places([Path(".snakemake"), *sorted(folders)], map(Path, [*MADE, *records]))
+    single = [name for name, rule in RULES.items() if not rule.output or "{" not in rule.output[0]]
+    check_targets(targets, [*single, *MADE])
+    files = [*MADE, *(f"results/{record_path(origin.record)}" for origin in ORIGINS.values())]
+    folders = {parent for file in files for parent in Path(file).parents[:-1]}
+    check_places([Path(".snakemake"), Path("results/logs"), *sorted(folders)], map(Path, files))
 
 
 def refuse_expensive(wanted):

@@ -94,13 +94,7 @@ def record_path(name: str) -> str:
 
 
 def read_record(path: str | Path) -> Record:
-    """Read one record.
-
-    Raises
-    ------
-    OSError, ValueError
-        Without a record, or with one that is not what a job writes.
-    """
+    """Read one record. Raises OSError or ValueError: without one, or if it is not what a job writes."""
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         return Record(**{name: kind(content[name]) for name, kind in Record.__annotations__.items()})

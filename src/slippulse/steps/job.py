@@ -43,14 +43,10 @@ def end_with(descriptor: int) -> None:
 
 
 class Jobs:
-    """Runs jobs, each in a process of its own; threads may share it.
-
-    Parameters
-    ----------
-    program : modules of the main program, which every process would load again
-    """
+    """Runs jobs, each in a process of its own; threads may share it."""
 
     def __init__(self, program: Sequence[str] = ()) -> None:
+        """With modules of the main program, which every process would load again."""
         # Elsewhere libraries of the system do not all survive a fork.
         self._forks = sys.platform == "linux"
         self._processes = (
@@ -66,12 +62,7 @@ class Jobs:
             Thread(target=self._wait_for, args=(self._processes.Process(),), daemon=True).start()
 
     def run(self, *job) -> None:
-        """Run a job, given as `run_job` takes it.
-
-        Raises
-        ------
-        JobFailed
-        """
+        """Run a job, given as `run_job` takes it. Raises JobFailed."""
         self._wait_for(self._processes.Process(target=run_job, args=job))
 
     def _wait_for(self, process: BaseProcess) -> None:
@@ -88,11 +79,11 @@ class Jobs:
 
 
 def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path) -> None:
-    """Run one step as all that a process does.
+    """Run one step, a module with ``run(files, outputs, settings)``, as all that a process does.
 
     Parameters
     ----------
-    origin : what its outputs are made by; its step is a module with ``run(files, outputs, settings)``
+    origin : what its outputs are made by
     name : of the job, for messages
     files, outputs : paths, or lists of paths, by name
     settings : what the step takes from the configuration

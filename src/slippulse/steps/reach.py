@@ -81,6 +81,13 @@ def declared(module: str, name: str, default=None):
     return default
 
 
+def needs_of(room: str) -> dict[str, dict]:
+    """The NEEDS of all modules of a room that have them, by name."""
+    names = sorted(path.stem for path in (PACKAGE / room).glob("*.py"))
+    found = {name: declared(f"{room}.{name}", "NEEDS") for name in names}
+    return {name: needs for name, needs in found.items() if needs is not None}
+
+
 def sources(*modules: str) -> list[str]:
     """Files that any of some modules, dotted below slippulse, reaches by its imports, and the FILES that these name.
 

@@ -4,12 +4,11 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
-from types import MappingProxyType
 
 from ..model.checks import ConfigError, nearest, short_repr
 
 
-def selected(config: Mapping, keys: Iterable[str], own: Mapping = MappingProxyType({})) -> dict:
+def selected(config: Mapping, keys: Iterable[str], own: Mapping) -> dict:
     """The values of some dotted keys of the configuration, nested as there, beside what is a result's own."""
     found = deepcopy(dict(own))
     for key in keys:
@@ -21,38 +20,23 @@ def selected(config: Mapping, keys: Iterable[str], own: Mapping = MappingProxyTy
     return found
 
 
-def check_targets(targets: Iterable[str], known: Sequence[str], patterns: Mapping[str, str]) -> None:
-    """Refuse a target that no rule makes.
+def check_targets(targets: Iterable[str], known: Sequence[str]) -> None:
+    """Refuse a target that is none of the rules and files that there are.
 
-    Parameters
-    ----------
-    targets : what is asked for
-    known : rules and files that there are
-    patterns : rules that make a file for each of many names, with how it is called
-
-    Raises
-    ------
-    ConfigError
-        Naming the target and the one that was probably meant.
+    Raises ConfigError: naming the target and the one that was probably meant.
     """
     for target in targets:
-        if target in patterns:
-            allowed = f", a rule for many files; allowed: one of them, {patterns[target]}"
-            raise ConfigError(f"target: {short_repr(target)}{allowed}")
         if target not in known:
-            hint = nearest(target, known)
-            raise ConfigError(
-                f"target: {short_repr(target)}{hint}; allowed: a rule, or a file that one makes"
+            allowed = (
+                f"{nearest(target, known)}; allowed: a rule of a single job, or a file that a rule makes"
             )
+            raise ConfigError(f"target: {short_repr(target)}{allowed}")
 
 
 def check_places(folders: Iterable[Path], files: Iterable[Path]) -> None:
     """Refuse a place for a folder, or for a file, in which there is something else.
 
-    Raises
-    ------
-    ConfigError
-        Naming the place.
+    Raises ConfigError: naming the place.
     """
     taken = [(path, "file", "folder") for path in folders if os.path.lexists(path) and not path.is_dir()]
     taken += [(path, "folder", "file") for path in files if path.is_dir()]
