@@ -13,11 +13,9 @@ from report.conftest import read
 
 from slippulse.claims.reading import AS_PRINTED, WHY_NONE, claims_of, coverage
 from slippulse.claims.rules import KINDS
-from slippulse.report.gallery import NAMED, Gallery
-from slippulse.report.manuscript import DOCUMENTS
-from slippulse.report.parameters import parameters
+from slippulse.report.manuscript import DOCUMENTS, NAMED, Gallery
 from slippulse.report.tables import sticking
-from slippulse.report.texts import ERRATUM, PARTS, Caption, read_captions, read_errata
+from slippulse.report.texts import ERRATUM, PARTS, Caption, parameters, read_captions, read_errata
 
 EXPRESSION = re.compile(r"\{\{.+?\}\}", re.S)
 

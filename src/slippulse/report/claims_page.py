@@ -21,13 +21,8 @@ SIGNS = dict(
 )
 # The bar of a deviation ends at this many tolerances.
 LONGEST = 2.0
-# Kinds of tables by their folder.
-KINDS = {
-    "measurements": "measured",
-    "predictions": "predicted",
-    "uncertainties": "uncertainties",
-    "studies": "study",
-}
+# Folders of tables whose kind has another name.
+KINDS = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
 # Of more simulations than these everything is made.
 FEW = 6
 
@@ -38,7 +33,7 @@ def claims_page(
     findings: Sequence[Mapping] = (),
     tables: Iterable[str] = (),
 ) -> str:
-    """The ledger and the findings, as in their JSON.
+    """The ledger and the findings.
 
     Parameters
     ----------
@@ -74,13 +69,14 @@ def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
 
 
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
-    """Files of the simulations and studies that the source of a claim names, by name and kind of table."""
-    every = source.startswith("every simulation")
-    named = {Path(path).stem: None for path in tables} if every else dict.fromkeys(re.findall(r"\w+", source))
-    found = {
-        name: {KINDS[Path(path).parts[0]]: path for path in tables if Path(path).stem == name}
-        for name in named
-    }
+    """Files of the simulations and studies that a source names, by name and kind of table."""
+    found: dict[str, dict[str, str]] = {}
+    if not source.startswith("every simulation"):
+        found = {name: {} for name in re.findall(r"\w+", source)}
+    for path in map(Path, tables):
+        kind = KINDS.get(path.parts[0], path.parts[0])
+        if source.startswith("every simulation") or path.stem in found:
+            found.setdefault(path.stem, {})[kind] = path.as_posix()
     return {name: kinds for name, kinds in found.items() if kinds}
 
 
@@ -102,6 +98,5 @@ def bar(claim: SimpleNamespace) -> tuple[str, float] | None:
 
 def figure_title(name: str) -> str:
     """What a link to a figure says: figure 5, scaling."""
-    kind, _, words = name.partition("_")
-    words = words.replace("_", " ")
+    kind, _, words = name.replace("_", " ").partition(" ")
     return f"figure {int(kind[3:])}, {words}" if kind.startswith("fig") else f"study, {words}"

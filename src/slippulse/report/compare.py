@@ -62,7 +62,16 @@ def compare(here: Path, there: Path) -> Comparison:
         if not tables:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
     found.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    _compare_contents(found, trees)
+    # But for the preset, whose lattices the uncertainties cover.
+    for name, what, line in (
+        ("provenance.json", "configurations", "configuration: {key}: {here!r} against {shipped!r}"),
+        ("claims.json", "verdicts", "{key}: verdict {here!r} against {shipped!r}"),
+    ):
+        contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
+        if len(contents) < 2:
+            found.other.append(f"{name}: missing in one tree; {what} not compared")
+        else:
+            found.other += [line.format(**change) for change in changes(contents[1], contents[0])]
     for name in sorted(names[0] & names[1]):
         _compare_tables(found, trees, name)
     return found
@@ -84,8 +93,8 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
     numbers = [column for column in both if column not in texts + LATTICE]
     value, value_there = (table[numbers].astype(float) for table in (one, two))
     bars = [
-        _uncertainties(tree / "uncertainties" / name, values)
-        for tree, values in zip(trees, (value, value_there), strict=True)
+        _uncertainties(tree / "uncertainties" / name, value)
+        for tree, value in zip(trees, (value, value_there))
     ]
     known = bars[0].notna() | bars[1].notna()
     allowed = bars[0].fillna(0.0) + bars[1].fillna(0.0) + DIGITS * value.abs()
@@ -127,17 +136,22 @@ def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
 
 def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
     """Uncertainty of every number; NaN where it is not known, as where the study was of another value."""
-    nothing = pd.DataFrame(np.nan, values.index, values.columns)
     if not path.exists():
-        return nothing
+        return values * np.nan
     table = _table(path, ["point", "quantity", "value", "uncertainty"])
     with _readable(path):
-        study = table.pivot(index="point", columns="quantity", values=["value", "uncertainty"])
-        studied, found = (
-            study[part].reindex(index=values.index, columns=values.columns).astype(float)
-            for part in ("value", "uncertainty")
-        )
+        study = table.pivot(index="point", columns="quantity", values=["value", "uncertainty"]).astype(float)
+        studied, found = (study[part].reindex_like(values) for part in ("value", "uncertainty"))
     return found.mask((values - studied).abs() > DIGITS * values.abs())
+
+
+def _content(path: Path) -> dict:
+    """The configuration but for the preset, or the verdicts by claim."""
+    with _readable(path):
+        content = json.loads(path.read_text(encoding="utf-8"))
+        if path.stem == "provenance":
+            return dict(content["config"]) | {"preset": None}
+        return {str(claim["id"]): claim["verdict"] for claim in content}
 
 
 @contextmanager
@@ -154,31 +168,10 @@ def _readable(path: Path) -> Iterator[None]:
         raise UnreadableFile(path, reason) from None
 
 
-def _compare_contents(found: Comparison, trees: tuple[Path, Path]) -> None:
-    """Configurations, but for the preset, whose lattices the uncertainties cover; and verdicts."""
-    for name, what, line in (
-        ("provenance.json", "configurations", "configuration: {key}: {here!r} against {shipped!r}"),
-        ("claims.json", "verdicts", "{key}: verdict {here!r} against {shipped!r}"),
-    ):
-        contents = []
-        for path in (tree / name for tree in trees):
-            if path.exists():
-                with _readable(path):
-                    content = json.loads(path.read_text(encoding="utf-8"))
-                    if what == "configurations":
-                        contents.append(dict(content["config"]) | {"preset": None})
-                    else:
-                        contents.append({str(claim["id"]): claim["verdict"] for claim in content})
-        if len(contents) < 2:
-            found.other.append(f"{name}: missing in one tree; {what} not compared")
-        else:
-            found.other += [line.format(**change) for change in changes(contents[1], contents[0])]
-
-
 def main(arguments: Sequence[str]) -> int:
     """Compare two trees; returns the exit code."""
     try:
-        result = compare(*(Path(argument) for argument in arguments))
+        result = compare(*map(Path, arguments))
     except ValueError as error:
         print(error)
         return 1

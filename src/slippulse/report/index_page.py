@@ -5,17 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from functools import partial
+from itertools import chain
 from pathlib import Path
 
 from PIL import Image
 
 from ..claims.reading import Ledger
 from ..data.prose import fill
-from .answer import answer, judged_lines
 from .claims_page import shown
 from .html import page
-from .parameters import parameters
-from .texts import read_captions, read_text
+from .texts import answer, judged_lines, parameters, read_captions, read_text
 
 # Where a reader goes first, and what else there is.
 FIRST = {
@@ -61,26 +60,28 @@ def index_page(
         json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
         for name in ("claims", "findings", "provenance")
     )
-    ledger = Ledger(claims, findings)
-    config = facts["config"]
-    names = {"claim": ledger, "found": ledger.found, "config": config, "facts": facts}
-    names["runs"] = partial(parameters, config)
-    captions = read_captions(texts["captions"], lambda text: fill(text, names))
-    summary = read_text(texts["summary"])
-    accuracy = fill(summary["accuracy"], names)
-    lines = judged_lines(summary, ledger, lambda text: fill(text, names))
+    ledger, config = Ledger(claims, findings), facts["config"]
+    names = {"claim": ledger, "found": ledger.found, "config": config, "runs": partial(parameters, config)}
+    filled = partial(fill, names=names)
+    captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
+    lines = judged_lines(summary, ledger, filled)
+    found, accuracy = answer(lines), filled(summary["accuracy"])
     figures = {
         # A user-defined sweep has no caption but its name.
         name: captions.get(name) or captions["own_sweep"]._replace(title=name.removeprefix("sweep_"))
-        for listed in galleries.values()
-        for name in listed
+        for name in chain.from_iterable(galleries.values())
     }
-    found = answer(lines)
-    texts_of = [text for line in lines for text in (line.topic, line.text)]
-    written = [text for caption in figures.values() for text in (caption.finding, caption.caption)]
-    there = [
-        {path: name for path, name in files.items() if (results / path).exists()} for files in (FIRST, OTHERS)
-    ]
+    written = [text for line in lines for text in (line.topic, line.text)]
+    written += [text for caption in figures.values() for text in (caption.finding, caption.caption)]
+
+    def there(files: Mapping[str, str]) -> dict[str, str]:
+        return {path: name for path, name in files.items() if (results / path).exists()}
+
+    def size(name: str) -> tuple[int, int]:
+        """Width and height of a figure on the page, which does not jump while it loads."""
+        with Image.open(results / f"figures/{name}.png") as picture:
+            return round(SCALE * picture.width), round(SCALE * picture.height)
+
     return page(
         "index.html",
         altered=facts["overlay"],
@@ -88,20 +89,13 @@ def index_page(
         lines=lines,
         accuracy=accuracy,
         figures=figures,
-        sizes={name: _size(results / f"figures/{name}.png") for name in figures},
+        sizes={name: size(name) for name in figures},
         wide=WIDE,
         picture=summary["picture"],
-        first=there[0],
-        others=there[1],
+        first=there(FIRST),
+        others=there(OTHERS),
         galleries=galleries,
         scenes={name: (title, (results / f"scenes/{name}.html").exists()) for name, title in scenes.items()},
         facts=facts,
-        **shown(ledger, [*written, *texts_of, found, accuracy]),
+        **shown(ledger, [*written, found, accuracy]),
     )
-
-
-def _size(path: Path) -> tuple[int, int]:
-    """Width and height of a picture on a page, which does not jump while it loads."""
-    with Image.open(path) as picture:
-        width, height = picture.size
-    return round(SCALE * width), round(SCALE * height)

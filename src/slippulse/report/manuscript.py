@@ -1,4 +1,4 @@
-"""The manuscript executed: its code run, its prose filled, without a kernel."""
+"""The manuscript executed: its code run, its prose filled, its figures numbered by where they stand."""
 
 from __future__ import annotations
 
@@ -10,21 +10,25 @@ from pathlib import Path
 
 import jupytext
 import pandas as pd
+from PIL import Image
 
 from ..claims.reading import Ledger, coverage
 from ..data.alterations import changes
 from ..data.numerals import FILTERS, percent
 from ..data.prose import fill
-from .answer import answer, judged_lines
-from .gallery import Gallery
-from .parameters import parameters
 from .tables import alteration_note, errata, verdicts
-from .texts import read_captions, read_errata, read_text
+from .texts import Caption, answer, judged_lines, parameters, read_captions, read_errata, read_text
 
 # The report and what it refers to for more; each is NAME.md.
 DOCUMENTS = ("replication", "supplement")
 # A cell for the notebook opened by hand: here its names are there already.
 BY_HAND = "by-hand"
+# The number that a figure has in the paper, in its name.
+OF_PAPER = re.compile(r"fig(\d+)_")
+# How the text includes a figure.
+NAMED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
+# Inches across the pages of the journal, and of the report.
+PAGE = 7.0
 
 
 @dataclass(frozen=True)
@@ -38,8 +42,7 @@ class Inputs:
     tables : by simulation measured and predicted numbers, one row a run, by study its table; uncertainties/NAME the
         grid study of a simulation
     figures : names of the figures to include, in any order
-    figures_folder : where their files are
-    manuscript : folder of the texts
+    figures_folder, manuscript : where their files are, and the texts
     citation : as in CITATION.cff: version, date-released
     """
 
@@ -54,16 +57,77 @@ class Inputs:
     citation: Mapping
 
 
+class Gallery:
+    """The figures of a report of several documents: those whose NAME.pdf and NAME.png are in a folder.
+
+    Each document numbers its own by the order in which its text names them, the first from 1 on, the others from S1 on.
+    One that no text names comes last, and one without a caption has its name.
+    """
+
+    def __init__(
+        self,
+        included: Sequence[str],
+        texts: Mapping[str, str],
+        captions: Mapping[str, Caption],
+        folder: str | Path,
+        here: str,
+    ) -> None:
+        self.captions, self.folder, self.here = captions, Path(folder), here
+        named = {document: NAMED.findall(text) for document, text in texts.items()}
+        self.unnamed = [name for name in included if not any(name in names for names in named.values())]
+        named[[*texts][-1]] += self.unnamed
+        # Of each figure the document and the number.
+        self.places: dict[str, tuple[str, str]] = {}
+        for letter, (document, names) in zip(["", *"S" * len(named)], named.items(), strict=False):
+            there = [name for name in names if name in included]
+            self.places |= {name: (document, f"{letter}{i}") for i, name in enumerate(there, start=1)}
+
+    def figure(self, name: str) -> str:
+        """The figure with its number and caption, as Markdown; nothing if it is not included."""
+        if name not in self.places:
+            return ""
+        title = name.replace("_", " ")
+        caption = self.captions.get(name, Caption(title, title, "", ""))
+        head, paper = f"Figure {self.places[name][1]}", OF_PAPER.match(name)
+        if paper and head != f"Figure {int(paper[1])}":
+            head += f" (paper, figure {int(paper[1])})"
+        text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
+        alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
+        with Image.open(self.folder / f"{name}.png") as picture:
+            inches = picture.width / picture.info["dpi"][0]
+        # A column of the journal stays one.
+        width = min(100.0, 100.0 * inches / PAGE)
+        # No extension: the vector file for print, the picture for the browser.
+        return f"![{text}]({self.folder / name}){{#{name} width={width:.0f}% alt='{alt}'}}"
+
+    def further(self) -> str:
+        """The figures that the text does not name."""
+        return "\n\n".join(self.figure(name) for name in self.unnamed)
+
+    def see(self, name: str, before: str = "figure ", after: str = "") -> str:
+        """A link to a figure between two texts, with the word before its number; nothing if it is not included."""
+        if name not in self.places:
+            return ""
+        start, word = re.fullmatch(r"(.*?)((?:figures? )?)", before).groups()  # type: ignore[union-attr]
+        document, number = self.places[name]
+        file = "" if document == self.here else f"{document}.html"
+        return f"{start}[{word}{number}]({file}#{name}){after}"
+
+
 def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dict[str, object]:
     """The names that cells and prose of a document use, with ``show``, which puts Markdown into it."""
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
     altered = changes(inputs.shipped, config)
+
+    def cite(id: str, text: str) -> str:
+        """A number as a link to its claim or finding, where the tables behind it are."""
+        return f"[{text}](../claims.html#{id})"
+
     names: dict[str, object] = {
         **FILTERS,
         "config": config,
-        "shipped": inputs.shipped,
         "citation": inputs.citation,
         "tables": inputs.tables,
         "show": show,
@@ -78,32 +142,23 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "sentences": coverage(statements),
         "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
     }
-
-    def filled(text: str) -> str:
-        # The errata see what the cells add later.
-        return fill(text, names)
-
+    # The errata see what the cells add later.
+    filled = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
     gallery = Gallery(inputs.figures, texts, captions, inputs.figures_folder, document)
     lines = judged_lines(read_text(folder / "summary.yaml"), ledger, filled)
+    shipped = read_text(folder / "shipped_verdicts.yaml") or {}
     names |= {
         "figure": lambda name: show(gallery.figure(name)),
         "further": lambda: show(gallery.further()),
         "see": gallery.see,
-        "alteration_note": lambda: alteration_note(
-            altered, ledger, read_text(folder / "shipped_verdicts.yaml") or {}
-        ),
+        "alteration_note": lambda: alteration_note(altered, ledger, shipped),
         "answer": answer(lines),
         "verdicts": lambda: verdicts(lines),
         "errata": lambda: errata(read_errata(folder / "errata.yaml"), filled),
     }
     return names
-
-
-def cite(id: str, text: str) -> str:
-    """A number as a link to its claim or finding, where the tables behind it are."""
-    return f"[{text}](../claims.html#{id})"
 
 
 def execute(source: str | Path, inputs: Inputs) -> str:
@@ -112,16 +167,14 @@ def execute(source: str | Path, inputs: Inputs) -> str:
     Parameters
     ----------
     source : file in any format of jupytext; cells tagged `BY_HAND` are left out
-    inputs : what it is written from
 
     Raises
     ------
     ValueError
         If a cell fails: the error and the first line of the cell.
     """
-    shown: list[str] = []
-    document = Path(source).stem
-    names = names_for(inputs, lambda markdown: shown.append(markdown) if markdown else None, document)
+    source, shown = Path(source), []
+    names = names_for(inputs, lambda markdown: shown.append(markdown) if markdown else None, source.stem)
     for cell in jupytext.read(source).cells:
         if BY_HAND in cell.metadata.get("tags", []):
             continue
@@ -131,10 +184,7 @@ def execute(source: str | Path, inputs: Inputs) -> str:
             else:
                 shown.append(fill(cell.source, names))
         except Exception as error:
-            start = cell.source.strip().splitlines()[0][:70]
-            reason = " ".join(str(error).split())
-            raise ValueError(
-                f"{Path(source).name}: {type(error).__name__}: {reason} (cell {start!r})"
-            ) from error
+            start, reason = cell.source.strip().splitlines()[0][:70], " ".join(str(error).split())
+            raise ValueError(f"{source.name}: {type(error).__name__}: {reason} (cell {start!r})") from error
     # No line ends between a number and its per cent sign.
     return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(shown)) + "\n"

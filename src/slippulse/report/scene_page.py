@@ -32,7 +32,12 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
     """
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
-        shown["steps_and_bumps"] = _steps_and_bumps(attributes)
+        # In words, what its pre-stress has beside the Gaussian and its levels.
+        profile = prestress_from(attributes)
+        parts = [f"step to {setting(level)} at x = {setting(at)}" for at, level in profile.steps]
+        for centre, size, width in profile.bumps:
+            parts.append(f"bump of {setting(size)} and width {setting(width)} at x = {setting(centre)}")
+        shown["steps_and_bumps"] = "; ".join(parts)
     return page(
         "scene.html",
         name=name,
@@ -48,15 +53,6 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
 def scenes_page(scenes: Mapping[str, str]) -> str:
     """The list of scenes, titles by name, in the folder of their pages."""
     return page("scenes.html", scenes=scenes)
-
-
-def _steps_and_bumps(attributes: Mapping) -> str:
-    """What a run's pre-stress has beside the Gaussian and its levels, in words."""
-    profile = prestress_from(attributes)
-    parts = [f"step to {setting(level)} at x = {setting(at)}" for at, level in profile.steps]
-    for centre, amplitude, width in profile.bumps:
-        parts.append(f"bump of {setting(amplitude)} and width {setting(width)} at x = {setting(centre)}")
-    return "; ".join(parts)
 
 
 def _number(row) -> dict[str, str]:

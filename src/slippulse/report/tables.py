@@ -22,8 +22,7 @@ from ..claims.reading import (
 )
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import number, percent, setting, short, with_uncertainty
-from .answer import Line
-from .texts import ERRATUM
+from .texts import ERRATUM, Line
 
 # Wide enough that pandoc takes the dashes as relative widths.
 FULL = 200
@@ -48,27 +47,32 @@ REASONS = {
     "definition": "definition or assumption",
     "other work": "is about other work",
     "no model": "no model here can tell",
+    "all": "all",
 }
-
-
-def _between(typst: str) -> str:
-    return f'`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{typst}[\n`````'
-
-
 # A long table stands between WIDE or SMALL and CLOSE: on pages on their side, or in small type over several pages.
 # All figures so far stand before FLUSH.
-WIDE, SMALL = _between("sideways"), _between("small")
+WIDE, SMALL = (
+    f'`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{name}[\n`````'
+    for name in ("sideways", "small")
+)
 CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
 FLUSH = "`````{=typst}\n#place.flush()\n`````"
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]], widths: Sequence[int], align: str) -> str:
-    """A pipe table of Markdown cells without bare bars; one relative width and one letter, l or r, a column."""
+def table(head: str, rows: Iterable[Sequence[object]]) -> str:
+    """A pipe table of Markdown cells without bare bars.
+
+    Parameters
+    ----------
+    head : title of each column with its side, l or r, and relative width, as in "claim l40 | deviation r10"
+    """
+    columns = [column.strip().rpartition(" ") for column in head.split("|")]
+    total = sum(int(form[1:]) for *_, form in columns)
     marks = []
-    for width, side in zip(widths, align, strict=True):
-        dashes = "-" * max(3, round(FULL * width / sum(widths)))
-        marks.append(f":{dashes}" if side == "l" else f"{dashes}:")
-    lines = [head, marks, *rows]
+    for *_, form in columns:
+        dashes = "-" * max(3, round(FULL * int(form[1:]) / total))
+        marks.append(f":{dashes}" if form[0] == "l" else f"{dashes}:")
+    lines = [[title for title, *_ in columns], marks, *rows]
     return "\n".join("| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines)
 
 
@@ -77,40 +81,39 @@ def plain(text: str) -> str:
     return re.sub(r"([\\`*_{}\[\]<>#|$~^])", r"\\\1", text)
 
 
+def code(names: Iterable[str]) -> str:
+    """Names as code, one after the other."""
+    return ", ".join(f"`{name}`" for name in names)
+
+
 def verdicts(lines: Iterable[Line]) -> str:
     """The lines of the answer, each with its verdict as a link to the claim that it has it from."""
     rows = [
-        [line.topic, f"[{line.claim.verdict}](../claims.html#{line.claim.id})", line.text] for line in lines
+        (line.topic, f"[{line.claim.verdict}](../claims.html#{line.claim.id})", line.text) for line in lines
     ]
-    return table(["what the paper says", "verdict", "what was found"], rows, [28, 16, 56], "lll")
+    return table("what the paper says l28 | verdict l16 | what was found l56", rows)
 
 
 def failures(ledger: Ledger) -> str:
     """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
+    order = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
     rows = [
-        [f"{claim.statement} `{claim.id}`", claim.verdict, claim.why]
-        for verdict in WORST_FIRST[:-1]
-        for claim in ledger
-        if claim.verdict == verdict
+        (f"{claim.statement} `{claim.id}`", claim.verdict, claim.why)
+        for claim in order
+        if claim.verdict != WORST_FIRST[-1]
     ]
-    return table(["claim", "verdict", "why"], rows, [34, 13, 53], "lll")
+    return table("claim l34 | verdict l13 | why l53", rows)
 
 
 def whole_ledger(ledger: Ledger) -> str:
     """Every claim with its position in the paper, numbers, tolerance, verdict and note."""
+    texts = (predicted_text, measured_text, compared_text, lambda claim: claim.verdict, evidence_text)
     rows = [
-        [
-            f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`",
-            predicted_text(claim),
-            measured_text(claim),
-            compared_text(claim),
-            claim.verdict,
-            evidence_text(claim),
-        ]
+        (f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`", *(text(claim) for text in texts))
         for claim in ledger
     ]
-    head = ["claim (section) `id`", "predicted", "measured", "deviation, tolerance", "verdict", "rests on"]
-    return table(head, rows, [32, 8, 12, 14, 9, 29], "lrrlll")
+    head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
+    return table(f"{head} | verdict l9 | rests on l29", rows)
 
 
 def tolerances(ledger: Ledger) -> str:
@@ -119,32 +122,27 @@ def tolerances(ledger: Ledger) -> str:
     for claim in ledger:
         exponent = getattr(claim, "tolerance_exponent", None)
         tolerance = setting(claim.tolerance) + (f"; exponent {setting(exponent)}" if exponent else "")
-        key = (claim.kind, tolerance, plain(claim.reason))
-        groups.setdefault(key, []).append(f"`{claim.id}`")
-    rows = [[*key, ", ".join(ids)] for key, ids in groups.items()]
-    return table(["kind", "tolerance", "reason", "claims"], rows, [11, 11, 42, 36], "lrll")
+        groups.setdefault((claim.kind, tolerance, plain(claim.reason)), []).append(claim.id)
+    rows = [(*key, code(ids)) for key, ids in groups.items()]
+    return table("kind l11 | tolerance r11 | reason l42 | claims l36", rows)
 
 
 def algebra_checked(algebra: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
     """Every piece of the paper's algebra that a test checks, with its position in the paper."""
     where = positions(algebra, sentences)
-    rows = [[entry["statement"], where[id], f"`{id}`"] for id, entry in algebra.items()]
-    return table(["what the paper derives", "section", "id"], rows, [60, 20, 20], "lll")
+    rows = [(entry["statement"], where[id], code([id])) for id, entry in algebra.items()]
+    return table("what the paper derives l60 | section l20 | id l20", rows)
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
     """Numbers read off the published figure next to ours, with the reading error."""
     panels = ("published_space_time_figure", "published_space_time_figure_right")
     ours = {name: value for id in panels for name, value in ledger(id).further.items()}
-    rows = [
-        [
-            each["statement"],
-            with_uncertainty(each["value"], each["reading_error"]),
-            number(ours.get(each["statement"]), 5),
-        ]
-        for each in readings.values()
-    ]
-    return table(["quantity", "published", "this run"], rows, [50, 20, 20], "lrr")
+    rows = []
+    for each in readings.values():
+        drawn = with_uncertainty(each["value"], each["reading_error"])
+        rows.append((each["statement"], drawn, number(ours.get(each["statement"]), 5)))
+    return table("quantity l50 | published r20 | this run r20", rows)
 
 
 def found_list(ledger: Ledger) -> str:
@@ -155,8 +153,7 @@ def found_list(ledger: Ledger) -> str:
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
     """How many sentences are tested, and how many are not for each reason."""
     numbers = coverage(sentences)
-    rows = [[words, str(numbers[key])] for key, words in REASONS.items()]
-    return table(["sentences", "how many"], [*rows, ["all", str(numbers["all"])]], [60, 15], "lr")
+    return table("sentences l60 | how many r15", [(REASONS[key], numbers[key]) for key in REASONS])
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
@@ -166,14 +163,14 @@ def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping
         if claims := claims_of(entries, sentence):
             # For a narrow column: paragraph and sentence as numbers.
             position = re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", sentence["place"])
-            rows.append([position, sentence["paraphrase"], ", ".join(f"`{claim}`" for claim in claims)])
-    return table(["section", "what it says", "claims"], rows, [22, 45, 33], "lll")
+            rows.append((position, sentence["paraphrase"], code(claims)))
+    return table("section l22 | what it says l45 | claims l33", rows)
 
 
 def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> str:
     """The errata, their expressions evaluated by ``fill``."""
     rows = [[fill(entry[key]) for key in ERRATUM] for entry in entries]
-    return table(["where", "printed", "right", "what shows it"], rows, [14, 27, 33, 26], "llll")
+    return table("where l14 | printed l27 | right l33 | what shows it l26", rows)
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
@@ -182,14 +179,13 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
     for simulation, quantity, name in QUANTITIES:
         found = tables[f"uncertainties/{simulation}"]
         found = found[found["quantity"] == quantity]
-        relative = (found["uncertainty"] / found["value"].abs()).dropna()
-        orders = found["observed_order"].dropna()
-        runs = len(relative) or len(found)
-        order = number(orders.median(), 2) if len(orders) and len(relative) else DASH
-        off = [percent(size) if len(relative) else DASH for size in (relative.median(), relative.max())]
-        rows.append([name, str(runs), order, *off])
-    head = ["quantity", "runs", "order", "median uncertainty", "largest"]
-    return table(head, rows, [40, 10, 12, 20, 18], "lrrrr")
+        relative, orders = (found["uncertainty"] / found["value"].abs()).dropna(), found["observed_order"]
+        order, *off = DASH, DASH, DASH
+        if len(relative):
+            order = number(orders.median(), 2) if orders.notna().any() else DASH
+            off = [percent(size) for size in (relative.median(), relative.max())]
+        rows.append((name, len(relative) or len(found), order, *off))
+    return table("quantity l40 | runs r10 | order r12 | median uncertainty r20 | largest r18", rows)
 
 
 def sticking(examples: pd.DataFrame) -> str:
@@ -199,9 +195,9 @@ def sticking(examples: pd.DataFrame) -> str:
     if found["value"].isna().all():
         return ""
     numbers = found.pivot(index="x", columns="quantity", values="value")[columns]
-    rows = [[setting(x), *(number(value, 5) for value in row)] for x, *row in numbers.itertuples()]
-    head = ["$x$", r"release $T$", r"stick $t_\mathrm{s}$", r"slip $u(x,t_\mathrm{s})$"]
-    return table(head, rows, [10, 15, 15, 15], "rrrr")
+    rows = [(setting(x), *(number(value, 5) for value in row)) for x, *row in numbers.itertuples()]
+    head = r"$x$ r10 | release $T$ r15 | stick $t_\mathrm{s}$ r15 | slip $u(x,t_\mathrm{s})$ r15"
+    return table(head, rows)
 
 
 def edges(study: pd.DataFrame) -> str:
@@ -212,34 +208,33 @@ def edges(study: pd.DataFrame) -> str:
         # Behind a flag its name, which is the first word of the message.
         if outcome == "flagged":
             outcome += ": " + str(row["message"]).partition(",")[0].replace("_", " ")
-        numbers = ["" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance")]
-        rows.append([row["family"], plain(row["value"]), plain(row["quantity"]), *numbers, outcome])
-    head = ["edge", "value", "compared", "error", "tolerance", "outcome"]
-    return table(head, rows, [16, 28, 18, 12, 12, 24], "lllrrl")
+        numbers = ("" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance"))
+        rows.append((row["family"], plain(row["value"]), plain(row["quantity"]), *numbers, outcome))
+    return table("edge l16 | value l28 | compared l18 | error r12 | tolerance r12 | outcome l24", rows)
 
 
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
     """What differs from the shipped configuration and its verdicts, as a quotation; empty if nothing does."""
 
-    def code(value: object) -> str:
+    def literal(value: object) -> str:
         return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
 
-    keys = [
-        f"`{change['key']}`: {code(change['here'])} (shipped: {code(change['shipped'])})"
+    keys = "; ".join(
+        f"`{change['key']}`: {literal(change['here'])} (shipped: {literal(change['shipped'])})"
         for change in altered
-    ]
-    judged = [
+    )
+    judged = "; ".join(
         f"`{claim.id}`: {claim.verdict} (shipped: {verdicts.get(claim.id, 'absent')})"
         for claim in ledger
         if claim.verdict != verdicts.get(claim.id)
-    ]
+    )
     lines = []
     if keys:
         lines.append(
-            f"> **Altered configuration.** This run differs from the shipped configuration in {'; '.join(keys)}."
+            f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."
         )
     if judged:
-        lines.append(f"> **Verdicts that differ from the shipped report:** {'; '.join(judged)}.")
+        lines.append(f"> **Verdicts that differ from the shipped report:** {judged}.")
     elif keys:
         lines.append("> No verdict differs from the shipped report.")
     return "\n>\n".join(lines)

@@ -1,14 +1,31 @@
-"""The texts of the manuscript: captions and errata, refused where they are not whole."""
+"""The texts of the manuscript: captions, errata, the parameters of a simulation in words, and the answer."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import yaml
 
+from ..claims.reading import Ledger
+from ..claims.rules import WORST_FIRST
+from ..data.numerals import setting
+
 ERRATUM = ("where", "printed", "right", "shown")
+# Of more values than this only the ends are named.
+FEW = 3
+# What the answer says of one thing with each verdict, and of several.
+EXCEPTIONS = {
+    "not reproduced": ("is not reproduced", "are not reproduced"),
+    "depends on an open choice": (
+        "depends on a choice that the paper leaves open",
+        "depend on choices that the paper leaves open",
+    ),
+    "inconclusive": ("stays open", "stay open"),
+    "not testable": ("is not tested in this run", "are not tested in this run"),
+}
 
 
 class Caption(NamedTuple):
@@ -65,3 +82,91 @@ def _whole(path: str | Path, entries: dict[str, dict], keys: Collection[str]) ->
             if not str(entry.get(key) or "").strip():
                 raise ValueError(f"{path}: {name}: {key}: missing; allowed: some text")
     return entries
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words, the last two joined by "and"."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def parameters(config: Mapping, name: str) -> str:
+    """Boundary, elasticity ratio, pre-stress and damping of all runs of one of its simulations, as Markdown.
+
+    Raises
+    ------
+    ValueError
+        Naming the simulation and those that there are.
+    """
+    if name not in config["simulations"]:
+        raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
+    simulation = config["simulations"][name]
+    profiles = simulation.get("profiles") or [simulation]
+    left, right, width = (_flat(each.get(key) for each in profiles) for key in ("left", "right", "width"))
+    springs = simulation["boundary"] == "displacement"
+    values = {r"$\gamma$": simulation["gamma"]} if springs else {}
+    if right == ["same"]:
+        values |= {r"$\tau_0$": left}
+    else:
+        values |= {r"$\tau_{0,l}$": left, r"$\tau_{0,r}$": right}
+    if "beyond" in simulation:
+        values |= {r"then $\tau$": simulation["beyond"]["levels"]}
+    if width:
+        values |= {"$W$": width}
+    if "beta" in simulation:
+        values |= {r"$\beta$": simulation["beta"]}
+    else:
+        values |= {"$b$": simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]}
+    parts = [f"{symbol} = {_values(found)}" for symbol, found in values.items()]
+    return ", ".join([r"$\Gamma=1$" if springs else r"$\Gamma=0$", *parts])
+
+
+def _flat(values: Iterable) -> list:
+    """All values, each once, of entries that are lists, single values or missing."""
+    lists = (entry if isinstance(entry, list) else [entry] for entry in values)
+    return [*dict.fromkeys(value for entry in lists for value in entry if value is not None)]
+
+
+def _values(values: Sequence[float]) -> str:
+    if len(values) > FEW:
+        return f"{setting(min(values))} to {setting(max(values))}"
+    return listed([setting(value) for value in sorted(values)])
+
+
+class Line(NamedTuple):
+    """One thing that the paper says: manuscript/summary.yaml, judged by the ledger.
+
+    Attributes
+    ----------
+    topic, text : what it is and what was found, Markdown
+    named : the same in a sentence: of the first line a clause, of the others a noun in the singular
+    claim : the claim that has the worst verdict of those that it rests on
+    """
+
+    topic: str
+    named: str
+    text: str
+    claim: SimpleNamespace
+
+
+def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
+    """The lines of the summary in their order, their expressions evaluated by ``fill``."""
+
+    def worst(claims: Iterable[str]) -> SimpleNamespace:
+        return min(map(ledger, claims), key=lambda claim: WORST_FIRST.index(claim.verdict))
+
+    return [
+        Line(line["topic"], line["named"], fill(line["text"]), worst(line["claims"]))
+        for line in summary["verdict"]
+    ]
+
+
+def answer(lines: Sequence[Line]) -> str:
+    """One sentence: whether what the first line says is reproduced, and which of the others are not, as Markdown."""
+    first, *rest = lines
+    parts = []
+    for verdict, (one, several) in EXCEPTIONS.items():
+        if named := [line.named for line in rest if line.claim.verdict == verdict]:
+            parts.append(f"{listed(named)} {one if len(named) == 1 else several}")
+    start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
+    return f"**{start}**, {first.named}{', except that ' if parts else ''}{', and '.join(parts)}."
