@@ -29,21 +29,12 @@ def inputs(tmp_path_factory) -> dict[str, set[str]]:
     """Files that each rule takes, from one look of Snakemake at everything."""
     folder = copy_project(PROJECT, tmp_path_factory.mktemp("dependencies"), link=True)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
-    result = snakemake(
-        folder,
-        "--forceall",
-        "--filegraph",
-        "--",
-        "everything",
-        "scenes",
-        "results/predictions/own.csv",
-        overlay="overlay.yaml",
-    )
+    targets = ("everything", "scenes", "results/predictions/own.csv")
+    result = snakemake(folder, "--forceall", "--filegraph", "--", *targets, overlay="overlay.yaml")
     assert result.returncode == 0, result.stderr
     found = {}
-    for name, text in re.findall(
-        r'point-size="18">(\w+)</font>(.*?)(?=point-size="18"|\Z)', result.stdout, re.S
-    ):
+    entry = r'point-size="18">(\w+)</font>(.*?)(?=point-size="18"|\Z)'
+    for name, text in re.findall(entry, result.stdout, re.S):
         taken = text.partition("&#8618; input")[2].partition("output &rarr;")[0]
         found[name] = {html.unescape(file) for file in re.findall(r'"monospace">([^<]+)<', taken)}
     return found
@@ -78,11 +69,8 @@ def test_every_file_marks_the_rules_whose_step_reaches_it(seen):
 
 
 def test_no_rule_depends_on_another_file_of_the_sources(seen):
-    others = {
-        rule: extra
-        for rule, inputs in seen.items()
-        if rule not in EVERY_SOURCE and (extra := inputs - set(FILES))
-    }
+    others = {rule: inputs - set(FILES) for rule, inputs in seen.items() if rule not in EVERY_SOURCE}
+    others = {rule: extra for rule, extra in others.items() if extra}
     # The report says what differs from the shipped configuration, and its version.
     assert others == {"write_report": {"CITATION.cff", "config/config.yaml"}}
     workflow = {"Snakefile", "workflow/rules/common.smk"}

@@ -20,12 +20,13 @@ from faults import TARGETS, Report, at_work, digests, fault_run, prepare, start_
 from pipeline_copy import copy_project, snakemake
 
 from slippulse.data.records import Origin
+from slippulse.data.store import UnreadableFile, load_table
 from slippulse.steps.job import JobFailed, Jobs
 
 pytestmark = pytest.mark.workflow
 
 SCENE = "results/measurements/one.csv"
-DATA = "results/data/one.nc"
+DATA, RECORD = "results/data/one.nc", "results/records/data/one.nc.json"
 FIGURE = "results/figures/fig07_damage_zone.png"
 
 
@@ -37,10 +38,15 @@ def killed_once(tmp_path_factory) -> tuple[Path, Report]:
     return folder / "harmed", report
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def finished(killed_once) -> Path:
-    """The folder alone."""
     return killed_once[0]
+
+
+@pytest.fixture
+def copy(finished, tmp_path) -> Path:
+    """A copy, in which a test may do what it likes."""
+    return Path(shutil.copytree(finished, tmp_path / "copy", symlinks=True))
 
 
 def test_a_kill_is_survived(killed_once):
@@ -111,11 +117,8 @@ def test_a_run_ends_with_the_server_of_its_jobs(tmp_path):
     # It and a job.
     while len(servers) < 2:
         assert run.poll() is None
-        servers = [
-            number
-            for number in at_work(folder)
-            if b"forkserver" in Path(f"/proc/{number}/cmdline").read_bytes()
-        ]
+        commands = {number: Path(f"/proc/{number}/cmdline").read_bytes() for number in at_work(folder)}
+        servers = [number for number, command in commands.items() if b"forkserver" in command]
         time.sleep(0.02)
     os.kill(min(servers), signal.SIGKILL)
     assert run.wait(timeout=60) != 0
@@ -127,41 +130,33 @@ def test_a_run_ends_with_the_server_of_its_jobs(tmp_path):
 
 
 @pytest.mark.slow
-def test_only_a_run_removes_what_was_changed(finished, tmp_path):
-    folder = tmp_path / "copy"
-    shutil.copytree(finished, folder, symlinks=True)
-    (folder / f"results/records/{Path(DATA).relative_to('results')}.json").unlink()
+def test_only_a_run_removes_what_was_changed(copy):
+    (copy / RECORD).unlink()
     for option in ("--dry-run", "--summary", "--rulegraph"):
-        result = snakemake(folder, option, "--", SCENE, overlay="overlay.yaml")
+        result = snakemake(copy, option, "--", SCENE, overlay="overlay.yaml")
         assert f"as {DATA}: no record; would be removed, and made anew" in result.stderr, option
-        assert (folder / DATA).exists(), option
+        assert (copy / DATA).exists(), option
 
 
 @pytest.mark.slow
-def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
+def test_a_failing_job_says_so_in_one_line(copy):
     """As `make replicate` runs it, whose logger prints the logs of jobs that fail."""
-    folder = tmp_path / "copy"
-    shutil.copytree(finished, folder, symlinks=True)
-    (folder / SCENE).unlink()
-    (folder / DATA).write_bytes(b"no data")
-    record = folder / f"results/records/{Path(DATA).relative_to('results')}.json"
-    content = json.loads(record.read_text())
-    content["outputs"] = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
-    record.write_text(json.dumps(content))
+    (copy / SCENE).unlink()
+    (copy / DATA).write_bytes(b"no data")
+    outputs = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
+    (copy / RECORD).write_text(json.dumps(json.loads((copy / RECORD).read_text()) | {"outputs": outputs}))
     command = [sys.executable, "-m", "snakemake", "--cores", "1", "--configfile", "overlay.yaml", "--", SCENE]
-    environment = os.environ | {"PYTHONPATH": str((folder / "src").resolve())}
-    result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    environment = os.environ | {"PYTHONPATH": str((copy / "src").resolve())}
+    result = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "one.nc: cannot be read" in said
     assert "delete it and run again" in said and "(details: results/logs/measure/one.traceback)" in said
-    assert "Traceback" not in said and not (folder / SCENE).exists()
-    assert "Traceback" in (folder / "results/logs/measure/one.traceback").read_text()
+    assert "Traceback" not in said and not (copy / SCENE).exists()
+    assert "Traceback" in (copy / "results/logs/measure/one.traceback").read_text()
 
 
-def test_an_unreadable_table_is_named(finished):
-    from slippulse.data.store import UnreadableFile, load_table
-
-    path = finished / "edited.csv"
+def test_an_unreadable_table_is_named(tmp_path):
+    path = tmp_path / "edited.csv"
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
     with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run again"):
         load_table(path)
@@ -203,12 +198,9 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
         f"    store.save_{kind}(numbers{'.to_xarray()' if kind == 'dataset' else ''}, sys.argv[1])\n"
     )
     result = subprocess.run(
-        [sys.executable, "-c", program, str(path), str(tmp_path / "log")],
-        capture_output=True,
-        text=True,
-        check=False,
+        [sys.executable, "-c", program, str(path), str(tmp_path / "log")], capture_output=True, text=True, check=False,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
-    )
+    )  # fmt: skip
     assert result.returncode == 1
     assert "make room and run again" in result.stderr and result.stderr.count("\n") == 1
     assert path.read_text() == "what was there\n"
@@ -218,12 +210,8 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
 def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
     (tmp_path / "logs").write_text("a file")
     program = "import sys\nfrom slippulse.steps.job import logged\nwith logged(sys.argv[1]): pass\n"
-    result = subprocess.run(
-        [sys.executable, "-c", program, str(tmp_path / "logs/one.log")],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    command = [sys.executable, "-c", program, str(tmp_path / "logs/one.log")]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 1
     assert result.stderr.count("\n") == 1 and "allowed: a results folder that can be written" in result.stderr
 
@@ -253,21 +241,20 @@ def test_sources_that_cannot_be_written_are_enough():
         base.chmod(0o755)
         if subprocess.run(["test", "-x", sys.executable], user=65534, check=False).returncode != 0:
             pytest.skip("the environment cannot be read by others")
-        result = subprocess.run(
-            [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
-            cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False,
-            env=theirs,
-        )  # fmt: skip
+
+        def run() -> subprocess.CompletedProcess:
+            return subprocess.run(
+                [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
+                cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False, env=theirs,
+            )  # fmt: skip
+
+        result = run()
         assert result.returncode == 0, result.stderr
         assert (folder / FIGURE).stat().st_size > 0
         (folder / FIGURE).unlink()
         os.chown(folder / "results", 0, 0)
         shutil.rmtree(folder / "results/figures")
-        result = subprocess.run(
-            [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
-            cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False,
-            env=theirs,
-        )  # fmt: skip
+        result = run()
         assert result.returncode != 0 and "Permission denied" in result.stdout + result.stderr
     finally:
         shutil.rmtree(base)
