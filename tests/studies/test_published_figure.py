@@ -102,7 +102,6 @@ def test_an_end_beyond_the_fits_is_not_known(table):
 
 
 def test_the_right_panel_fixes_the_width_and_nothing_else(table):
-    found = right_panel(table)
     rows = table[table["part"] == "stress"]
     # Half the integral of tau right of its zero, by the trapezoidal rule.
     level, width = rows["left"].iloc[0], rows["width"].iloc[0]
@@ -110,8 +109,12 @@ def test_the_right_panel_fixes_the_width_and_nothing_else(table):
     tau = Prestress(level, 0.0, width)(x)
     zero = np.flatnonzero(tau < 0.0)[-1] + 1
     assert rows["exact"].to_numpy() == pytest.approx(0.5 * np.trapezoid(tau[zero:], x[zero:]), rel=1e-5)
-    assert found["spread"] < 1.0
-    assert abs(found["width"] - width) < 3.0 * found["width_error"]
+    # In reading errors; and the W that would meet the reading exactly, at that level.
+    assert np.ptp(rows["pull"]) < 1.0
+    fit = (width * rows["drawn"] / (rows["exact"] + rows["correction"])).mean()
+    assert abs(fit - width) < 3.0 * (width * rows["reading_error"] / rows["exact"]).min()
+    found = right_panel(table)
+    assert (found["chi2"], found["dof"]) == (pytest.approx(rows["pull"].abs().max() ** 2), 1)
 
 
 def test_an_unknown_quantity_is_named():

@@ -6,9 +6,9 @@ import pytest
 import yaml
 
 from slippulse.claims import rules
-from slippulse.claims.choices import over_choices as over_all
 from slippulse.claims.paper import SIMULATIONS
 from slippulse.claims.rules import DEPENDS
+from slippulse.claims.transition import over_choices as over_all
 from slippulse.measure.quantities import QUANTITIES
 
 

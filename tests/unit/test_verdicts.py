@@ -30,6 +30,9 @@ CASES = {
         ((0.05, 0.02, 0.01), NO),
         ((NAN, 0.001, 0.01), NONE),
         ((0.001, NAN, 0.01), NONE),
+        # A formula.
+        ((2e-16, 0.0, 1e-12), YES),
+        ((0.5, 0.0, 1e-12), NO),
     ],
     # An equation leaves no run out, and says which decides.
     rules.exact: [
@@ -80,7 +83,6 @@ CASES = {
         ((0.5, 1, 0.05), OPEN),
         ((NAN, 7, 0.05), NONE),
     ],
-    rules.arithmetic: [((2e-16, 1e-12), YES), ((0.5, 1e-12), NO)],
 }
 
 

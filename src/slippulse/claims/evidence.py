@@ -18,17 +18,15 @@ from . import rules
 
 NAN = float("nan")
 # What was found about one claim: its verdict, and where it has them
-# predicted, measured: numbers; for an approximate claim 1 and the median ratio, for a qualitative one the runs and how
-#     many it holds in, for a reading the degrees of freedom and chi-square;
-# uncertainty: of `measured`, numerically; for a qualitative claim how many runs are undecided;
+# predicted, measured: of an approximate claim 1 and the median ratio, of a qualitative one the runs and how many it
+#     holds in, of a reading the degrees of freedom and chi-square;
+# uncertainty: of `measured`, numerically; of a qualitative claim how many runs are undecided;
 # deviation: what stands beside the tolerance: relative deviation, its median, fraction of runs that contradict, p;
 # runs and left_out (those without numbers), held, failed and undecided; `ESTIMATE`;
-# choices: of each admissible combination of what the paper leaves open its values by name, deviation, exponent, verdict
-#     and holds (None where that is undecided); combinations and holds_at: how many there are, and how many hold;
-#     choice: the one that moves the deviation most;
+# choices: of each combination of what the paper leaves open its values by name, deviation, exponent, verdict and holds;
+#     combinations and holds_at: how many; choice: the one that moves the deviation most;
 # flips_at: tolerances at which the verdict changes (`rules.flips`), found by `at`, which is the verdict at a tolerance;
-# further: other numbers, by what they are; why: one sentence, where the numbers do not say it; note and source in place
-#     of those that stand with the text.
+# further: other numbers, by what they are; why: one sentence, where the numbers do not say it; note.
 Claim = dict[str, Any]
 # Of an approximate claim: quantile and largest deviation of the runs, exponent, distance from the exact theory.
 ESTIMATE = ("ninety", "largest", "exponent", "exponent_uncertainty", "exact_median", "exact_largest")
@@ -99,10 +97,9 @@ class Evidence:
         self._lattices[simulation] = [level.assign(**more(level)) for level in self._lattices[simulation]]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
-        """Runs of some simulations one below the other, by number: on the finest lattice, the middle and the coarsest.
+        """Runs of some simulations one below the other: on the finest lattice, which decides on them, and two coarser.
 
-        The finest has the uncertainty of each quantity and its value extrapolated to spacing 0, as uncertainty_QUANTITY
-        and extrapolated_QUANTITY, and decides which runs are taken.
+        The finest has uncertainty_QUANTITY and, for its value at spacing 0, extrapolated_QUANTITY.
         """
         chosen = []
         for name in simulations:
@@ -145,11 +142,8 @@ class Evidence:
     ) -> Claim:
         """An estimate, by the median deviation of its runs and, where a tolerance is given for it, the exponent.
 
-        Parameters
-        ----------
-        tables : the same runs on the finest lattice, the middle and the coarsest; or one table of exact values
-        measured, predicted : expressions over columns
-        levels : columns of which one level at a time is left out, for the uncertainty of the exponent
+        Tables are the same runs on the finest lattice, the middle and the coarsest, or one of exact values; of the
+        columns ``levels`` one level at a time is left out, for the uncertainty of the exponent.
         """
         tables = [
             table.reindex(columns=[*levels, "factor"]).assign(
@@ -187,10 +181,7 @@ class Evidence:
         }  # fmt: skip
 
     def qualitative(self, decided: Iterable[bool | None], condition: bool = False) -> Claim:
-        """An always, never or every, by whether it holds in each run, None where that is undecided.
-
-        ``condition``: whether it needs one that the paper does not state.
-        """
+        """An always, never or every, by whether it holds in each run, None where that is undecided."""
         decided = list(decided)
         runs, undecided = len(decided), sum(found is None for found in decided)
         held = sum(bool(found) for found in decided)
@@ -206,12 +197,8 @@ class Evidence:
     ) -> list[bool | None]:
         """Whether something holds in each chosen run: by both finest lattices, else by the exact solution, else None.
 
-        Parameters
-        ----------
-        where : which runs
-        holds : what is to hold, on one lattice
-        told : which runs last long enough for a lattice to tell
-        ends : it holds by the exact solution where the run ends in one of these regimes; without, that is not asked
+        Lattices are asked of runs that last long enough, ``told``; the exact solution whether a run ``ends`` in one of
+        some regimes, if any are given.
         """
         finest, middle, *_ = self.lattices(simulation, where=where)
         both = agreeing(evaluated(finest, holds), evaluated(middle, holds))

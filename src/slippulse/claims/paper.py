@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+import json
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
@@ -37,23 +37,25 @@ PREDICTED = [
     "space_time_displacement", "speed_against_gamma", "steady_displacement", "steady_elsewhere",
     "stress_pulses", "undamped_pulses",
 ]  # fmt: skip
+# Claims that are rows of a table, or alike; any other is judged by the function of its name.
+Judge = Callable[[Evidence, str], Claim]
+ROWS: dict[Judge, Collection[str]] = {
+    pulses.equation: pulses.EQUATIONS,
+    regimes.always: regimes.ALWAYS,
+    transition.under_displacement: ("T_trans_displacement", "L_trans_displacement"),
+    transition.under_stress: ("T_trans_stress", "L_trans_stress"),
+}
 
 
 def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mapping]) -> list[dict]:
     """The ledger, as in claims.json: of each claim its entry in manuscript/claims.yaml and what was found.
 
-    Parameters
-    ----------
-    readings : numbers read off the published space-time figure
-    sentences : of the paper, as in manuscript/statements.yaml
-
-    Raises
-    ------
-    ValueError
-        If the entries and what is computed are not about the same claims.
+    ``readings``: numbers read off the published figure. Refused if entries and code are not about the same claims.
     """
     evidence.assign("regimes_beyond", regimes.meet)
-    judges = pulses.JUDGES | regimes.JUDGES | transition.JUDGES
+    judges: dict[str, Judge] = {id: judge for judge, ids in ROWS.items() for id in ids}
+    for module in (pulses, regimes, transition):
+        judges |= {id: getattr(module, id) for id in evidence.entries if hasattr(module, id)}
     found = {id: judge(evidence, id) for id, judge in judges.items()} | published_figure(evidence, readings)
     if odd := sorted({*evidence.entries} ^ {*found}):
         raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
@@ -67,7 +69,7 @@ def published_figure(evidence: Evidence, readings: Mapping) -> dict[str, Claim]:
     The left one at the best fit of its readings, the drawn arrows among them; the right one without a fit.
     """
     study = evidence.tables["published_figure"]
-    left, right = inference(study, part="arrows")["best"], right_panel(study)
+    left = inference(study, part="arrows")["best"]
     arrows = {name: entry["statement"] for name, entry in readings.items() if entry.get("arrow")}
     further, why = {}, []
     for fit, found in {"with": left, "without": inference(study)["best"]}.items():
@@ -76,30 +78,25 @@ def published_figure(evidence: Evidence, readings: Mapping) -> dict[str, Claim]:
             further[f"pull of the {text} at the fit {fit} the arrows"] = found["pulls"][name]
         pulls = " and ".join(number(found["pulls"][name], 2) for name in arrows)
         why.append(f"{fit} its arrows p is {number(found['p_value'], 2)} and they are off by {pulls}")
-
-    def claim(id: str, sweep: str, found: Mapping, of: str, why: str, **further: float) -> Claim:
+    fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
+    panels = (
+        (LEFT, "space_time_displacement", left, "all readings of the panel, its arrows among them, at their best fit, "
+         f"{fit}, release rule `{left['release']}`", f"Fitted {'; '.join(why)} reading errors." if arrows else ""),
+        (RIGHT, "space_time_stress", right_panel(study), "its one reading, the pre-stress being read off",
+         "One reading is left when its pre-stress is read off."),
+    )  # fmt: skip
+    claims: dict[str, Claim] = {}
+    for id, sweep, found, of, reason in panels:
         p, degrees, run = found["p_value"], found["dof"], evidence.lattices(sweep)[0].iloc[0]
         of_panel = [entry for entry in readings.values() if entry["simulation"] == sweep]
-        ours = {entry["statement"]: float(run[entry["quantity"]]) for entry in of_panel}
-        return {
+        claims[id] = {
             "verdict": rules.reading(p, degrees, evidence.tolerance(id)), "predicted": float(degrees),
-            "measured": found["chi2"], "deviation": p, "further": ours | further,
+            "measured": found["chi2"], "deviation": p, "why": reason, "at": partial(rules.reading, p, degrees),
+            "further": {entry["statement"]: float(run[entry["quantity"]]) for entry in of_panel},
             "note": f"chi-square of {of}; then the readings in our own figure",
-            "why": why, "at": partial(rules.reading, p, degrees),
         }  # fmt: skip
-
-    fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
-    best = f"their best fit, {fit}, release rule `{left['release']}`"
-    return {
-        LEFT: claim(
-            LEFT, "space_time_displacement", left, f"all readings of the panel, its arrows among them, at {best}",
-            f"Fitted {'; '.join(why)} reading errors." if arrows else "", **further,
-        ),
-        RIGHT: claim(
-            RIGHT, "space_time_stress", right, "its one reading, the pre-stress being read off",
-            "One reading is left when its pre-stress is read off.",
-        ),
-    }  # fmt: skip
+    claims[LEFT]["further"] |= further
+    return claims
 
 
 def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
@@ -123,37 +120,30 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
 
 def finite(value):
     """Builtins with None for every number that JSON does not have."""
-    if isinstance(value, Mapping):
-        return {key: finite(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [finite(entry) for entry in value]
-    if hasattr(value, "item"):
-        value = value.item()
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    text = json.dumps(value, default=lambda number: number.item())
+    return json.loads(text, parse_constant=lambda _: None)
 
 
 def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]) -> list[dict]:
-    """Each finding: id, its numbers by name (none where an altered configuration left no runs), and its text.
+    """Each finding: id, its numbers by name (none where an altered configuration left no runs), text and tables.
 
     Parameters
     ----------
     damping_ratio : beta/dx of the figures
-    entries : per finding, as in manuscript/claims.yaml, its text and the tables that its numbers are taken from
-
-    Raises
-    ------
-    ValueError
-        If a text asks for a number that there is not.
+    entries : as in manuscript/claims.yaml
     """
     out = []
     for id, entry in entries.items():
+        rows = entry.get("numbers", [])
         found: dict = {}
         with suppress(NoRuns):
-            for rows in entry.get("numbers", []):
-                found |= numbers(evidence, damping_ratio, **rows)
+            for row in rows:
+                found |= numbers(evidence, damping_ratio, **row)
             if id in COMPUTED:
                 found |= COMPUTED[id](evidence)
-        out.append({"id": id, "numbers": found, "text": fill(entry["text"], {"n": namespace(found)})})
+        text = fill(entry["text"], {"n": namespace(found)})
+        source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
+        out.append({"id": id, "numbers": found, "text": text, "source": source})
     return out
 
 

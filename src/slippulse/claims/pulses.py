@@ -186,14 +186,3 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Claim:
         held += list((change > evidence.tolerance(id)).to_numpy().ravel())
         further[f"smallest change of the {name}"] = float(change.min().min())
     return evidence.qualitative(held, condition=True) | {"further": further}
-
-
-JUDGES = {id: equation for id in EQUATIONS} | {
-    judge.__name__: judge
-    for judge in (
-        front_speed_moderate_gamma, displacement_pulse_unique, perturbed_pulses_settle,
-        damping_reduces_oscillations, zero_net_stress_change, stress_pulse_not_unique,
-        stress_pulse_set_by_prestress, pulses_for_many_friction_laws, pulses_whatever_friction,
-        other_laws_change_pulses,
-    )
-}  # fmt: skip

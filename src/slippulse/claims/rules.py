@@ -25,12 +25,7 @@ EXCLUDED = 0.003
 
 
 def within(deviation: float, uncertainty: float, tolerance: float) -> str:
-    """Verdict on one number: how far it is from its prediction, how sure that is, and how far it may be.
-
-    "not testable" without both numbers; "not reproduced" if the deviation exceeds the tolerance by more than the
-    uncertainty; "inconclusive" if the uncertainty itself exceeds the tolerance; "reproduced with caveat" if the
-    tolerance lies within the uncertainty; else "reproduced".
-    """
+    """Verdict on one number: how far it is from its prediction, how sure that is, and how far it may be."""
     if not np.isfinite([deviation, uncertainty]).all():
         return "not testable"
     if deviation - uncertainty > tolerance:
@@ -66,13 +61,9 @@ def approximate(
     exponent: tuple[float, float] | None = None,
     tolerance_exponent: float = 0.0,
 ) -> str:
-    """Verdict on an estimate: the worse of those on median and exponent. The single worst run does not decide.
+    """Verdict on an estimate: the worse of those on the median deviation, and on the exponent if one is claimed.
 
-    Parameters
-    ----------
-    median : of the relative deviations of all runs, and its uncertainty
-    exponent : of measured against predicted in logarithmic axes, and its uncertainty; None where none is claimed
-    tolerance, tolerance_exponent : of the median, and of the distance of the exponent from 1
+    Both with their uncertainties, the exponent by its distance from 1. The single worst run does not decide.
     """
     found = within(*median, tolerance)
     if exponent is None:
@@ -81,19 +72,13 @@ def approximate(
 
 
 def over_choices(verdicts: Sequence[str]) -> str:
-    """Verdict on a claim from those at every admissible combination of what the paper leaves open.
-
-    "depends on an open choice" if it holds at some and fails at others; else the worst of those that have numbers.
-    """
+    """Verdict on a claim from those at every admissible combination of what the paper leaves open."""
     held = {HOLDS.get(verdict) for verdict in verdicts}
     return DEPENDS if {True, False} <= held else worst_tested(verdicts)
 
 
 def flips(at: Callable[[float], str], tolerance: float) -> list[dict]:
-    """Tolerances at which a verdict changes, from a tenth to ten times its own, each with the verdict on both sides.
-
-    ``at``: the verdict at a tolerance.
-    """
+    """Tolerances, from a tenth to ten times its own, at which a verdict changes, each with what is on both sides."""
     if not tolerance:
         return []
     factors = np.geomspace(0.1, 10.0, SCANNED)
@@ -111,9 +96,7 @@ def flips(at: Callable[[float], str], tolerance: float) -> list[dict]:
 def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:
     """Verdict on an always, never or every, from how many runs it holds in, and fails in, by both finest lattices.
 
-    "not reproduced" if it fails in a decided run; "inconclusive" if more than a tenth are undecided; "reproduced with
-    caveat" if some are, or under a condition that the paper does not state; "not testable" without runs; else
-    "reproduced".
+    ``condition``: whether it needs one that the paper does not state.
     """
     if not held + failed + undecided:
         return "not testable"
@@ -127,8 +110,7 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
 def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
     """Verdict on a figure read off, from the probability p of a chi-square at least as large as that of the best fit.
 
-    "inconclusive" with fewer than two degrees of freedom (readings less fitted parameters); "not reproduced" below
-    `EXCLUDED`, "reproduced with caveat" below the tolerance, else "reproduced".
+    The degrees of freedom are the readings less the fitted parameters.
     """
     if not np.isfinite(p):
         return "not testable"
@@ -137,8 +119,3 @@ def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
     if p < EXCLUDED:
         return "not reproduced"
     return "reproduced with caveat" if p < tolerance else "reproduced"
-
-
-def arithmetic(deviation: float, tolerance: float) -> str:
-    """Verdict on a formula: it is that of the derivation to rounding, or it is not."""
-    return "reproduced" if deviation <= tolerance else "not reproduced"

@@ -93,8 +93,8 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
     numbers = [column for column in both if column not in texts + LATTICE]
     value, value_there = (table[numbers].astype(float) for table in (one, two))
     bars = [
-        _uncertainties(tree / "uncertainties" / name, value)
-        for tree, value in zip(trees, (value, value_there))
+        _uncertainties(tree / "uncertainties" / name, values)
+        for tree, values in zip(trees, (value, value_there), strict=True)
     ]
     known = bars[0].notna() | bars[1].notna()
     allowed = bars[0].fillna(0.0) + bars[1].fillna(0.0) + DIGITS * value.abs()
