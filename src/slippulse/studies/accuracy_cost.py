@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cache
 from itertools import product
 
@@ -31,18 +30,17 @@ from ..theory.pulse import pulse_behind_front
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
 # Two pulses, without damping and with that of the paper's figures, long enough to be steady.
-LEVEL, GAMMA, DAMPING_RATIOS, DURATION = 0.55, 0.65, (0.0, 0.1), 20.0
-# A crack that turns into a pulse at Gamma = 0 with pre-stress 0 on the right: its level on the left, the fraction of
-# the way of its left front whose time is compared, its duration in units of that time, and its spacing over that of
-# the pulses, since it is larger.
-NEGATIVE_LEVEL, FRACTION, CRACK_DURATION, CRACK_SPACING = -1.0, 0.95, 3.0, 2.0
+EVEN, GAMMA, DAMPING_RATIOS, DURATION = Prestress(0.55, 0.55), 0.65, (0.0, 0.1), 20.0
+# A crack that turns into a pulse at Gamma = 0, the fraction of the way of its left front whose time is compared, its
+# duration in units of that time, and its spacing over that of the pulses, since it is larger.
+UNEVEN, FRACTION, CRACK_DURATION, CRACK_SPACING = Prestress(-1.0, 0.0), 0.95, 3.0, 2.0
 # Every setting; the presets are added. The error of the textbook scheme is that of its step: one spacing is enough.
 SPACINGS, ORDERS, STEPS = (0.08, 0.04, 0.02, 0.01, 0.005), (3, 4, 5, 6, 8), (1.0, 0.5, 0.25)
 TEXTBOOK_SPACING, TEXTBOOK_STEPS = 0.02, (0.5, 0.25, 0.125, 0.0625, 0.03125)
 # Front speed against the step, at a level with an irrational speed: the textbook scheme nearly up to its stability
 # bound, the localised one, which does not depend on it, at some of these steps.
-LOCKING_LEVEL, LOCKING_SPACING, LOCKING_DURATION = 0.5, 0.1, 30.0
-LOCKING_STEPS, EVERY = np.linspace(0.1, 0.98, 67), 4
+LOCKING, LOCKING_SPACING, LOCKING_DURATION = Prestress(0.5, 0.5), 0.1, 30.0
+LOCKING_STEPS, EVERY = np.linspace(0.1, 0.98, 67).tolist(), 4
 
 # Errors of the scenes, relative to exact theory, the largest over the damping ratios.
 QUANTITIES = (
@@ -52,10 +50,6 @@ QUANTITIES = (
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Run the scenes at every setting, and both schemes against their step.
-
-    Parameters
-    ----------
-    settings : measure (front_window) and presets
 
     Returns
     -------
@@ -76,12 +70,18 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     trade = pd.DataFrame(ladder, columns=["scheme", "order", "step", "dx"])
     trade = trade.join(pd.DataFrame([errors(*setting, window) for setting in ladder]))
     trade = trade.assign(preset=[presets.get(setting, "") for setting in ladder], part="trade")
-    return pd.concat([trade, locking(window).assign(part="locking")], ignore_index=True)
+    locking = []
+    for scheme, steps in (("fixed_step", LOCKING_STEPS), ("localised", LOCKING_STEPS[::EVERY])):
+        for step in steps:
+            of = ("stress", LOCKING, LOCKING_DURATION, LOCKING_SPACING)
+            speed = front_speed(simulate(Scene(*of, scheme=scheme, max_step=step)), window)[0]
+            locking.append({"scheme": scheme, "step": step, "front_speed": speed})
+    exact = {"exact": float(front_speed_undamped(LOCKING.left)), "dx": LOCKING_SPACING, "part": "locking"}
+    return pd.concat([trade, pd.DataFrame(locking).assign(**exact)], ignore_index=True)
 
 
 # The same for every setting.
-transition_of = cache(exact_transition_displacement)
-crack_of = cache(lambda ratio: ArrestingCrack(Prestress(NEGATIVE_LEVEL, 0.0), ratio))
+transition_of, crack_of = cache(exact_transition_displacement), cache(ArrestingCrack)
 
 
 def errors(scheme: str, order: int, step: float, dx: float, window: float) -> dict[str, float]:
@@ -90,43 +90,36 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
     A pulse at each damping ratio, and at the largest one the crack: without damping the ringing of the lattice decides
     where its left front stands still. The step is cut where it would not be stable, as the pipeline does.
     """
-
     # The textbook scheme and the exact solution have no order to choose.
     known = max(order, 3)
 
-    def scene(profile: Prestress, duration: float, dx: float, gamma: float, ratio: float) -> Scene:
-        boundary = "displacement" if gamma > 0.0 else "stress"
+    def run(profile: Prestress, duration: float, dx: float, gamma: float, ratio: float) -> xr.Dataset:
         bound = MARGIN * largest_step(scheme, known, ratio, gamma * dx**2)
-        of = Scene(boundary, profile, duration, dx, gamma, ratio * dx, scheme=scheme, order=known)
-        return replace(of, max_step=min(step, bound))
+        of = ("displacement" if gamma > 0.0 else "stress", profile, duration, dx, gamma, ratio * dx)
+        return simulate(Scene(*of, scheme=scheme, max_step=min(step, bound), order=known))
 
-    even, uneven = Prestress(LEVEL, LEVEL), Prestress(NEGATIVE_LEVEL, 0.0)
-    found = [pulse_errors(scene(even, DURATION, dx, GAMMA, b), b, window) for b in DAMPING_RATIOS]
-    crack = crack_of(max(DAMPING_RATIOS))
+    found = []
+    for ratio in DAMPING_RATIOS:
+        data = run(EVEN, DURATION, dx, GAMMA, ratio)
+        pulse, speed = leading_pulse(data, window), float(exact_speed(EVEN.left, ratio))
+        # At fixed beta/dx damping acts at the front alone in the continuum.
+        beta = 0.0 if scheme == "continuum" else ratio * dx
+        steady = pulse_behind_front(EVEN.left, GAMMA, beta, speed)
+        ratios = {
+            "front_speed": pulse.speed / speed,
+            "peak_velocity": pulse.peak_velocity / steady.peak_velocity,
+            "width": pulse.width / steady.width,
+            "final_slip": pulse.slip / steady.slip,
+            "transition_time": data.attrs["first_stick_time"] / transition_of(EVEN, GAMMA, ratio).time,
+        }
+        found.append(costs(data) | {name: abs(value - 1.0) for name, value in ratios.items()})
+    crack = crack_of(UNEVEN, max(DAMPING_RATIOS))
     time, distance = crack.share_time(FRACTION), abs(crack.balance_position)
-    of = scene(uneven, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
-    run = simulate(of)
-    late, short = arrival(run, FRACTION * distance, "left") / time, path(run, "left")[1][-1] / distance
-    found.append(costs(run) | {"share_time": abs(late - 1.0), "arrest_position": abs(short - 1.0)})
+    data = run(UNEVEN, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
+    late, short = arrival(data, FRACTION * distance, "left") / time, path(data, "left")[1][-1] / distance
+    found.append(costs(data) | {"share_time": abs(late - 1.0), "arrest_position": abs(short - 1.0)})
     out = {name: float(np.max([entry[name] for entry in found if name in entry])) for name in QUANTITIES}
     return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
-
-
-def pulse_errors(of: Scene, ratio: float, window: float) -> dict[str, float]:
-    """Relative errors of the pulse and of T_trans, and the work."""
-    run = simulate(of)
-    pulse, speed = leading_pulse(run, window), float(exact_speed(LEVEL, ratio))
-    transition = transition_of(of.prestress, GAMMA, ratio)
-    # At fixed beta/dx damping acts at the front alone in the continuum.
-    steady = pulse_behind_front(LEVEL, GAMMA, 0.0 if of.scheme == "continuum" else of.beta, speed)
-    ratios = {
-        "front_speed": pulse.speed / speed,
-        "peak_velocity": pulse.peak_velocity / steady.peak_velocity,
-        "width": pulse.width / steady.width,
-        "final_slip": pulse.slip / steady.slip,
-        "transition_time": run.attrs["first_stick_time"] / transition.time,
-    }
-    return costs(run) | {name: abs(value - 1.0) for name, value in ratios.items()}
 
 
 def costs(run: xr.Dataset) -> dict[str, float]:
@@ -142,14 +135,3 @@ def costs(run: xr.Dataset) -> dict[str, float]:
     }
     found = {"block_updates": numbers["block_updates"], "work": float(work[numbers["scheme"]])}
     return {"energy": numbers["energy_residual"], **found}
-
-
-def locking(window: float) -> pd.DataFrame:
-    """Front speed against the step, both schemes: a crack without damping or leaf springs, at an irrational speed."""
-    of = Scene("stress", Prestress(LOCKING_LEVEL, LOCKING_LEVEL), LOCKING_DURATION, LOCKING_SPACING)
-    rows = []
-    for scheme, steps in (("fixed_step", LOCKING_STEPS), ("localised", LOCKING_STEPS[::EVERY])):
-        for step in map(float, steps):
-            speed = front_speed(simulate(replace(of, scheme=scheme, max_step=step)), window)[0]
-            rows.append({"scheme": scheme, "step": step, "front_speed": speed})
-    return pd.DataFrame(rows).assign(exact=float(front_speed_undamped(LOCKING_LEVEL)), dx=LOCKING_SPACING)

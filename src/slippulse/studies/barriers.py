@@ -51,25 +51,26 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         point = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": 1.0, "damping_ratio": ratio}
         exact, estimate = barrier_depth(tau0, barrier, 1.0, ratio), barrier_depth_estimate(tau0, barrier, 1.0)
         rows.append(point | {"exact": exact, "paper": estimate})
-    for (row, tau0), (column, barrier) in product(enumerate(LEVELS), enumerate(BARRIERS)):
+    for (row, tau0), (column, barrier), ratio in product(
+        enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS
+    ):
         gamma = GAMMAS[(row + column) % len(GAMMAS)]
+        exact = barrier_depth(tau0, barrier, gamma, ratio)
+        pair = {"tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "exact": exact}
         estimate = barrier_depth_estimate(tau0, barrier, gamma)
-        for ratio in DAMPING_RATIOS:
-            exact = barrier_depth(tau0, barrier, 1.0, ratio) / math.sqrt(gamma)
-            pair = {"tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "exact": exact}
-            for dx in SPACINGS:
-                depth = entered(tau0, gamma, ratio, dx, exact, ((0.0, barrier),))
-                rows.append({"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate})
-            for length in LENGTHS:
-                steps = ((0.0, barrier), (length * exact, tau0))
-                depth = entered(tau0, gamma, ratio, PASSING_SPACING, exact, steps)
-                numbers = {"length": length, "measured": float(depth > (length + 0.5) * exact)}
-                passing.append({"part": "passing", **pair, "dx": PASSING_SPACING, **numbers})
+        for dx in SPACINGS:
+            depth = entered(tau0, gamma, ratio, dx, exact, (0.0, barrier))
+            rows.append({"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate})
+        for length in LENGTHS:
+            dx = PASSING_SPACING
+            depth = entered(tau0, gamma, ratio, dx, exact, (0.0, barrier), (length * exact, tau0))
+            went_past = float(depth > (length + 0.5) * exact)
+            passing.append({"part": "passing", **pair, "dx": dx, "length": length, "measured": went_past})
     return pd.DataFrame(rows + passing)
 
 
 def entered(
-    tau0: float, gamma: float, ratio: float, dx: float, exact: float, steps: tuple[tuple[float, float], ...]
+    tau0: float, gamma: float, ratio: float, dx: float, exact: float, *steps: tuple[float, float]
 ) -> float:
     """How far the right front of a lattice enters a barrier, to half a block beyond the last released one.
 
@@ -81,6 +82,5 @@ def entered(
     start = (math.floor((TAIL * WIDTH + width / (speed - 1.0)) / dx) + 0.5) * dx
     both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
     profile, duration = Prestress(tau0, tau0, WIDTH, steps=both), start + CROSSINGS * exact + width
-    scene = Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4)
-    run = run_scene(scene)
+    run = run_scene(Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4))
     return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

@@ -15,8 +15,8 @@ from ..theory.pulse import paper_pulse, pulse_behind_front
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
 
 QUANTITIES = ("peak_velocity", "width", "slip")
-# Denser towards no damping, where the pulse changes most.
-POINTS = 61
+# Damping ratios over the largest, denser towards no damping, where the pulse changes most.
+DAMPING = np.linspace(0.0, 1.0, 61) ** 2
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -27,18 +27,17 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     DataFrame of left (the level), damping_ratio and value: role curve (in units of the paper's formulas) and limit
     (dx -> 0 at the fixed ratio of the refined lattices, where beta vanishes too; with the front speed)
     """
-    swept, refined = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    swept, (scene, *_) = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    left, ratio = scene.prestress.left, scene.damping_ratio
+    pulse = pulse_behind_front(left, scene.gamma, 0.0, float(front_speed(left, ratio, scene.release)))
+    limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in (*QUANTITIES, "speed")]
     scene, rows = swept[0], []
-    ratios = max(each.damping_ratio for each in swept) * np.linspace(0.0, 1.0, POINTS) ** 2
+    ratios = max(each.damping_ratio for each in swept) * DAMPING
     for left in sorted({each.prestress.left for each in swept}):
         paper = paper_pulse(left, scene.gamma)
         for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
             pulse = pulse_behind_front(left, scene.gamma, ratio * scene.dx, speed)
             for name in QUANTITIES:
                 rows.append(("curve", left, ratio, name, getattr(pulse, name) / getattr(paper, name)))
-    scene = refined[0]
-    left, ratio = scene.prestress.left, scene.damping_ratio
-    pulse = pulse_behind_front(left, scene.gamma, 0.0, float(front_speed(left, ratio, scene.release)))
-    limits = {name: getattr(pulse, name) for name in QUANTITIES} | {"front_speed": pulse.speed}
-    rows += [("limit", left, ratio, name, value) for name, value in limits.items()]
-    return pd.DataFrame(rows, columns=["role", "left", "damping_ratio", "quantity", "value"])
+    found = pd.DataFrame(rows + limits, columns=["role", "left", "damping_ratio", "quantity", "value"])
+    return found.replace({"quantity": {"speed": "front_speed"}})

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from functools import cache
 
 import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
-from ..model.scene import RELEASES, Scene
+from ..model.scene import RELEASES
 from ..predict.exact_rupture import exact_rupture
 from ..predict.table import or_nan
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
@@ -18,14 +19,13 @@ from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
 from ..theory.pulse import SteadyPulse, pulse_behind_front
 from ..theory.rupture import Rupture
-from .gaussian_transition import with_peak, without_peak
+from .gaussian_transition import over_paper
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
 
-# Positions of the table of stick times, in units of H.
-POSITIONS = range(9)
-# Nothing is known to more decimals than this, the release at a nucleation point among them.
-DECIMALS = 8
+# Positions of the table of stick times, in units of H; nothing is known to more decimals than this, the release at a
+# nucleation point among them.
+POSITIONS, DECIMALS = np.arange(9.0), 8
 # Long enough for the left front of a one-way pulse to stop.
 ONE_WAY_DURATION = 8.0
 # A softer layer, in which the peak at nucleation is narrow.
@@ -33,7 +33,7 @@ SOFT = 1.0 / 9.0
 # A derivative in space by a difference over this.
 STEP = 1e-3
 # Fronts that are followed block by block: speeds, damping ratios, and gamma dx^2 of the leaf springs.
-SPEEDS, RATIOS, SPRINGS = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
+FOLLOWED = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -44,18 +44,22 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     quantity, x (position, for the three that are tabulated over positions), value (NaN where theory has no answer)
     """
     scenes = {name: expand(sweep)[0] for name, sweep in settings["sweeps"].items()}
-    published = scenes["space_time_displacement"][0]
+    published, step = scenes["space_time_displacement"][0], scenes["pulses_across_a_step"][0]
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
-    step = scenes["pulses_across_a_step"][0]
     level, gamma = step.prestress.left, step.gamma
     ratio, release = published.damping_ratio, published.release
+    rupture = cache(lambda: exact_rupture(published.attributes()))
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop = one_way.front_ends[0][0]
-    fronts = [front for rule in RELEASES for front in admissibility_table(SPEEDS, RATIOS, SPRINGS, rule)]
+    admissible = [front["admissible"] for rule in RELEASES for front in admissibility_table(*FOLLOWED, rule)]
 
     def pulse() -> SteadyPulse:
         """An undamped one at the speed with damping."""
         return pulse_behind_front(level, gamma, 0.0, float(front_speed(level, ratio, release)))
+
+    def strain_term() -> float:
+        """Curvature of slip at the nucleation point halfway to the transition, over the pre-stress, 1 there."""
+        return abs(float(rupture().strain(STEP, 0.5 * rupture().transition_time)) / STEP)
 
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
@@ -71,35 +75,25 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         "one_way_first_stick_position": lambda: one_way.first_stick[1] if one_way.first_stick else math.nan,
         "one_way_transition_time": lambda: one_way.transition_time,
         "one_way_transition_length": lambda: one_way.transition_length,
-        "transition_point_lowest": lambda: without_peak(levels[0]),
-        "transition_point_highest": lambda: without_peak(levels[-1]),
-        "transition_point_level": lambda: without_peak(level),
-        "transition_peak_lowest": lambda: with_peak(levels[0], 1.0),
-        "transition_peak_highest": lambda: with_peak(levels[-1], 1.0),
-        "transition_peak_level": lambda: with_peak(level, 1.0),
-        "transition_peak_level_soft": lambda: with_peak(level, SOFT),
+        "transition_point_lowest": lambda: over_paper(levels[0]),
+        "transition_point_highest": lambda: over_paper(levels[-1]),
+        "transition_point_level": lambda: over_paper(level),
+        "transition_peak_lowest": lambda: over_paper(levels[0], 1.0),
+        "transition_peak_highest": lambda: over_paper(levels[-1], 1.0),
+        "transition_peak_level": lambda: over_paper(level, 1.0),
+        "transition_peak_level_soft": lambda: over_paper(level, SOFT),
         # What the paper neglects.
-        "strain_term": lambda: strain_term(exact_rupture(published.attributes())),
+        "strain_term": strain_term,
         # Steady fronts found block by block, and those of them that are admissible.
-        "fronts_block_by_block": lambda: len(fronts),
-        "fronts_admissible": lambda: sum(front["admissible"] for front in fronts),
+        "fronts_block_by_block": lambda: len(admissible),
+        "fronts_admissible": lambda: sum(admissible),
     }
-    rows = [{"quantity": name, "x": math.nan, "value": or_nan(find)} for name, find in numbers.items()]
-    return pd.DataFrame(rows + sticking(published))
-
-
-def strain_term(rupture: Rupture) -> float:
-    """Curvature of slip at the nucleation point halfway to the transition, over the pre-stress, which is 1 there."""
-    return abs(float(rupture.strain(STEP, 0.5 * rupture.transition_time)) / STEP)
-
-
-def sticking(scene: Scene) -> list[dict]:
-    """Release, sticking and slip at some positions of a scene's exact rupture."""
-    x, names = np.array(POSITIONS, dtype=float), ("release_time", "stick_time", "final_slip")
-    try:
-        rupture = exact_rupture(scene.attributes())
-        columns = [np.round(getattr(rupture, name)(x), DECIMALS) for name in names]
-    except (ValueError, ArithmeticError):
-        columns = [np.full_like(x, math.nan)] * len(names)
-    found = pd.DataFrame(dict(zip(names, columns, strict=True))).assign(x=x)
-    return found.melt("x", var_name="quantity")[["quantity", "x", "value"]].to_dict("records")
+    rows = [(name, math.nan, or_nan(find)) for name, find in numbers.items()]
+    # Release, sticking and slip at some positions of the published scene.
+    for name in ("release_time", "stick_time", "final_slip"):
+        try:
+            found = np.round(getattr(rupture(), name)(POSITIONS), DECIMALS)
+        except (ValueError, ArithmeticError):
+            found = np.full_like(POSITIONS, math.nan)
+        rows += zip([name] * POSITIONS.size, POSITIONS, found, strict=True)
+    return pd.DataFrame(rows, columns=["quantity", "x", "value"])

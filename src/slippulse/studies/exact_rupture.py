@@ -21,6 +21,8 @@ POSITIONS, FRACTIONS = 41, (0.8, 0.9)
 LAYER = 0.4
 # The map and the marks are of the run that is nearest this spacing.
 SHOWN = 0.04
+# What is compared of a run, by its name there.
+EDGES = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
 
 
 def table(data: Mapping[str, xr.Dataset], tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -40,7 +42,15 @@ def table(data: Mapping[str, xr.Dataset], tables: Mapping, settings: Mapping) ->
         kinds = ("boundary", "left", "right", "gamma", "damping_ratio", "dx")
         rows = [pd.DataFrame([{key: shown.attrs[key] for key in kinds}]).assign(role="scene")]
         if name != NEEDS["data"][-1]:
-            rows += [_exact_edges(rupture), _lattice_edges(shown)]
+            left, right = _ends(rupture)
+            x = np.linspace(left, right, CURVE_POINTS)[1:-1]
+            rows.append(pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)))
+            released = np.flatnonzero(np.isfinite(shown["release_time"].values))
+            kept = shown.isel(x=released[:: max(1, released.size // MARKS)])
+            marks = {"position": "x"} | EDGES
+            rows.append(
+                pd.DataFrame({key: kept[of].values for key, of in marks.items()} | {"role": "lattice"})
+            )
         if name == NEEDS["data"][0]:
             rows += _map(shown, rupture)
         rows += [_differences(run, rupture).assign(role="difference", dx=run.attrs["dx"]) for run in runs]
@@ -48,19 +58,14 @@ def table(data: Mapping[str, xr.Dataset], tables: Mapping, settings: Mapping) ->
     return pd.concat(parts, ignore_index=True)
 
 
-def _exact_edges(rupture: Rupture) -> pd.DataFrame:
-    ends = rupture.front_ends
-    x = np.linspace(ends[0][0].x, ends[-1][1].x, CURVE_POINTS)[1:-1]
-    values = {"release": rupture.release_time(x), "stick": rupture.stick_time(x)}
-    values["slip"] = rupture.slip(x, rupture.duration)
-    return pd.DataFrame({"role": "exact", "position": x} | values)
+def _ends(rupture: Rupture) -> tuple[float, float]:
+    """Where both fronts are at the end."""
+    return rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
 
 
-def _lattice_edges(run: xr.Dataset) -> pd.DataFrame:
-    released = np.flatnonzero(np.isfinite(run["release_time"].values))
-    kept = run.isel(x=released[:: max(1, released.size // MARKS)])
-    columns = {"position": "x", "release": "release_time", "stick": "stick_time", "slip": "slip"}
-    return pd.DataFrame({name: kept[of].values for name, of in columns.items()}).assign(role="lattice")
+def _exact(rupture: Rupture, x: np.ndarray) -> dict[str, np.ndarray]:
+    edges = {"release": rupture.release_time(x), "stick": rupture.stick_time(x)}
+    return edges | {"slip": rupture.slip(x, rupture.duration)}
 
 
 def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
@@ -80,32 +85,26 @@ def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
 
 def _differences(run: xr.Dataset, rupture: Rupture) -> pd.DataFrame:
     """How far a run is from the exact solution of its scene; a quantity that the scene does not have is left out."""
-    ends, blocks, duration = rupture.front_ends, run["x"].values, rupture.duration
-    stops = ends[0][0].reason == "stops" or rupture.gamma == 0.0
-    x = np.linspace(ends[0][0].x * FRACTIONS[0 if stops else 1], ends[-1][1].x * FRACTIONS[1], POSITIONS)
-    stick = rupture.stick_time(x)
-    exact = {
-        "release": rupture.release_time(x),
-        "stick": np.where(stick > duration - LAYER, np.nan, stick),
-        "slip": rupture.slip(x, duration),
-    }
-    names = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
-    pairs = {name: (np.interp(x, blocks, run[names[name]].values), exact[name]) for name in names}
+    stops = rupture.front_ends[0][0].reason == "stops" or rupture.gamma == 0.0
+    left, right = _ends(rupture)
+    x = np.linspace(left * FRACTIONS[0 if stops else 1], right * FRACTIONS[1], POSITIONS)
+    known = _exact(rupture, x)
+    known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
+    found = {name: np.interp(x, run["x"].values, run[of].values) for name, of in EDGES.items()}
+    # Slip velocity at the sampled points that slide, away from both edges.
+    inside = np.flatnonzero(
+        (run["sample_position"].values >= x[0]) & (run["sample_position"].values <= x[-1])
+    )
+    x, times = run["sample_position"].values[inside], run["sample_time"].values
+    release, stick = rupture.release_time(x), np.nan_to_num(rupture.stick_time(x), nan=np.inf)
+    row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
+    found["velocity"] = run["sample_velocity"].values[row, inside[column]]
+    known["velocity"] = rupture.slip_velocity(x[column], times[row])
     rows = []
-    for quantity, (found, known) in (pairs | {"velocity": _velocity(run, rupture, x[[0, -1]])}).items():
-        both = np.isfinite(found) & np.isfinite(known)
+    for quantity in found:
+        both = np.isfinite(found[quantity]) & np.isfinite(known[quantity])
         if both.any():
-            mean = float(np.mean(np.abs(found[both] - known[both])) / np.mean(np.abs(known[both])))
+            expected = known[quantity][both]
+            mean = float(np.mean(np.abs(found[quantity][both] - expected)) / np.mean(np.abs(expected)))
             rows.append({"quantity": quantity, "difference": mean, "places": int(both.sum())})
     return pd.DataFrame(rows)
-
-
-def _velocity(run: xr.Dataset, rupture: Rupture, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Slip velocity at the sampled points that slide, away from both edges."""
-    x, times = run["sample_position"].values, run["sample_time"].values
-    inside = np.flatnonzero((x >= ends[0]) & (x <= ends[1]))
-    x = x[inside]
-    release, stick = rupture.release_time(x), rupture.stick_time(x)
-    stick = np.where(np.isfinite(stick), stick, np.inf)
-    row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
-    return run["sample_velocity"].values[row, inside[column]], rupture.slip_velocity(x[column], times[row])

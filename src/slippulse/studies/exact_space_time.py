@@ -31,5 +31,5 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         ends = rupture.front_ends
         x = np.concatenate([ends[0][0].x * FRACTIONS[:0:-1], ends[-1][1].x * FRACTIONS])
         edges = {"release_time": rupture.release_time(x), "stick_time": rupture.stick_time(x)}
-        parts.append(pd.DataFrame({"simulation": name, "position": x, **edges}))
+        parts.append(pd.DataFrame({"simulation": name, "position": x} | edges))
     return pd.concat(parts, ignore_index=True)

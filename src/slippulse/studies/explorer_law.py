@@ -27,12 +27,10 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """
     positions = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
     position, excess = (grid.ravel() for grid in np.meshgrid(positions, EXCESS, indexing="ij"))
-    ratio = SCALE * np.sinh(position)
-    grid = pd.DataFrame({"damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess})
-    parts = []
+    ratio, parts = SCALE * np.sinh(position), []
     for release in RELEASES:
         tau = prestress_for_speed(1.0 + np.exp(excess), ratio, release)
-        part = grid.assign(logit=np.round(np.log(tau) - np.log1p(-tau), 6))
-        part.insert(0, "release", release)
-        parts.append(part)
+        logit = np.round(np.log(tau) - np.log1p(-tau), 6)
+        grid = {"damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess, "logit": logit}
+        parts.append(pd.DataFrame({"release": release} | grid))
     return pd.concat(parts, ignore_index=True)

@@ -25,7 +25,7 @@ SPRINGS = np.concatenate([np.geomspace(3e-3, 0.3, 8), np.geomspace(0.34, 6.0, 34
 SPRINGS_RELEASE = "total"
 SPACINGS = 33
 # Refined lattices of one level; at a larger beta the pulse is as narrow as the layer at its front.
-REFINED_LEVEL, LARGEST_BETA = 0.5, 0.1
+REFINED = "left == 0.5 and beta <= 0.1"
 LINE = ["release", "left", "gamma", "held", "fixed"]
 
 
@@ -38,19 +38,21 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     springs = gamma dx^2; NaN where no front outruns the waves), refined (over dx; held: b or beta, at the value fixed),
     and limit (dx -> 0 under the elastic rule at fixed beta)
     """
-    runs = {
-        name: pd.DataFrame([scene.attributes() for scene in expand(sweep)[0]])
-        for name, sweep in settings["sweeps"].items()
-    }
+    swept, springs, fixed_ratio, *fixed_beta = (
+        pd.DataFrame([scene.attributes() for scene in expand(settings["sweeps"][name])[0]])
+        for name in NEEDS["sweeps"]
+    )
     parts, rows = [], []
-    for release, ratio in runs["front_speed"][["release", "damping_ratio"]].drop_duplicates().values:
+    for release, ratio in swept[["release", "damping_ratio"]].drop_duplicates().values:
         line = {"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS, "panel": "prestress"}
         parts.append(pd.DataFrame(line | {"release": release, "damping_ratio": ratio}))
-    for left, ratio in runs["front_speed_springs"][["left", "damping_ratio"]].drop_duplicates().values:
+    for left, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
         line = {"panel": "springs", "release": SPRINGS_RELEASE, "left": left, "damping_ratio": ratio}
-        speeds = [_speed(left, springs, 1.0, ratio, SPRINGS_RELEASE) for springs in SPRINGS]
+        speeds = [_speed(left, each, 1.0, ratio, SPRINGS_RELEASE) for each in SPRINGS]
         parts.append(pd.DataFrame(line | {"springs": SPRINGS, "speed": speeds}))
-    for values, dx in _refined(runs).groupby(LINE)["dx"]:
+    held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
+    held += [each.assign(held="beta", fixed=each["beta"]) for each in fixed_beta]
+    for values, dx in pd.concat(held).query(REFINED).groupby(LINE)["dx"]:
         line = dict(zip(LINE, values, strict=True))
         if line["held"] == "beta" and line["release"] == "elastic":
             speed = continuum_front_speed(line["left"], line["gamma"], line["fixed"])
@@ -60,14 +62,6 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
             speed = _speed(line["left"], line["gamma"], spacing, ratio, line["release"])
             rows.append(line | {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed})
     return pd.concat([*parts, pd.DataFrame(rows)], ignore_index=True)
-
-
-def _refined(runs: Mapping[str, pd.DataFrame]) -> pd.DataFrame:
-    """Scenes on refined lattices, with what is held fixed (b = beta/dx or beta) and its value."""
-    ratio, *betas = (runs[name] for name in NEEDS["sweeps"][2:])
-    held = [ratio.assign(held="b", fixed=ratio["damping_ratio"])]
-    both = pd.concat([*held, *(each.assign(held="beta", fixed=each["beta"]) for each in betas)])
-    return both[(both["left"] == REFINED_LEVEL) & (both["beta"] <= LARGEST_BETA)]
 
 
 def _speed(*scene) -> float:

@@ -18,18 +18,12 @@ GAMMAS = (0.01, 0.1, 0.65)
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """T_trans sqrt(gamma)/pi at Gamma = 1; no gamma in uniform pre-stress, where it does not depend on it."""
-    rows = []
-    for left in LEVELS:
-        rows.append({"left": left, "over_paper": without_peak(left)})
-        rows += [{"left": left, "gamma": gamma, "over_paper": with_peak(left, gamma)} for gamma in GAMMAS]
-    return pd.DataFrame(rows)
+    rows = [(left, over_paper(left, gamma), gamma) for left in LEVELS for gamma in (None, *GAMMAS)]
+    return pd.DataFrame(rows, columns=["left", "over_paper", "gamma"])
 
 
-def without_peak(level: float) -> float:
-    """T_trans sqrt(gamma)/pi in uniform pre-stress nucleated at a point."""
-    return uniform_transition_time(level, 1.0) / np.pi
-
-
-def with_peak(level: float, gamma: float) -> float:
-    """The same with the Gaussian at nucleation."""
+def over_paper(level: float, gamma: float | None = None) -> float:
+    """T_trans sqrt(gamma)/pi with the Gaussian at nucleation; without gamma, nucleated at a point."""
+    if gamma is None:
+        return uniform_transition_time(level, 1.0) / np.pi
     return exact_transition_displacement(Prestress(level, level), gamma).time * np.sqrt(gamma) / np.pi

@@ -32,15 +32,14 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     parts = []
     for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:
         position, level = scene.prestress.steps[-1]
+        before = scene.prestress.right
         # In the limit dx -> 0 damping acts through the speed alone.
-        speeds = front_speed(np.array([scene.prestress.right, level]), scene.damping_ratio, scene.release)
         old, new = (
-            pulse_behind_front(each, scene.gamma, 0.0, float(speed))
-            for each, speed in zip((scene.prestress.right, level), speeds, strict=True)
+            pulse_behind_front(each, scene.gamma, 0.0, front_speed(each, scene.damping_ratio, scene.release))
+            for each in (before, level)
         )
         memory = new.width / (new.speed - 1.0)
         x, exact = np.concatenate([BEHIND, memory * BEYOND]), exact_rupture(scene.attributes())
         rows = pd.DataFrame({"level": level, "x": x, "slip": exact.final_slip(position + x)})
-        steady = {"steady": new.slip, "steady_before": old.slip, "memory": memory}
-        parts.append(rows.assign(before=scene.prestress.right, **steady))
+        parts.append(rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory))
     return pd.concat(parts, ignore_index=True)

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from scipy.integrate import cumulative_trapezoid
 
 from ..configuration.expand import expand
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.front_law import front_speed
-from ..theory.pulse import SteadyPulse, pulse_behind_front
+from ..theory.pulse import pulse_behind_front
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 
@@ -19,6 +20,7 @@ NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 POINTS, AHEAD, BEHIND = 200, 0.08, 0.25
 # Of the largest velocity: below it the tail of a pulse that never ends is cut.
 TAIL = 1e-3
+FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -32,26 +34,22 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """
     parts = []
     for name, sweep in settings["sweeps"].items():
-        scenes, _ = expand(sweep)
-        for run, scene in enumerate(scenes):
-            if scene.boundary == "stress":
-                found = far_profile(scene)
-            else:
-                level = scene.prestress.right
-                speed = float(front_speed(level, scene.damping_ratio, scene.release))
-                found = profile(pulse_behind_front(level, scene.gamma, scene.beta, speed))
+        for run, scene in enumerate(expand(sweep)[0]):
+            found = far_profile(scene) if scene.boundary == "stress" else profile(scene)
             parts.append(found.assign(simulation=name, run=run))
     return pd.concat(parts, ignore_index=True)
 
 
-def profile(pulse: SteadyPulse) -> pd.DataFrame:
+def profile(scene: Scene) -> pd.DataFrame:
     """A steady pulse, its corners at the front and at the trailing edge kept sharp."""
+    level = scene.prestress.right
+    speed = float(front_speed(level, scene.damping_ratio, scene.release))
+    pulse = pulse_behind_front(level, scene.gamma, scene.beta, speed)
     even = np.linspace(-(1.0 + BEHIND), AHEAD, POINTS) * pulse.width
     edges = [-pulse.width, np.nextafter(-pulse.width, -np.inf), 0.0, 1e-12 * pulse.width]
     xi = np.unique(np.concatenate([even, edges]))
-    slip, velocity, acceleration = pulse.profile(xi)
-    fields = {"slip": slip, "slip_velocity": velocity, "slip_acceleration": acceleration}
-    return pd.DataFrame({"x": xi - pulse.peak_position, **fields})
+    fields = dict(zip(FIELDS, pulse.profile(xi), strict=True))
+    return pd.DataFrame({"x": xi - pulse.peak_position} | fields)
 
 
 def far_profile(scene: Scene) -> pd.DataFrame:
@@ -65,6 +63,6 @@ def far_profile(scene: Scene) -> pd.DataFrame:
     apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
     x, v = x[apart], v[apart]
     # The pulse moves at the wave speed without changing, so slip is the integral of its velocity over distance.
-    slip = np.concatenate([np.cumsum((0.5 * (v[1:] + v[:-1]) * np.diff(x))[::-1])[::-1], [0.0]])
+    slip = cumulative_trapezoid(v[::-1], -x[::-1], initial=0.0)[::-1]
     found = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": v, "slip_acceleration": -np.gradient(v, x)})
     return found.iloc[:: max(1, len(found) // (2 * POINTS))]

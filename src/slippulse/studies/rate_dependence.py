@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 
 from ..model.balance import prestress_balance_position
 from ..model.prestress import Prestress
@@ -14,9 +13,8 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.simulate import simulate
 from ..theory.front_law import front_speed
-from ..theory.pulse import critical_rate_strengthening
+from ..theory.pulse import critical_rate_strengthening, pulse_behind_front
 from ..theory.rupture import Rupture
-from ..theory.steady import steady_pulse
 
 NEEDS = {}  # type: dict[str, list[str]]
 
@@ -35,12 +33,8 @@ GROWTH, QUIET = 1.1, 1e-9
 # The level at which widths, slips and maps are shown; the maps' fractions, end and samples.
 LEVEL, MAPPED, END, MAP = 0.5, {"pulse": 0.6, "crack": 1.5}, 14.0, (57, 96)
 # Without leaf springs: rate strengthening, pre-stress, spacings and times.
-ALPHAS, ARRESTING, SPACINGS, TIMES = (
-    (0.0, 0.5, 2.0),
-    Prestress(-0.5, 0.0),
-    (0.05, 0.025),
-    np.geomspace(2.0, 100.0, 21),
-)
+ALPHAS, ARRESTING, SPACINGS = (0.0, 0.5, 2.0), Prestress(-0.5, 0.0), (0.05, 0.025)
+TIMES = np.geomspace(2.0, 100.0, 21)
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
@@ -53,66 +47,60 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx, rate_strengthening, time,
     largest_velocity, gap: distance of the left front from the balance of the pre-stress) and asymptote (the same)
     """
-    rows = [_lattice(level, fraction) for level in LEVELS for fraction in FRACTIONS]
-    parts = [pd.DataFrame([row for row in rows if row]).assign(role="lattice")]
-    levels = np.linspace(0.05, 0.9, 60)
-    parts.append(
-        pd.DataFrame({"level": levels, "rate_strengthening": [_critical(level) for level in levels]})
-    )
-    parts[-1]["role"] = "limit"
-    alphas = _critical(LEVEL) * np.linspace(-0.97, 0.97, 80)
-    pulses = [steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO, rate_strengthening=alpha) for alpha in alphas]
-    columns = {"rate_strengthening": alphas, "pulse_width": [pulse.width for pulse in pulses]}
-    parts.append(
-        pd.DataFrame(columns | {"pulse_slip": [pulse.slip for pulse in pulses]}).assign(role="steady")
-    )
-    parts += [_map(regime, fraction * _critical(LEVEL)) for regime, fraction in MAPPED.items()]
-    parts += [_arrest(alpha, dx) for alpha in ALPHAS for dx in SPACINGS]
-    parts += [_asymptote(alpha) for alpha in ALPHAS if alpha]
+    lattices = [_lattice(level, speed, each) for level, speed in _speeds(LEVELS) for each in FRACTIONS]
+    limit = [
+        {"level": level, "rate_strengthening": critical_rate_strengthening(GAMMA, speed)}
+        for level, speed in _speeds(np.linspace(0.05, 0.9, 60))
+    ]
+    ((_, speed),) = _speeds([LEVEL])
+    critical = critical_rate_strengthening(GAMMA, speed)
+    alphas = critical * np.linspace(-0.97, 0.97, 80)
+    pulses = [pulse_behind_front(LEVEL, GAMMA, 0.0, speed, alpha) for alpha in alphas]
+    steady = [(alpha, each.width, each.slip) for alpha, each in zip(alphas, pulses, strict=True)]
+    parts = [
+        pd.DataFrame([row for row in lattices if row]).assign(role="lattice"),
+        pd.DataFrame(limit).assign(role="limit"),
+        pd.DataFrame(steady, columns=["rate_strengthening", "pulse_width", "pulse_slip"]).assign(
+            role="steady"
+        ),
+        *(_map(regime, fraction * critical) for regime, fraction in MAPPED.items()),
+        *(_arrest(alpha, dx) for alpha in ALPHAS for dx in SPACINGS),
+        *(_asymptote(alpha) for alpha in ALPHAS if alpha),
+    ]
     return pd.concat(parts, ignore_index=True).assign(gamma=GAMMA, damping_ratio=RATIO)
 
 
-def _critical(level: float) -> float:
-    return critical_rate_strengthening(GAMMA, float(front_speed(level, RATIO)))
+def _speeds(levels) -> zip:
+    """Levels, each with its front speed."""
+    return zip(levels, front_speed(np.array(levels), RATIO).tolist(), strict=True)
 
 
-def _lattice(level: float, fraction: float) -> dict | None:
+def _lattice(level: float, speed: float, fraction: float) -> dict | None:
     """One run, its regime and its pulse; None where the model refuses it, since slip runs away."""
-    alpha, dx = fraction * _critical(level), SPACING * level
+    alpha, dx = fraction * critical_rate_strengthening(GAMMA, speed), SPACING * level
     if alpha <= -2.0 * np.sqrt(GAMMA):
         return None
-    duration = SHORTEST + MEMORIES / (float(front_speed(level, RATIO)) - 1.0)
-    scene = Scene(
-        "displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx, order=ORDER,
-        max_step=MAX_STEP, rate_strengthening=alpha,
-    )  # fmt: skip
-    run = simulate(scene)
+    duration = SHORTEST + MEMORIES / (speed - 1.0)
+    of = ("displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx)
+    run = simulate(Scene(*of, order=ORDER, max_step=MAX_STEP, rate_strengthening=alpha))
     run = run.sel(x=slice(0.5 * dx, None))
-    halfway, end = (_sliding_part(run, time) for time in (0.5 * duration, duration))
+    (start, end), (earlier_start, earlier_end) = (
+        # The outermost blocks that have stuck and that have been released.
+        [
+            float(run["x"].where(run[name] <= time).max().fillna(0.0))
+            for name in ("stick_time", "release_time")
+        ]
+        for time in (duration, 0.5 * duration)
+    )
     velocity = run["slip_velocity"].values
     # From the front backwards, the last that slides.
     slowest = velocity[velocity > 0.0][0] / velocity.max()
-    pulse = end[1] - end[0] < GROWTH * (halfway[1] - halfway[0]) and slowest > QUIET
-    row: dict[str, float | str] = {
-        "level": level,
-        "rate_strengthening": alpha,
-        "over_critical": fraction,
-        "dx": dx,
-    }
-    row |= {"regime": "pulse" if pulse else "crack", "run_flags": run.attrs["run_flags"]}
-    if pulse:
-        row |= {
-            "pulse_width": end[1] - end[0],
-            "pulse_slip": float(run["slip"].sel(x=end[0], method="nearest")),
-        }
-    return row
-
-
-def _sliding_part(run: xr.Dataset, time: float) -> tuple[float, float]:
-    """Its ends at a time: the outermost blocks that have stuck and that have been released."""
-    x = run["x"].values
-    stuck, released = (x[run[name].values <= time] for name in ("stick_time", "release_time"))
-    return float(np.max(stuck, initial=0.0)), float(np.max(released, initial=0.0))
+    pulse = end - start < GROWTH * (earlier_end - earlier_start) and slowest > QUIET
+    found = {"pulse_width": end - start, "pulse_slip": float(run["slip"].sel(x=start, method="nearest"))}
+    return {
+        "level": level, "rate_strengthening": alpha, "over_critical": fraction, "dx": dx,
+        "regime": "pulse" if pulse else "crack", "run_flags": run.attrs["run_flags"], **(found if pulse else {}),
+    }  # fmt: skip
 
 
 def _map(regime: str, alpha: float) -> pd.DataFrame:
@@ -126,11 +114,9 @@ def _map(regime: str, alpha: float) -> pd.DataFrame:
 
 
 def _arrest(alpha: float, dx: float) -> pd.DataFrame:
-    scene = Scene(
-        "stress", ARRESTING, float(TIMES[-1]), dx, beta=RATIO * dx, rate_strengthening=alpha, max_step=0.4
-    )
-    x = np.arange(-8.0, TIMES[-1] + 10.0, 0.25)
-    run = simulate(scene, Samples(TIMES, x))
+    of = ("stress", ARRESTING, float(TIMES[-1]), dx, 0.0, RATIO * dx)
+    samples = Samples(TIMES, np.arange(-8.0, TIMES[-1] + 10.0, 0.25))
+    run = simulate(Scene(*of, rate_strengthening=alpha, max_step=0.4), samples)
     left = run.where(run["x"] < 0.0, drop=True)
     front = np.array([float(left["x"].values[left["release_time"].values <= time].min()) for time in TIMES])
     values = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}

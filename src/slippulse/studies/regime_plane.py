@@ -37,36 +37,31 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Source: `final_regime`, `Rupture`.
     """
-    measure, model = settings["measure"], settings["model"]
+    still, model = settings["measure"]["still"], settings["model"]
     rules = model["damping_ratio"], model["release"]
-    parts: list[pd.DataFrame] = []
-
-    def add(role: str, boundary: str, corners: np.ndarray, inside: tuple[float, float]) -> None:
-        regime = final_regime(*inside, GAMMAS[boundary], *rules, measure["still"])
-        rows = pd.DataFrame(corners, columns=["left", "right"])
-        parts.append(rows.assign(role=role, boundary=boundary, series=len(parts), regime=regime))
-
+    low = -BORDER / largest_pulse_ratio(BORDER, *rules, still)
+    border = np.vstack([[(0.0, 0.0)], np.column_stack([low, BORDER]), [(low[-1], 0.0)]])
+    line = np.array([(-1.0, 0.0), (0.0, 0.0)])
+    # Corners, and levels inside, by boundary; on the right as on the left.
+    outlines: list[tuple[str, str, np.ndarray, np.ndarray]] = []
     for boundary, gamma in GAMMAS.items():
-        for left, right in product((-1.0, 1.0), repeat=2):
-            add(
-                "area",
-                boundary,
-                np.array([(0, 0), (left, 0), (left, right), (0, right)]),
-                (left / 2, right / 2),
-            )
-        for sides in ((0, 1), (1, 0)):
+        for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
+            corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
+            outlines.append(("area", boundary, corners, 0.5 * levels))
+        for sides in ([0, 1], [1, 0]):
             if gamma == 0.0:
-                low = -BORDER / largest_pulse_ratio(BORDER, *rules, measure["still"])
-                border = np.vstack([[(0.0, 0.0)], np.column_stack([low, BORDER]), [(low[-1], 0.0)]])
-                add("area", boundary, border[:, sides], tuple(np.array([-0.9, 1e-3])[[*sides]]))
-            line = np.array([(-1.0, 0.0), (0.0, 0.0)])[:, sides]
-            add("line", boundary, line, tuple(line[0] / 2))
+                outlines.append(("area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides]))
+            outlines.append(("line", boundary, line[:, sides], 0.5 * line[0, sides]))
+    parts: list[pd.DataFrame] = []
+    for role, boundary, corners, (left, right) in outlines:
+        regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
+        labels = {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
+        parts.append(pd.DataFrame(corners, columns=["left", "right"]).assign(**labels))
     for boundary, left, right, time in PROFILES:
         rupture = Rupture(Prestress(left, right), GAMMAS[boundary], *rules, time)
-        fronts = rupture.fronts_at(time)
-        x = np.linspace(*fronts, POINTS)
+        x = np.linspace(*rupture.fronts_at(time), POINTS)
         found = pd.DataFrame({"x": x, "slip_velocity": rupture.slip_velocity(x, time)})
-        regime = final_regime(left, right, GAMMAS[boundary], *rules, measure["still"])
-        labels = {"boundary": boundary, "series": len(parts), "regime": regime, "left": left, "right": right}
-        parts.append(found.assign(role="profile", time=time, **labels))
+        regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
+        labels = {"role": "profile", "boundary": boundary, "series": len(parts), "regime": regime}
+        parts.append(found.assign(time=time, left=left, right=right, **labels))
     return pd.concat(parts, ignore_index=True)
