@@ -9,13 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-
-from ..model.roots import root_between
 
 # Times and positions that differ by less than this, relative, are the same: a hundred times the error of a stick time.
 SAME = 1e-9
@@ -29,11 +26,17 @@ DERIVE = legendre.legder(TO_SERIES)
 CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
 SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
-# From values at the nodes to coefficients by powers, which are quicker to evaluate.
-TO_POWERS = np.array(
-    [np.pad(legendre.leg2poly([0.0] * k + [1.0]), (0, COUNT - 1 - k)) for k in range(COUNT)]
-).T
-TO_POWERS = TO_POWERS @ TO_SERIES
+
+
+def power_basis(count: int) -> np.ndarray:
+    """From a Legendre series to coefficients by powers, which are quicker to evaluate."""
+    units = enumerate(np.eye(count))
+    return np.array([np.pad(legendre.leg2poly(unit), (0, count - 1 - k)) for k, unit in units]).T
+
+
+TO_POWERS = power_basis(COUNT) @ TO_SERIES
+# From powers of a parameter to weights at the nodes of the integral from the left end to it.
+PARTIAL = power_basis(COUNT + 1) @ INTEGRATE
 
 
 class Panel(NamedTuple):
@@ -87,19 +90,17 @@ class Curve:
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
         self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
         self.late, self.early = self.time + self.x, self.time - self.x
-        self.late_ends, self.early_ends = time_ends + x_ends, time_ends - x_ends
+        # Values at both ends of each panel, of what is monotonic on it.
+        self.ends = {"x": x_ends, "time": time_ends, "late": time_ends + x_ends, "early": time_ends - x_ends}
         self.restarts_left, self.restarts_right = tuple(restarts_left), tuple(restarts_right)
 
     @cached_property
     def powers(self) -> dict[str, np.ndarray]:
-        """Coefficients, by powers of the parameter, of values and their derivatives: [power, 2, panel]."""
-        out = {}
-        for name in ("x", "time", "late", "early", "source"):
-            values = (getattr(self, name) @ TO_POWERS.T).T
-            slopes = np.zeros_like(values)
-            slopes[:-1] = values[1:] * np.arange(1.0, COUNT)[:, None]
-            out[name] = np.stack([values, slopes], axis=1)
-        return out
+        """Coefficients, by powers of the parameter, of values and their derivatives: [panel, 2, power]."""
+        names = ("x", "time", "late", "early", "source")
+        values = np.stack([getattr(self, name) for name in names]) @ TO_POWERS.T
+        slopes = np.append(values[..., 1:] * np.arange(1.0, COUNT), np.zeros_like(values[..., :1]), axis=-1)
+        return dict(zip(names, np.stack([values, slopes], axis=2), strict=True))
 
     def mirrored(self) -> Curve:
         """The same at -x."""
@@ -108,7 +109,7 @@ class Curve:
 
     def at(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
         """One of `powers` at a parameter on panels, or its derivative by the parameter (order 1)."""
-        return horner(self.powers[name][:, order, panel], s)
+        return by_powers(self.powers[name][panel, order], s)
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Whether positions lie on the curve."""
@@ -124,84 +125,84 @@ class Curve:
     def locate(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Panel and parameter on it of each position."""
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.panels) - 1)
-        return panel, self._solve("x", panel, x, self.edges[panel], self.edges[panel + 1])
+        return panel, self._solve("x", panel, x)
 
     def right(self, y: np.ndarray, eta: np.ndarray) -> Crossing:
         """Where T + x rises to eta, going right from y."""
-        regions = self._regions(self.restarts_left)
-        panel, known = _first_rise(self.edges, self.late_ends[:, 1], regions, y, eta)
-        s = self._solve("late", panel, eta, *self.late_ends[panel].T)
-        return Crossing(panel, np.where(known, s, 1.0), known)
+        panel, known = _first_rise(self.edges, self._exits[0], y, eta)
+        return Crossing(panel, np.where(known, self._solve("late", panel, eta), 1.0), known)
 
     def left(self, y: np.ndarray, xi: np.ndarray) -> Crossing:
         """Where T - x rises to xi, going left from y."""
         # The same at -x.
-        count = len(self.panels)
-        regions = [count - r for r in reversed(self._regions(self.restarts_right))]
-        panel, known = _first_rise(-self.edges[::-1], self.early_ends[::-1, 0], regions, -y, xi)
-        panel = count - 1 - panel
-        s = self._solve("early", panel, xi, *self.early_ends[panel].T)
-        return Crossing(panel, np.where(known, s, -1.0), known)
+        panel, known = _first_rise(-self.edges[::-1], self._exits[1], -y, xi)
+        panel = len(self.panels) - 1 - panel
+        return Crossing(panel, np.where(known, self._solve("early", panel, xi), -1.0), known)
 
-    def _regions(self, restarts: tuple[float, ...]) -> list[int]:
-        """Panels where regions begin, and their number: what leaves one across a slow front sees no source beyond."""
-        return [0, *sorted(int(np.argmin(np.abs(self.edges - x))) for x in restarts), len(self.panels)]
+    @cached_property
+    def _exits(self) -> list[list[np.ndarray]]:
+        """Going right, and going left: T + x where each panel is left, the least of it and those beyond, by regions.
+
+        What leaves a region across a slow front sees no source beyond.
+        """
+        out = []
+        right, left = self.ends["late"][:, 1], self.ends["early"][::-1, 0]
+        for exits, edges, restarts in (
+            (right, self.edges, self.restarts_left),
+            (left, self.edges[::-1], self.restarts_right),
+        ):
+            regions = np.split(exits, sorted(int(np.argmin(np.abs(edges - x))) for x in restarts))
+            out.append([np.minimum.accumulate(region[::-1])[::-1] for region in regions])
+        return out
 
     def front_at(self, time: float, x: float, side: float) -> float:
         """Where the front going to one side from around x is at a time: the nearest position released then."""
-        edges, times = self.edges, self.edge_times
-        beyond = np.flatnonzero((side * edges > side * x) & (times > time))
+        beyond = np.flatnonzero((side * self.edges > side * x) & (self.edge_times > time))
         if not beyond.size:
-            return float(edges[-1 if side > 0.0 else 0])
-        k = beyond[0] if side > 0.0 else beyond[-1]
-        inner = side * max(side * edges[k - int(side)], side * x)
+            return float(self.edges[-1 if side > 0.0 else 0])
+        panel = beyond[:1] - 1 if side > 0.0 else beyond[-1:]
+        found = float(self.at("x", panel, self._solve("time", panel, np.array([time])))[0])
+        return side * max(side * found, side * x)
 
-        def late(position: float) -> float:
-            return float(self.arrival(position)) - time
-
-        return inner if late(inner) >= 0.0 else root_between(late, inner, float(edges[k]), xtol=1e-13)
-
-    def _solve(self, name, panel, level, at_left, at_right) -> np.ndarray:
-        """The parameter where a field, monotonic on its panel with these values at the ends, has a value."""
+    def _solve(self, name: str, panel: np.ndarray, level: np.ndarray) -> np.ndarray:
+        """The parameter where a field that is monotonic on its panel has a value."""
+        at_left, at_right = self.ends[name][panel].T
         span = at_right - at_left
         flat = np.abs(span) < 1e-13
         s = np.clip(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
         rising, least = np.sign(span), 1e-8 * np.abs(span) + 1e-300
         # Where a slow front has stopped its end is a double root, to which Newton's steps halve the way, or go astray.
-        todo = np.flatnonzero(
-            np.minimum(np.abs(level - at_left), np.abs(level - at_right)) > 1e-15 * np.abs(level)
-        )
+        off = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
+        todo = np.flatnonzero(off > 1e-15 * np.abs(level))
         for _ in range(40):
-            value, slope = horner(self.powers[name][:, :, panel[todo]], s[todo])
+            if not todo.size:
+                break
+            value, slope = by_powers(self.powers[name][panel[todo]], s[todo])
             slope = rising[todo] * np.maximum(rising[todo] * slope, least[todo]) + flat[todo]
             new = np.clip(s[todo] + (level[todo] - value) / slope, -1.0, 1.0)
             going = np.abs(new - s[todo]) >= 1e-9
             s[todo] = new
             todo = todo[going]
-            if not todo.size:
-                break
         return s
 
 
-def _first_rise(edges, exits, regions, y, level) -> tuple[np.ndarray, np.ndarray]:
-    """Panels, walking from y towards higher ones, on which a field with these values at their far ends rises to a level
-    for the last time (what lies nearer falls from above it to the front); and whether there are any."""
-    count = exits.size
-    region = np.searchsorted(
-        regions, np.clip(np.searchsorted(edges, y, side="right") - 1, 0, count - 1), side="right"
-    )
-    panel = np.full(y.shape, count)
-    for r, (first, last) in enumerate(pairwise(regions), start=1):
-        lowest = np.minimum.accumulate(exits[first:last][::-1])[::-1]
+def _first_rise(
+    edges: np.ndarray, exits: list[np.ndarray], y: np.ndarray, level: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Panels, walking from y towards higher ones, on which a field rises to a level for the last time (what lies
+    nearer falls from above it to the front); and whether there are any."""
+    count = edges.size - 1
+    start = np.minimum(np.searchsorted(edges, y, side="right") - 1, count - 1)
+    panel, first = np.full(y.shape, count), 0
+    for lowest in exits:
+        last = first + lowest.size
         found = first + np.searchsorted(lowest, level, side="left")
-        panel = np.where((region <= r) & (panel == count) & (found < last), found, panel)
+        panel = np.where((start < last) & (panel == count) & (found < last), found, panel)
+        first = last
     return np.minimum(panel, count - 1), panel < count
 
 
-def horner(powers: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Polynomials with coefficients [power, ...] at a parameter each."""
-    out = powers[-1].copy()
-    for power in powers[-2::-1]:
-        out *= s
-        out += power
-    return out
+def by_powers(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Polynomials with coefficients [point, ..., power] at a parameter each: [..., point]."""
+    powers = np.vander(s, coefficients.shape[-1], increasing=True)
+    return np.einsum("n...k,nk->...n", coefficients, powers)

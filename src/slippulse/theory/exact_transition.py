@@ -136,9 +136,10 @@ def exact_transition_displacement(
     # The past of (0, t) begins at x + T(x) = t, so x < t.
     fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
     stick = float(Part(fronts.curve, gamma, 2.0 * period).scan(np.zeros(1))[0])
-    speed = float(front_speed(level, damping_ratio, release))
-    reach = Fronts(prestress, damping_ratio, release, speed * stick + 20.0 * prestress.width, gamma)
-    return ExactTransition(stick, 2.0 * reach.reached(stick, 1.0))
+    if not stick < fronts.curve.edge_times[-1]:
+        reach = float(front_speed(level, damping_ratio, release)) * stick + 20.0 * prestress.width
+        fronts = Fronts(prestress, damping_ratio, release, reach, gamma)
+    return ExactTransition(stick, 2.0 * fronts.reached(stick, 1.0))
 
 
 def uniform_transition_time(

@@ -129,7 +129,13 @@ def lattice_front_speed(
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
             return _nearly_free(speed, springs, damping_ratio if release == "total" else 0.0)
     ratio = np.array([float(damping_ratio)])
-    low, least = _least_prestress(ratio[0], springs, release, drag) if springs <= 1e30 else (0.0, 1.0)
+    low, least = 0.0, 1.0
+    if springs <= 1e30:
+        # Mostly the slowest front is that of the least pre-stress; and above that of the slowest there is one speed.
+        low = _slowest_front(springs, drag)
+        least = float(np.exp(log_prestress(np.exp([low]), ratio, springs, release, drag)[0]))
+        if tau0 <= least:
+            low, least = _least_prestress(low, ratio[0], springs, release, drag)
     if tau0 <= least:
         raise ValueError(
             f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
@@ -168,13 +174,19 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + springs)))
 
 
-def _least_prestress(ratio: float, springs: float, release: str, drag: float = 0.0) -> tuple[float, float]:
-    """ln(v - 1) and tau_0 where the pre-stress of fronts faster than the waves is least, at the slowest or a fold."""
+def _slowest_front(springs: float, drag: float) -> float:
+    """ln(v - 1) of the slowest front that is faster than the waves and behind which slip does not run away."""
     slowest = max(1.0, np.sqrt(4.0 + springs) / np.pi)
     if drag < 0.0:
-        # Behind slower fronts slip runs away.
         slowest = max(slowest, (1.0 + SLOWEST_MARGIN) / np.sqrt(1.0 - 0.25 * drag**2 / springs))
-    first = np.log(slowest - 1.0) if slowest > 1.0 else SLOWEST
+    return float(np.log(slowest - 1.0)) if slowest > 1.0 else SLOWEST
+
+
+def _least_prestress(
+    first: float, ratio: float, springs: float, release: str, drag: float
+) -> tuple[float, float]:
+    """ln(v - 1) and tau_0 where the pre-stress of fronts from the slowest on is least: there, or at a fold."""
+    slowest = 1.0 + np.exp(first)
     last = np.log(slowest * (1.0 + ratio) * (1.0 + springs)) + 5.0
     inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN - 1))
     x = np.concatenate([[first], inner])

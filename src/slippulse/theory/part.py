@@ -13,9 +13,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import elementwise
 
-from ..model.roots import root_between
+from ..model.roots import root_between, roots_between
 from .curve import SAME, Curve
 from .riemann import Past, Rest
 
@@ -118,8 +117,8 @@ class Part:
             first = np.where(stuck, 2 + np.argmax(below, axis=1), t.shape[1])
             stick = self._dips(x[alive], t, v, first)
             rows = np.flatnonzero(stuck & ~np.isfinite(stick))
-            k = first[rows]
-            stick[rows] = self._zero(x[alive[rows]], t[rows, k - 1], t[rows, k], v[rows, k - 1])
+            around = (rows, first[rows] - 1), (rows, first[rows])
+            stick[rows] = self._zero(x[alive[rows]], *(of[at] for of in (t, v) for at in around))
             out[alive] = stick
             times[alive], velocity[alive] = t[:, -2:], v[:, -2:]
             alive = alive[~np.isfinite(stick) & (t[:, -1] < self.until)]
@@ -139,16 +138,16 @@ class Part:
             value = self.velocity(np.repeat(x[rows], FINE + 1), fine.ravel()).reshape(fine.shape)
             m = np.argmax(value <= 0.0, axis=1)
             n = np.flatnonzero(m > 0)
-            zero = self._zero(x[rows[n]], fine[n, m[n] - 1], fine[n, m[n]], value[n, m[n] - 1])
+            around = (n, m[n] - 1), (n, m[n])
+            zero = self._zero(x[rows[n]], *(of[at] for of in (fine, value) for at in around))
             out[rows[n]] = np.fmin(out[rows[n]], zero)
             best = np.clip(np.argmin(value, axis=1), 1, FINE - 1)
             rest = np.flatnonzero((value > 0.0).all(axis=1))
             rows, low, high = rows[rest], fine[rest, best[rest] - 1], fine[rest, best[rest] + 1]
         return out
 
-    def _zero(self, x, low, high, at_low) -> np.ndarray:
+    def _zero(self, x, low, high, at_low, at_high) -> np.ndarray:
         """Zeros of du/dt in time; where it starts at 0, at release, from where it has risen."""
-        low, high = low.copy(), high.copy()
         level = np.where(at_low <= 0.0, QUIET, 0.0)
         flat = np.flatnonzero(level)
         for _ in range(40):
@@ -156,18 +155,18 @@ class Part:
                 break
             # A slow front that is about to stop: du/dt rises for a short while only.
             middle = 0.5 * (low[flat] + high[flat])
-            risen = self.velocity(x[flat], middle) > QUIET
-            low[flat[risen]] = middle[risen]
-            flat = flat[~risen]
-            high[flat] = middle[~risen]
-        out = high.copy()
+            value = self.velocity(x[flat], middle)
+            risen = value > QUIET
+            low[flat[risen]], at_low[flat[risen]] = middle[risen], value[risen]
+            flat, middle, value = (values[~risen] for values in (flat, middle, value))
+            high[flat], at_high[flat] = middle, value
         rest = np.setdiff1d(np.arange(x.size), flat)
-        if rest.size:
-            found = elementwise.find_root(
-                lambda time, x, level: self.velocity(x, time) - level, (low[rest], high[rest]),
-                args=(x[rest], level[rest]), tolerances={"xatol": TIME, "xrtol": 0.0},
-            )  # fmt: skip
-            out[rest] = found.x
+        x, level = x[rest], level[rest]
+        out = high.copy()
+        out[rest] = roots_between(
+            lambda time, which: self.velocity(x[which], time) - level[which],
+            low[rest], high[rest], at_low[rest] - level, at_high[rest] - level, TIME,
+        )  # fmt: skip
         return out
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:

@@ -21,13 +21,13 @@ from functools import lru_cache, partial
 from itertools import accumulate
 
 import numpy as np
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import chebyshev
 from scipy.special import i0, i1, j0, j1
 
-from .curve import COUNT, CUMULATIVE, INTEGRATE, SLOPE, TO_POWERS, WEIGHTS, Curve, horner
+from .curve import COUNT, CUMULATIVE, PARTIAL, SLOPE, TO_POWERS, WEIGHTS, Curve, by_powers
 
 # Points whose integrals are computed together: their arrays stay in the cache.
-CHUNK = 192
+CHUNK = 96
 # Beyond this z a polynomial would cancel.
 LARGEST = 256.0
 AT_ZERO = (1.0, -0.25, 1.0 / 32.0)
@@ -56,11 +56,11 @@ class Rest:
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
         self.at_nodes = (p, slope, *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)))
-        self._powers = [(values @ TO_POWERS.T).T for values in (p, slope)]
+        self._powers = [values @ TO_POWERS.T for values in (p, slope)]
 
     def at(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """p (order 0) or p' (1) at a parameter on panels."""
-        return horner(self._powers[order][:, panel], s)
+        return by_powers(self._powers[order][panel], s)
 
 
 def _integral(values: np.ndarray) -> np.ndarray:
@@ -110,12 +110,13 @@ class Past:
         lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
             return -0.5 * ends[0] - lag, 0.5 * ends[1] - lag
-        source = self.curve.source
-        by_xi = self._along(lambda behind, ahead, kernel, panels: kernel(1) * ahead * source[panels].ravel())
-        by_eta = self._along(
-            lambda behind, ahead, kernel, panels: kernel(1) * behind * source[panels].ravel()
-        )
-        k = self.stiffness
+        source, k = self.curve.source, self.stiffness
+
+        def integrand(behind, ahead, kernel, panels):
+            growth = kernel(1) * source[panels].ravel()
+            return np.stack([growth * ahead, growth * behind])
+
+        by_xi, by_eta = self._along(integrand, 2)
         return 0.5 * (k * by_xi - ends[0]) - lag, 0.5 * (k * by_eta + ends[1]) - lag
 
     def slip(self, rest: Rest) -> np.ndarray:
@@ -176,13 +177,13 @@ class Past:
         behind = self.xi - self.curve.at("early", on_right, s_right)
         return np.exp(-0.25 * self.alpha * ahead), np.exp(-0.25 * self.alpha * behind)
 
-    def _along(self, integrand: Callable) -> np.ndarray:
-        """Integral of an integrand, given per unit of the panels' parameter, between the ends of each domain."""
+    def _along(self, integrand: Callable, *count: int) -> np.ndarray:
+        """Integrals of an integrand (or a count), per unit of the panels' parameter, over each domain."""
         curve = self.curve
-        out = np.empty(self.xi.shape)
+        out = np.empty((*count, self.xi.size))
         # Points of about the same panels together.
         order = np.lexsort((self.right.panel, self.left.panel))
-        for start in range(0, out.size, CHUNK):
+        for start in range(0, self.xi.size, CHUNK):
             part = order[start : start + CHUNK]
             high = self.right.panel[part]
             low = np.minimum(self.left.panel[part], high)
@@ -197,20 +198,20 @@ class Past:
             values = integrand(behind, ahead, kernel_of(self.stiffness, z, cut), panels)
             if self.alpha:
                 values = values * decay(self.alpha, behind + ahead)
-            boxes = values.reshape(low.size, -1, COUNT)
+            boxes = values.reshape(*count, low.size, -1, COUNT)
             whole = (here >= low[:, None]) & (here < high[:, None])
-            total = np.sum(np.where(whole, boxes @ WEIGHTS, 0.0), axis=1)
+            total = np.sum(np.where(whole, boxes @ WEIGHTS, 0.0), axis=-1)
             # The panels at both ends are cut.
-            weights = partial_weights(np.stack([self.left.s[part], self.right.s[part]]))
-            total += np.sum(boxes[rows, high] * weights[1] - boxes[rows, low] * weights[0], axis=1)
-            out[part] = total
+            for panel, s, sign in ((high, self.right.s, 1.0), (low, self.left.s, -1.0)):
+                total += sign * np.sum(boxes[..., rows, panel, :] * partial_weights(s[part]), axis=-1)
+            out[..., part] = total
         # A point on the curve, at the end of a panel: its domain is empty.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:
     """Weights at a panel's nodes of the integral from its left end to a parameter."""
-    return legendre.legvander(s, COUNT) @ INTEGRATE
+    return np.vander(s, COUNT + 1, increasing=True) @ PARTIAL
 
 
 def decay(alpha: float, twice: np.ndarray) -> np.ndarray:

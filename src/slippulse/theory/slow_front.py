@@ -50,7 +50,7 @@ def advance(
     stop = -1.0
     corrections = 0
     for _ in range(60):
-        if start - stop < SHORTEST and not corrections:
+        if start - stop < SHORTEST:
             return (None, "dead") if front.stalled() else front.straight(mark)
         solved = front.solve(k, start, stop)
         if solved is None:
@@ -103,14 +103,14 @@ class _Chunk:
         xi = self.t0 - self.x0
         look = LOOK * max(1.0, abs(xi))
         # A little later: at the end of a panel it is the next one that goes on, or another part of the rupture.
-        at, later = (self.curve.left(np.array([self.x0]), np.array([level])) for level in (xi, xi + look))
-        if not later.known[0]:
+        found = self.curve.left(np.full(2, self.x0), np.array([xi, xi + look]))
+        if not found.known[1]:
             return None
-        k = int(later.panel[0])
+        k = int(found.panel[1])
         # Not by the look, which would leave a gap, but at the panel's very end.
-        if abs(self.curve.early_ends[k, 1] - xi) < 10.0 * look:
+        if abs(self.curve.ends["early"][k, 1] - xi) < 10.0 * look:
             return k, 1.0
-        return k, float((at if at.panel[0] == k else later).s[0])
+        return k, float(found.s[int(found.panel[0] != k)])
 
     def solve(self, k: int, start: float, stop: float) -> tuple[np.ndarray, np.ndarray] | None:
         """Positions at the nodes, and their derivative; None where the chunk is too long."""
@@ -138,17 +138,25 @@ class _Chunk:
             half = 0.5 * (x - self.x0)
             area = half * (self.tau(self.x0 + half[:, None] * (1.0 + NODES)) @ WEIGHTS)
             tau = self.tau(x)
-            z = stiffness * own * (eta[:, None] - eta)
-            beyond = kernel_of(stiffness, z, z)(0)
+            apart = eta[:, None] - eta
+            z = stiffness * own * apart
+            kernel = kernel_of(stiffness, z, z)
+            whole, change_of_whole = kernel(0), 2.0 * stiffness * own * kernel(1)
             if alpha:
-                beyond = beyond * decay(alpha, own + (eta[:, None] - eta))
-            beyond = beyond - 1.0
-            near = np.add.reduce(CUMULATIVE * (tau * (SLOPE @ x)) * beyond, axis=1)
+                lasting = decay(alpha, own + apart)
+                whole = whole * lasting
+                change_of_whole = change_of_whole * lasting - 0.5 * alpha * whole
             fall = tau + growth
             if not np.all(fall < 0.0):
                 return None
+            # Newton's step: how x at one node changes what is left of the equation at another.
+            beyond, paces = CUMULATIVE * (whole - 1.0), SLOPE @ x
+            turn = CUMULATIVE * change_of_whole * (tau * paces)
+            matrix = (beyond * tau) @ SLOPE + beyond * (SLOPE @ tau) - turn
+            matrix += np.diag(fall + turn.sum(axis=1))
+            step = np.linalg.solve(matrix, ahead + area + beyond @ (tau * paces))
             # Never behind the last position.
-            new = np.maximum(x - (ahead + area + near) / fall, self.x0 + 0.1 * (x - self.x0))
+            new = np.maximum(x - step, self.x0 + 0.1 * (x - self.x0))
             previous, change = change, float(np.max(np.abs(new - x)))
             x = new
             if not np.isfinite(change) or change > 1e3:

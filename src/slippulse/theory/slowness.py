@@ -14,17 +14,14 @@ from numpy.polynomial import legendre
 
 from ..model.checks import check_choice, check_number
 from ..model.scene import RELEASES
-from .curve import horner
+from .curve import by_powers, power_basis
 from .front_law import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
 COUNT = 14
 NODES = legendre.leggauss(COUNT)[0]
 TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
-# From a Legendre series to coefficients by powers, which are quicker to evaluate.
-TO_POWERS = np.array(
-    [np.pad(legendre.leg2poly(unit), (0, COUNT - 1 - k)) for k, unit in enumerate(np.eye(COUNT))]
-).T
+TO_POWERS = power_basis(COUNT)
 RESOLVED = 2e-12
 NARROWEST = 1e-7
 # How near 1, in 1 - tau, the panels lose as many digits as the first terms leave out.
@@ -40,25 +37,24 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     if damping_ratio == 0.0:
         return np.sqrt((1.0 - tau) * (1.0 + tau))
     edges, edge_tau, powers = _law(float(damping_ratio), release)
+    shape, tau = tau.shape, tau.ravel()
     panel = np.clip(np.searchsorted(edge_tau, tau, side="right") - 1, 0, edges.size - 2)
-    half = 0.5 * (edges[1:] - edges[:-1])[panel]
-    here = powers[:, :, panel]
     low, high = edge_tau[panel], edge_tau[panel + 1]
     s = 2.0 * (tau - low) / (high - low) - 1.0
     # On the first panel tau grows like psi^2, and Newton starts from above.
     s = np.where(panel == 0, 2.0 * np.sqrt((tau - low) / (high - low)) - 1.0, s)
     for _ in range(12):
-        value, slope = horner(here, s)
+        value, slope = by_powers(powers[panel], s)
         step = (value - tau) / np.maximum(slope, 1e-12)
         s = np.clip(s - step, -1.0, 1.0)
         if np.max(np.abs(step), initial=0.0) < 1e-11:
             break
     # The end of the first panel is a double root.
     s = np.where(tau <= 0.0, -1.0, s)
-    out = np.cos(edges[panel] + half * (1.0 + s))
+    out = np.cos(edges[panel] + 0.5 * (edges[panel + 1] - edges[panel]) * (1.0 + s))
     # And that of the last may be one, where the first terms in 1/v are better.
     near = (1.0 - tau < NEARLY_ONE) & ((release == "total") | (damping_ratio < 1e3))
-    return np.where(near, slowest(np.where(near, tau, 1.0), damping_ratio, release), out)
+    return np.where(near, slowest(np.where(near, tau, 1.0), damping_ratio, release), out).reshape(shape)
 
 
 def check_law(damping_ratio: float, release: str) -> None:
@@ -69,7 +65,7 @@ def check_law(damping_ratio: float, release: str) -> None:
 
 @lru_cache(maxsize=32)
 def _law(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Panels in psi, the pre-stress at their edges, and by powers it and its slope on each: [power, 2, panel]."""
+    """Panels in psi, the pre-stress at their edges, and by powers it and its slope on each: [panel, 2, power]."""
 
     def prestress(psi: np.ndarray) -> np.ndarray:
         excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
@@ -89,6 +85,6 @@ def _law(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray, np
     done.sort(key=lambda panel: panel[0])
     edges = np.array([done[0][0]] + [right for _, right, _ in done])
     inner = prestress(edges[1:-1])
-    values = TO_POWERS @ np.array([series for *_, series in done]).T
-    slopes = np.append(values[1:] * np.arange(1.0, COUNT)[:, None], 0.0 * values[:1], axis=0)
+    values = np.array([series for *_, series in done]) @ TO_POWERS.T
+    slopes = np.append(values[:, 1:] * np.arange(1.0, COUNT), 0.0 * values[:, :1], axis=1)
     return edges, np.concatenate([[0.0], inner, [1.0]]), np.stack([values, slopes], axis=1)
