@@ -8,8 +8,8 @@ import tolerances as tol
 
 from slippulse.claims.inference import inference, likely
 from slippulse.model.prestress import Prestress
-from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
 from slippulse.theory.rupture import Rupture
+from slippulse.theory.slow_front import barrier_depth, barrier_depth_estimate
 
 
 def off(rows, value, exact):

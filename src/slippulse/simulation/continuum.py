@@ -11,7 +11,7 @@ from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.run import LatticeRun
-from ..theory.profile import nucleations
+from ..theory.fronts import nucleations
 from ..theory.rupture import Rupture
 
 # Positions at rest that are kept beyond the outermost released one, as on the lattice.

@@ -12,9 +12,9 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.run import run_scene
-from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
 from ..theory.pulse import pulse_behind_front
+from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 
 NEEDS = {}  # type: dict[str, list[str]]
 

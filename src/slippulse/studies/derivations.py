@@ -14,11 +14,11 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES
 from ..predict.exact_rupture import exact_rupture
 from ..predict.table import or_nan
-from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
 from ..theory.pulse import SteadyPulse, pulse_behind_front
 from ..theory.rupture import Rupture
+from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 from .gaussian_transition import over_paper
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}

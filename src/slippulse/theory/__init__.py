@@ -13,8 +13,8 @@ _HOMES = {
     "SteadyFront": "front_motion",
     "SteadyPulse": "pulse",
     "admissibility_table": "front_motion",
-    "barrier_depth": "barrier",
-    "barrier_depth_estimate": "barrier",
+    "barrier_depth": "slow_front",
+    "barrier_depth_estimate": "slow_front",
     "continuum_front_speed": "front_law",
     "critical_rate_strengthening": "pulse",
     "damage_zone_stress_drop": "dimensional",
@@ -29,7 +29,7 @@ _HOMES = {
     "prestress_for_speed": "front_law",
     "slip_velocity": "exact_transition",
     "steady_front": "front_motion",
-    "steady_pulse": "steady",
+    "steady_pulse": "front_law",
     "uniform_transition_time": "exact_transition",
 }
 __all__ = list(_HOMES)

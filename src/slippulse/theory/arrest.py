@@ -82,8 +82,7 @@ class ArrestingCrack:
         count : characteristics from each of three parts, 2 to 10000
         """
         check_number("count", count, whole=True, at_least=2, at_most=10_000)
-        right = np.linspace(4.0 * self.far * 0.5, 0.0, count)
-        left = np.linspace(0.0, self.zero, count)[1:]
+        right, left = np.linspace(2.0 * self.far, 0.0, count), np.linspace(0.0, self.zero, count)[1:]
         entries = np.concatenate([right, left])
         delay = entries - self.fronts.arrival(entries)
         # Crowded towards x_minus, which takes for ever.
@@ -91,5 +90,5 @@ class ArrestingCrack:
         slow = self.zero + (self.balance_position - self.zero) * share
         slow_delay = np.array([x - self.time_at(x) for x in slow])
         positions = np.concatenate([entries, slow])
-        velocity = np.array([0.5 * self.prestress.integral(x, 4.0 * self.far) for x in positions])
-        return np.concatenate([delay, slow_delay]), velocity
+        velocity = [0.5 * self.prestress.integral(x, 4.0 * self.far) for x in positions]
+        return np.concatenate([delay, slow_delay]), np.array(velocity)

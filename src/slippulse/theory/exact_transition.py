@@ -11,9 +11,8 @@ from ..model.checks import as_numbers, check_choice, check_domains, check_kind, 
 from ..model.prestress import Prestress
 from .curve import Curve, seen
 from .front_law import front_speed
-from .fronts import NARROWEST, FrontLaw, straight_panel
+from .fronts import NARROWEST, FrontLaw, nucleations, straight_panel
 from .part import Part
-from .profile import nucleations
 from .riemann import Past
 
 # Half the panels behind a uniform front that hardly outruns the waves.
@@ -31,12 +30,10 @@ class Fronts:
     reach : how far from x = 0 times are wanted (units of H), >= 1e-9
     gamma : elasticity ratio, >= 0, whose waves the panels resolve, which are then no shorter than that asks for
 
-    Attributes
-    ----------
-    ends : by side, -1 or 1, the distance at which tau turns negative and the front slow; infinite beyond ``reach``
+    Attribute ends: by side, -1 or 1, the distance where tau turns negative and the front slow; inf beyond ``reach``.
 
-    Raises ValueError: outside these ranges; if the profile does not nucleate at x = 0, or nucleates elsewhere too; or
-    if a side needs more than 20000 panels.
+    Raises ValueError: outside these ranges; if the profile does not nucleate at x = 0 alone; or if a side needs more
+    than 20000 panels.
     """
 
     def __init__(
@@ -57,17 +54,13 @@ class Fronts:
         self.curve = Curve(seen(left, -1.0) + right)
 
     def arrival(self, x) -> np.ndarray:
-        """T(x): when the front reaches x; NaN beyond where it outruns the waves.
-
-        Raises ValueError: if x is not a finite number or an array of them.
-        """
+        """T(x): when the front reaches x (finite); NaN beyond where it outruns the waves."""
         return self.curve.arrival(as_numbers("x", x))
 
     def reached(self, time: float, sign: float) -> float:
-        """How far from x = 0 the front on one side (+1 right, -1 left) is at a time.
+        """How far from x = 0 the front on one side (+1 right, -1 left) is at a time >= 0.
 
-        Raises ValueError: if the time is negative or not before the fronts have gone as far as was asked for, or the
-        side is none.
+        Raises ValueError: if it has gone as far as was asked for by then.
         """
         check_choice("sign", sign, (-1, 1))
         last = 0 if sign < 0.0 else -1
@@ -84,8 +77,7 @@ def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
     gamma : elasticity ratio, >= 0, whose waves the panels of the fronts must resolve; 0 under a stress boundary
     y, time : the point, finite; 0 where no front has been
 
-    Raises ValueError: outside these ranges, or if the point's past leaves the part of the fronts that outruns the
-    waves.
+    Raises ValueError: outside these ranges, or if the point's past leaves the part that outruns the waves.
     Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
@@ -122,8 +114,8 @@ def exact_transition_displacement(
     damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
-    Raises ValueError: outside these ranges; if the profile is not symmetric and positive, or nucleates elsewhere too;
-    or if a front needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
+    Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front needs more than
+    20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
     Source: the first zero of du/dt at x = 0; symmetric scenes stick there first. For others, `Rupture`.
     """
     check_kind("prestress", prestress, Prestress)
@@ -145,7 +137,7 @@ def exact_transition_displacement(
 def uniform_transition_time(
     tau0: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> float:
-    """T_trans in uniform pre-stress, nucleated at one point: what is left of the paper's pi/sqrt(gamma) without a peak.
+    """T_trans in uniform pre-stress, nucleated at one point.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from ..model.checks import (
     of_one_shape,
 )
 from ..model.scene import RELEASES
-from .pulse import front_speed_undamped
+from .pulse import SteadyPulse, front_speed_undamped, pulse_behind_front
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
@@ -44,7 +44,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     Parameters
     ----------
     tau0 : float or array, pre-stress ahead of the front, in (0, 1)
-    damping_ratio : float or array, broadcast with tau0, beta/dx, from 0 to 1e100; time grows with its logarithm
+    damping_ratio : float or array, broadcast with tau0: beta/dx, from 0 to 1e100
     release : "total" or "elastic", whether the stress that is compared with the threshold includes the damping force
 
     Returns a float or an array, in wave speeds, >= 1 (1 where the excess is below rounding).
@@ -64,7 +64,13 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     out[near] = 1.0 / slowest(tau[near], ratio[near], release)
     rest = damped & ~near
     if np.any(rest):
-        out[rest] = 1.0 + np.exp(log_excess(tau[rest], ratio[rest], release))
+        tau, ratio = tau[rest], ratio[rest]
+        # Neighbours in the order of the speed share a contour.
+        order = np.argsort(first_guess(tau, ratio, release))
+        found = np.empty(tau.size)
+        for part in np.split(order, range(CHUNK, order.size, CHUNK)):
+            found[part] = 1.0 + np.exp(root(tau[part], ratio[part], 0.0, release))
+        out[rest] = found
     return out if out.ndim else float(out)
 
 
@@ -107,11 +113,10 @@ def lattice_front_speed(
     release : "total" or "elastic"
     rate_strengthening : alpha, of a term -alpha du/dt; as dx -> 0 it no longer matters
 
-    Raises ValueError: where no front outruns the waves (or, where friction weakens with slip rate, outruns them by so
-    much that slip behind it does not run away): tau_0 not above the least pre-stress of any front faster than
-    the waves (and than sqrt(4 + gamma dx^2)/pi, beyond 1 for gamma dx^2 > pi^2 - 4). Where that least lies at a speed
-    above 1 (rule "total", strong damping), two speeds belong to one tau_0: the faster is returned, which grows with
-    tau_0.
+    Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any front faster than
+    the waves (and than sqrt(4 + gamma dx^2)/pi; where friction weakens with slip rate, so fast that slip behind it
+    does not run away). Where that least lies at a speed above 1 (rule "total", strong damping), two speeds belong to
+    one tau_0: the faster is returned, which grows with tau_0.
     Source: the lattice symbol with leaf springs (`wiener_hopf`); without damping it has a closed form, and as gamma
     dx^2 -> 0 it tends to `front_speed`. Sticking behind the front is left out (module docstring). Relative error
     below 1e-6 next to tau_0 = 1 for gamma dx^2 (1 + beta/dx) up to 10.
@@ -137,11 +142,10 @@ def lattice_front_speed(
         if tau0 <= least:
             low, least = _least_prestress(low, ratio[0], springs, release, drag)
     if tau0 <= least:
+        rate = f", rate_strengthening = {rate_strengthening:g}" if drag else ""
         raise ValueError(
             f"tau0: {tau0!r}; allowed: > {least:.6g}, values whose front outruns the waves at gamma = {gamma:g},"
-            f" dx = {dx:g}, damping_ratio = {damping_ratio:g}"
-            + f", rate_strengthening = {rate_strengthening:g}"
-            * bool(drag)
+            f" dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
         )
     if damping_ratio == drag == 0.0:
         argument = np.sqrt(springs * (1.0 - tau0**2)) / (2.0 * tau0)
@@ -172,6 +176,31 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
             f"tau0: {tau0!r}; allowed: values whose front outruns the waves at gamma = {gamma:g}, beta = {beta:g}"
         )
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + springs)))
+
+
+def steady_pulse(
+    tau0: float, gamma: float, beta: float = 0.0, speed: float | None = None, *, damping_ratio: float | None = None,
+    release: str = "total", rate_strengthening: float = 0.0,
+) -> SteadyPulse:  # fmt: skip
+    """Steady pulse in uniform pre-stress behind a front whose speed is given, or follows from the damping ratio.
+
+    Parameters
+    ----------
+    tau0 : pre-stress, in (0, 1)
+    gamma : elasticity ratio, > 0
+    beta : damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
+    speed : front speed, > 1, or
+    damping_ratio, release : of `front_speed`, where the speed is left out
+    rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
+
+    Raises ValueError: outside the domain.
+    Source: `pulse_behind_front`.
+    """
+    if (damping_ratio is None) == (speed is None):
+        raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
+    if speed is None:
+        speed = float(front_speed(tau0, damping_ratio, release))
+    return pulse_behind_front(tau0, gamma, beta, speed, rate_strengthening)
 
 
 def _slowest_front(springs: float, drag: float) -> float:
@@ -211,17 +240,6 @@ def _nearly_free(speed: float, springs: float, damping: float) -> float:
     return speed * (1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0))
 
 
-def log_excess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    """ln(v - 1) for 1-d arrays, b > 0."""
-    # Neighbours in the order of the speed share a contour.
-    order = np.argsort(first_guess(tau, ratio, release))
-    out = np.empty(tau.size)
-    for start in range(0, tau.size, CHUNK):
-        part = order[start : start + CHUNK]
-        out[part] = root(tau[part], ratio[part], 0.0, release)
-    return out
-
-
 def slowest(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:
     """1/v of fronts with v >> b: -ln tau = b/v + 1/(2 v^2) ("total") or 1/(2 v^2) ("elastic"), up to 1/v^3."""
     level = -np.log(tau)
@@ -230,10 +248,9 @@ def slowest(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndar
 
 
 def in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
-    starts = range(0, excess.size, CHUNK)
-    return np.concatenate(
-        [log_prestress(excess[i : i + CHUNK], ratio[i : i + CHUNK], 0.0, release) for i in starts]
-    )
+    """`log_prestress` without leaf springs, in as much memory."""
+    parts = (slice(i, i + CHUNK) for i in range(0, excess.size, CHUNK))
+    return np.concatenate([log_prestress(excess[part], ratio[part], 0.0, release) for part in parts])
 
 
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:

@@ -8,8 +8,8 @@ until the release, and no block behind it comes to rest before the next is relea
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from ..model.scene import RELEASES
 SUBSTEPS = 16
 
 
-class SteadyFront(NamedTuple):
+@dataclass(frozen=True)
+class SteadyFront:
     """A front at one speed, in lattice units: lengths in dx, slip in dx^2, velocity in dx.
 
     It runs into tau_0 = prestress, with slip and velocity at distances behind it; ahead is the stress on the first
@@ -114,12 +115,9 @@ def admissibility_table(speeds, ratios, springs, release: str = "total") -> list
 
     Raises ValueError: outside their ranges.
     """
+    given = {"springs": springs, "ratios": ratios, "speeds": speeds}
     rows = []
-    for g, b, v in product(
-        as_numbers("springs", springs).flat,
-        as_numbers("ratios", ratios).flat,
-        as_numbers("speeds", speeds).flat,
-    ):
+    for g, b, v in product(*(as_numbers(*each).flat for each in given.items())):
         front = steady_front(v, b, g, release)
         row = {"speed": v, "damping_ratio": b, "springs": g, "release": release, "prestress": front.prestress}
         row |= {"stress_ahead": float(front.ahead[:-1].max()), "rest": front.first_rest}

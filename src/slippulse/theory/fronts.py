@@ -1,16 +1,20 @@
-"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)), in panels that resolve it."""
+"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)), in panels that resolve it.
+
+The pre-stress is cut into pieces, smooth and of one sign on each, with the intervals that are released at t = 0.
+"""
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from ..model.checks import check_kind, check_number, check_runaway
 from ..model.prestress import Prestress
+from ..model.roots import root_between
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel
-from .profile import Piece, analytic, edges_of_features, mirrored, pieces
 from .slowness import check_law, slowness
 
 # Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
@@ -25,17 +29,112 @@ MOST_PANELS = 20_000
 LOWEST = -1e20
 # How many times as many panels, positions and times may be asked for.
 FINEST = 10
+# A Gaussian is its level to rounding beyond this many widths; edges of panels stand at these multiples of the width.
+EXTENT = 9.0
+FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
+# Samples a width that find each sign change.
+SAMPLES = 32
+ROUNDING = 1e-15
 
 
-@lru_cache(maxsize=256)
-def _slowness(tau: bytes, shape: tuple[int, ...], damping_ratio: float, release: str) -> np.ndarray:
-    found = np.array(slowness(np.frombuffer(tau).reshape(shape), damping_ratio, release))
-    found.flags.writeable = False
-    return found
+class Piece(NamedTuple):
+    """An interval on which the pre-stress is smooth and of one sign."""
+
+    left: float
+    right: float
+    level: float  # of its side
+    supersonic: bool  # tau >= 0, so that a front outruns the waves
+
+
+def analytic(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
+    """The pre-stress with one level everywhere: analytic, and the pre-stress itself where the level is that."""
+    tau = prestress.peak + (level - prestress.peak) * -np.expm1(-0.5 * (x / prestress.width) ** 2)
+    for centre, amplitude, width in prestress.bumps:
+        tau = tau + amplitude * np.exp(-0.5 * ((x - centre) / width) ** 2)
+    return tau
+
+
+def mirrored(prestress: Prestress) -> Prestress:
+    """The pre-stress at -x."""
+    return replace(
+        prestress, left=prestress.right, right=prestress.left,
+        steps=tuple((-position, level) for position, level in prestress.steps),
+        bumps=tuple((-centre, amplitude, width) for centre, amplitude, width in prestress.bumps),
+    )  # fmt: skip
+
+
+def pieces(prestress: Prestress) -> list[Piece]:
+    """The pieces from left to right."""
+    out = []
+    for left, right, level in _between_jumps(prestress):
+        sign, marks = _crossings(prestress, left, right, level, 0.0)
+        for a, b in pairwise([left, *marks, right]):
+            if b > a:
+                out.append(Piece(a, b, level, sign))
+            sign = not sign
+    return out
+
+
+def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
+    """The intervals (points, where tau only touches 1) with tau >= 1, from left to right."""
+    found: list[tuple[float, float]] = []
+    for left, right, level in _between_jumps(prestress):
+        over, marks = _crossings(prestress, left, right, level, 1.0)
+        marks = [left, *marks] if over else marks
+        found += zip(marks[::2], [*marks[1::2], right], strict=False)
+    merged: list[tuple[float, float]] = []
+    for a, b in sorted(found):
+        if merged and a <= merged[-1][1]:
+            merged[-1] = (merged[-1][0], max(b, merged[-1][1]))
+        else:
+            merged.append((a, b))
+    return merged
+
+
+def _crossings(prestress, left: float, right: float, level: float, value: float) -> tuple[bool, list[float]]:
+    """Whether an interval begins with the pre-stress at a value or above, and where that changes; it touches twice."""
+    x = _samples(prestress, left, right)
+
+    def excess(position: float) -> float:
+        return float(analytic(prestress, level, np.asarray(position))) - value
+
+    # What is at the value but for rounding, as under the far tail of a bump, is there.
+    at = analytic(prestress, level, x) - value
+    at[np.abs(at) <= ROUNDING] = 0.0
+    above = at >= 0.0
+    marks = []
+    for k in np.flatnonzero(above[1:] != above[:-1]):
+        touching = x[k : k + 2][at[k : k + 2] == 0.0]
+        marks += [float(touching[0]) if touching.size else root_between(excess, x[k], x[k + 1], xtol=1e-14)]
+    return bool(above[0]), marks
+
+
+def _gaussians(prestress: Prestress) -> list[tuple[float, float]]:
+    """Centre and width of the peak and of each bump."""
+    return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
+
+
+def _between_jumps(prestress: Prestress) -> list[tuple[float, float, float]]:
+    """Intervals of one side level: left, right, level."""
+    jumps = sorted({0.0, *(position for position, _ in prestress.steps)})
+    inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
+    levels = prestress.level(np.array(inside)).tolist()
+    ends = [-np.inf, *jumps, np.inf]
+    return list(zip(ends[:-1], ends[1:], levels, strict=True))
+
+
+def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
+    """Positions that show each change of sign within an interval, its finite ends among them."""
+    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+    x = np.concatenate([centre + width * fine for centre, width in _gaussians(prestress)])
+    # Far outside everything a side has its last level.
+    first = left if np.isfinite(left) else min(float(x.min()), right) - 1.0
+    last = right if np.isfinite(right) else max(float(x.max()), left) + 1.0
+    return np.unique(np.concatenate([x[(x > left) & (x < right)], [first, last]]))
 
 
 class FrontLaw:
-    """What makes panels where a front outruns the waves: pre-stress, damping ratio, release rule and gamma."""
+    """What makes panels where a front outruns the waves."""
 
     def __init__(
         self, prestress: Prestress, gamma: float, damping_ratio: float, release: str, refinement: int = 1,
@@ -51,7 +150,9 @@ class FrontLaw:
         # The fastest that a kernel changes.
         self.rate = max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
         self.damping_ratio, self.release, self.refinement = float(damping_ratio), release, int(refinement)
-        self.features = edges_of_features(prestress)
+        # Where an edge of a panel stands, so that no feature falls between two nodes.
+        centres = [centre + width * FEATURES for centre, width in _gaussians(prestress)]
+        self.features = np.unique(np.concatenate(centres))
         levels = (prestress.left, prestress.right, *(level for _, level in prestress.steps))
         lowest = float(np.min(prestress(self.features), initial=min(levels)))
         check_number("lowest prestress", lowest, at_least=LOWEST)
@@ -63,8 +164,8 @@ class FrontLaw:
         return FrontLaw(mirrored(self.prestress), *given)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
-        """1/v of each pre-stress; scenes that differ in gamma alone share most of their panels."""
-        return _slowness(tau.tobytes(), tau.shape, self.damping_ratio, self.release)
+        """1/v of each pre-stress."""
+        return slowness(tau, self.damping_ratio, self.release)
 
     def piece_right_of(self, x: float) -> Piece:
         return next(piece for piece in self.pieces if piece.right > x)

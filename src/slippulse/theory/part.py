@@ -72,10 +72,11 @@ class Part:
 
     def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """A field at points that slide."""
-        past = self.past(x, time)
-        return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
-
-    # Sticking
+        return (
+            self.velocity(x, time)
+            if name == "slip_velocity"
+            else getattr(self.past(x, time), name)(self.rest)
+        )
 
     @cached_property
     def edge(self) -> Edge:
@@ -279,10 +280,9 @@ class Part:
             n = int(np.argmax(values))
             if values[n] > best:
                 best, centre, at = float(values[n]), grid_x[keep][n], fraction[keep][n]
-            near = (
-                np.clip(centre + reach_x * around, x[0], x[-1]),
-                np.clip(at + reach_fraction * around, 0.0, 1.0),
+            near = np.clip(centre + reach_x * around, x[0], x[-1])
+            grid_x, fraction = np.meshgrid(
+                near, np.clip(at + reach_fraction * around, 0.0, 1.0), indexing="ij"
             )
-            grid_x, fraction = np.meshgrid(*near, indexing="ij")
             reach_x, reach_fraction = 0.4 * reach_x, 0.4 * reach_fraction
         return best

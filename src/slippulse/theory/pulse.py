@@ -13,13 +13,10 @@ from ..model.prestress import Prestress
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2) (section III A of the paper).
-
-    Parameters
-    ----------
-    tau0 : float or array, in [0, 1)
+    """Front speed without damping, 1/sqrt(1 - tau_0^2), of tau_0 in [0, 1) or an array of them.
 
     Raises ValueError: outside the domain.
+    Source: section III A of the paper.
     """
     return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
@@ -97,8 +94,8 @@ def pulse_behind_front(
     except (ArithmeticError, ValueError):
         pulse = None
     # Floats of Python overflow without a word.
-    if pulse is None or not all(
-        0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)
+    if not (
+        pulse and all(0.0 < getattr(pulse, name) < math.inf for name in ("width", "slip", "peak_velocity"))
     ):
         critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
         if abs(alpha) > 0.5 * critical:
@@ -106,10 +103,8 @@ def pulse_behind_front(
                 f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size at gamma = {gamma:.4g},"
                 f" speed = {speed:.6g} without beta, or no pulse is steady"
             )
-        raise ValueError(
-            f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}; allowed: numbers whose pulse can be"
-            " computed"
-        )
+        point = f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
+        raise ValueError(f"{point}; allowed: numbers whose pulse can be computed")
     return pulse
 
 

@@ -83,9 +83,7 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
 class Past:
     """The domains of dependence of points (y, time), flat arrays, behind a curve."""
 
-    def __init__(
-        self, curve: Curve, gamma: float, y: np.ndarray, time: np.ndarray, alpha: float = 0.0
-    ) -> None:
+    def __init__(self, curve: Curve, gamma: float, y: np.ndarray, time: np.ndarray, alpha: float = 0.0):
         self.curve, self.alpha, self.y = curve, alpha, y
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
@@ -99,13 +97,12 @@ class Past:
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of du/dt by t - y and by t + y: of the formula's ends and of its kernel."""
         ends = []
-        for name, (panel, s, _), decay in zip(
-            ("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True
-        ):
+        crossings = zip(("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True)
+        for name, (panel, s, _), fall in crossings:
             slope = self.curve.at(name, panel, s, order=1)
             # Where the slope is 0 so is tau, and the end contributes nothing.
             slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-            ends.append(decay * self.curve.at("source", panel, s) / slope)
+            ends.append(fall * self.curve.at("source", panel, s) / slope)
         # E falls with both alike.
         lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
@@ -125,10 +122,7 @@ class Past:
 
         def integrand(behind, ahead, kernel, panels):
             p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
-            out = -slope * time
-            if alpha:
-                out = out - 0.25 * alpha * p * (late - early)
-            out = kernel(0) * out
+            out = kernel(0) * (-slope * time - 0.25 * alpha * p * (late - early))
             if k:
                 out += kernel(1) * (ahead * (k * p * early) - behind * (k * p * late))
             return out
@@ -147,9 +141,7 @@ class Past:
             first = kernel(1)
             growth = k**2 * kernel(2) * (ahead * (p * early) - behind * (p * late))
             sides = first * (k * p * (early + late))
-            push = k * slope * time
-            if alpha:
-                push = push + 0.25 * k * alpha * p * (late - early)
+            push = k * (slope * time + 0.25 * alpha * p * (late - early))
             return (ahead - behind) * (first * push - growth) + sides
 
         (on_left, s_left, _), (on_right, s_right, _) = self.left, self.right
@@ -166,7 +158,7 @@ class Past:
     def _at_ends(self, rest: Rest, order: int) -> list[np.ndarray]:
         """E p or E p' at the left and the right end of each integral."""
         crossings = zip((self.left, self.right), self._decay_at_ends(), strict=True)
-        return [rest.at(panel, s, order) * decay for (panel, s, _), decay in crossings]
+        return [rest.at(panel, s, order) * fall for (panel, s, _), fall in crossings]
 
     def _decay_at_ends(self) -> tuple[np.ndarray | float, np.ndarray | float]:
         """E at the left and the right end of each integral."""

@@ -57,8 +57,7 @@ class Rupture:
     rate_strengthening : alpha, of a term -alpha du/dt; above where slip runs away, and at most 600/duration in size
 
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
-    20000 panels. Of every method: if a position or a time is not a finite number (where arrays are taken, an array of
-    them).
+    20000 panels; of every method, if a position or a time is not finite.
     Source: derived for this project; verified against the lattice, which tends to it at first order in dx.
     """
 
@@ -75,21 +74,17 @@ class Rupture:
         until = self.duration * (1.0 + BEYOND)
         self.stretches, self._unknown = spread(self.law, until)
         kinks = [0.0, *(piece.right for piece in self.law.pieces if np.isfinite(piece.right))]
-        rest = self.refinement, prestress.symmetric
+        same = self.refinement, prestress.symmetric, self.law.alpha
         self._parts = [
-            Part(stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], *rest, self.law.alpha)
+            Part(stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], *same)
             for stretch in self.stretches
         ]
-
-    # Fronts
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
         """Left and right end of each connected part: "stops" for good, or "duration" where it goes on."""
-        return [
-            (self._front_end(part, stretch, -1.0), self._front_end(part, stretch, 1.0))
-            for part, stretch in zip(self._parts, self.stretches, strict=True)
-        ]
+        pairs = zip(self._parts, self.stretches, strict=True)
+        return [(self._front_end(*pair, -1.0), self._front_end(*pair, 1.0)) for pair in pairs]
 
     def _front_end(self, part: Part, stretch: Stretch, side: float) -> FrontEnd:
         (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
@@ -118,8 +113,6 @@ class Rupture:
                 return part.curve.front_at(time, x, -1.0), part.curve.front_at(time, x, 1.0)
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
-    # Sticking
-
     def stick_time(self, x) -> np.ndarray:
         """When x sticks; NaN where it does not until ``duration``, or where the construction ends before."""
         x = as_numbers("x", x)
@@ -141,9 +134,8 @@ class Rupture:
         """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
-        slid = np.isfinite(self.release_time(x))
-        known = np.where(np.isfinite(stick), stick, self.duration)
-        return np.where(slid & ~np.isfinite(stick), np.nan, self.slip(x, known))
+        slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
+        return np.where(slides, np.nan, self.slip(x, np.where(np.isfinite(stick), stick, self.duration)))
 
     @cached_property
     def first_stick(self) -> tuple[float, float] | None:
@@ -188,8 +180,6 @@ class Rupture:
     def largest_velocity(self) -> float:
         """Largest slip velocity until ``duration``, where the construction holds."""
         return max(part.largest_velocity(self.duration, self.horizon) for part in self._parts)
-
-    # Fields
 
     def slip_velocity(self, x, time) -> np.ndarray:
         """du/dt at points, broadcast."""
@@ -245,8 +235,6 @@ class Rupture:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         late = self._beyond_horizon(x, time)
         return {name: np.where(late, np.nan, values) for name, values in out.items()}
-
-    # Where it ends: at the duration, and beyond a horizon
 
     def _time(self, time: float) -> float:
         """A time until the duration, which is the duration if only rounding tells them apart."""

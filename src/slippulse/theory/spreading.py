@@ -9,8 +9,7 @@ import numpy as np
 
 from ..model.roots import root_between
 from .curve import Curve, Panel, seen
-from .fronts import FrontLaw
-from .profile import nucleations
+from .fronts import FrontLaw, nucleations
 from .slow_front import advance
 
 # Why a slow front cannot be followed further.
@@ -18,8 +17,6 @@ UNKNOWN = {
     "unknown": "what decides on a slow front comes from another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
 }
-
-
 SIDES = (-1.0, 1.0)
 
 
@@ -81,11 +78,12 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
         stretches.append(stretch)
     stretches = _joined(stretches)
     # The slow fronts, the earliest first: each follows from what the others did before.
-    while True:
-        fronts = [(s.ends[side][1], n, side) for n, s in enumerate(stretches) for side in SIDES]
-        going = [front for front in fronts if stretches[front[1]].stopped[front[2]] is None]
-        if not going:
-            break
+    while going := [
+        (s.ends[side][1], n, side)
+        for n, s in enumerate(stretches)
+        for side in SIDES
+        if s.stopped[side] is None
+    ]:
         _, n, side = min(going)
         _step(laws[side], stretches[n], side, until)
         stretches = _joined(stretches)

@@ -78,14 +78,9 @@ def log_prestress(
 
 
 def log_factor(
-    z: np.ndarray,
-    bent: np.ndarray,
-    curved: np.ndarray,
-    excess: np.ndarray,
-    ratio: np.ndarray,
-    springs: float,
-    drag: float = 0.0,
-) -> tuple[np.ndarray, np.ndarray]:
+    z: np.ndarray, bent: np.ndarray, curved: np.ndarray, excess: np.ndarray, ratio: np.ndarray, springs: float,
+    drag: float,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
     """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1, and its value at z = 0.
 
     bent and curved are e^{iz} - 1 and e^{iz} - 1 - iz at the nodes z, excess and ratio columns.
@@ -118,9 +113,7 @@ def log_factor(
     return np.log(factor) - np.log(reference), 0.0 * excess[:, 0]
 
 
-def roots(
-    iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float = 0.0
-) -> tuple[np.ndarray, np.ndarray]:
+def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> tuple[np.ndarray, np.ndarray]:
     """q and r (module docstring) with cuts that run straight up from their branch points."""
     four = 4.0 + springs
     ratio = ratio + 0.25 * drag
