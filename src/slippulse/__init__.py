@@ -22,7 +22,7 @@ _HOMES = {
     "UnstableRun": "solver.lattice",
     "plot": "figures.run",
     "point": "data.points",
-    "run_sweep": "simulation.sweep",
+    "run_sweep": "simulation.simulate",
     "settings_for": "configuration.accuracy",
     "simulate": "simulation.simulate",
     "theory": "theory",

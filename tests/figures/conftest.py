@@ -14,7 +14,7 @@ from slippulse.configuration.expand import expand
 from slippulse.data.store import load_table, save_table
 from slippulse.predict.measured import measured_table
 from slippulse.predict.table import predictions
-from slippulse.simulation.sweep import run_sweep
+from slippulse.simulation.simulate import run_sweep
 from slippulse.steps.reach import declared
 from slippulse.steps.targets import selected
 

@@ -27,7 +27,7 @@ from slippulse.model.scene import Scene
 from slippulse.predict.measured import measured_table
 from slippulse.predict.table import predictions
 from slippulse.report.scene_page import scene_page
-from slippulse.simulation.sweep import run_sweep
+from slippulse.simulation.simulate import run_sweep
 
 TITLE = "A <scene> & its $title"
 SCENES = {

@@ -15,7 +15,7 @@ from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.predict.measured import measured_table
 from slippulse.report.scene_page import scene_page
-from slippulse.simulation.sweep import run_sweep
+from slippulse.simulation.simulate import run_sweep
 
 SHARE = 0.95
 PULSE = {

@@ -11,7 +11,7 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.model.scene import LATTICE_SCHEMES, ORDERS
 from slippulse.model.stability import largest_step
-from slippulse.simulation.dataset import judge
+from slippulse.simulation.runs import judge
 from slippulse.solver.lattice import UnstableRun
 from slippulse.solver.run import run_scene
 

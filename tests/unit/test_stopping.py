@@ -10,7 +10,7 @@ import time
 import pytest
 
 import slippulse as sp
-from slippulse.simulation.progress import bar
+from slippulse.simulation.simulate import bar
 
 LONG = (
     "import sys, slippulse as sp\n"

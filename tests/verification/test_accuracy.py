@@ -12,7 +12,7 @@ import slippulse as sp
 from slippulse import theory
 from slippulse.measure.promise import covers
 from slippulse.predict.measured import measured_table
-from slippulse.simulation.sweep import run_sweep
+from slippulse.simulation.simulate import run_sweep
 
 SHARE = 0.95
 SETTINGS = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -43,51 +44,36 @@ def solve_scene(
     """
     if progress is not None:
         progress(0.0)
-    if not nucleations(scene.prestress):
-        return _at_rest(scene, samples)
-    gamma = scene.gamma if scene.boundary == "displacement" else 0.0
-    rupture = Rupture(
-        scene.prestress, gamma, scene.damping_ratio, scene.release, scene.duration,
-        rate_strengthening=scene.rate_strengthening,
-    )  # fmt: skip
-    x = _positions(rupture, scene)
-    release, stick = rupture.release_time(x), rupture.stick_time(x)
-    slip, velocity = rupture.slip(x, scene.duration), rupture.slip_velocity(x, scene.duration)
-    shortly = SHORTLY * scene.duration
-    before = rupture.slip_velocity(x, scene.duration - shortly)
-    acceleration = np.where(velocity > 0.0, (velocity - before) / shortly, 0.0)
-    sampled: dict[str, np.ndarray] = {}
+    # Where nothing nucleates, all stays at rest.
+    ends, first, limit = [0.0], None, None
+    if starts := nucleations(scene.prestress):
+        rupture = Rupture(
+            scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration,
+            rate_strengthening=scene.rate_strengthening,
+        )  # fmt: skip
+        ends = [end.x for pair in rupture.front_ends for end in pair]
+        first, limit = rupture.first_stick, rupture.limit
+    check_number("dx", scene.dx, at_least=(max(ends) - min(ends)) / MOST_POSITIONS)
+    # Multiples of dx over all that is released until the end.
+    span = math.floor(min(ends) / scene.dx) - MARGIN, math.ceil(max(ends) / scene.dx) + MARGIN
+    x = np.arange(span[0], span[1] + 1) * scene.dx
+    release = stick = np.full(x.size, np.nan)
+    slip = velocity = acceleration = np.zeros(x.size)
+    recorded: tuple[Any, Any] = (None, None)
     if samples is not None:
-        sampled = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
-    numbers = _numbers(scene, release, stick, velocity, rupture)
-    return LatticeRun(
-        x, scene.prestress(x), release, stick, slip, velocity, acceleration, sampled.get("slip"),
-        sampled.get("slip_velocity"), numbers,
-    )  # fmt: skip
-
-
-def _at_rest(scene: Scene, samples: Samples | None) -> LatticeRun:
-    """The run of a scene that releases nothing."""
-    x = np.arange(-MARGIN, MARGIN + 1) * scene.dx
-    never, none = np.full(x.size, np.nan), np.zeros(x.size)
-    sampled = None if samples is None else np.zeros((samples.times.size, samples.positions.size))
-    numbers = _numbers(scene, never, never, none)
-    return LatticeRun(x, scene.prestress(x), never, never, none, none, none, sampled, sampled, numbers)
-
-
-def _numbers(
-    scene: Scene,
-    release: np.ndarray,
-    stick: np.ndarray,
-    velocity: np.ndarray,
-    rupture: Rupture | None = None,
-) -> dict:
-    first, limit = (math.nan, math.nan), None
-    if rupture is not None:
-        first, limit = rupture.first_stick or first, rupture.limit
-    return {
+        recorded = 2 * (np.zeros((samples.times.size, samples.positions.size)),)
+    if starts:
+        release, stick = rupture.release_time(x), rupture.stick_time(x)
+        slip, velocity = rupture.slip(x, scene.duration), rupture.slip_velocity(x, scene.duration)
+        shortly = SHORTLY * scene.duration
+        before = rupture.slip_velocity(x, scene.duration - shortly)
+        acceleration = np.where(velocity > 0.0, (velocity - before) / shortly, 0.0)
+        if samples is not None:
+            found = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
+            recorded = found["slip"], found["slip_velocity"]
+    numbers = {
         "end_time": scene.duration,
-        "stopped_because": "everything is stuck" if not np.any(velocity > 0.0) else "duration reached",
+        "stopped_because": "duration reached" if np.any(velocity > 0.0) else "everything is stuck",
         "steps": 0,
         "block_updates": 0,
         "event_updates": 0,
@@ -98,20 +84,13 @@ def _numbers(
         # Between the waves and the threshold a stuck point's stress is not looked at.
         "min_stuck_stress": math.nan,
         "friction_ratio_needed": math.nan,
-        "first_stick_time": first[0],
-        "first_stick_position": first[1],
+        "first_stick_time": first[0] if first else math.nan,
+        "first_stick_position": first[1] if first else math.nan,
         "half_lattice_used": 0,
         "energy_residual": math.nan,
         "limit_position": limit.x if limit else math.nan,
         "limit_time": limit.time if limit else math.nan,
         "limit_reason": limit.reason if limit else "",
     }
-
-
-def _positions(rupture: Rupture, scene: Scene) -> np.ndarray:
-    """Multiples of dx over all that is released until the end, and a margin."""
-    ends = [end.x for pair in rupture.front_ends for end in pair]
-    check_number("dx", scene.dx, at_least=(max(ends) - min(ends)) / MOST_POSITIONS)
-    first = math.floor(min(ends) / scene.dx) - MARGIN
-    last = math.ceil(max(ends) / scene.dx) + MARGIN
-    return np.arange(first, last + 1) * scene.dx
+    fields = (x, scene.prestress(x), release, stick, slip, velocity, acceleration)
+    return LatticeRun(*fields, *recorded, numbers)

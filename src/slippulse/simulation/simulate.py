@@ -1,19 +1,19 @@
-"""One scene in, one Dataset out."""
+"""Scenes in, Datasets out: one scene on the lattice or exactly, by its scheme, or a sweep of many."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 
 import xarray as xr
 
-from ..model.checks import short_repr
-from ..model.samples import Samples
+from ..model.checks import check_number, short_repr
+from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
 from ..solver.lattice import UnstableRun
 from ..solver.run import LatticeRun, run_scene
 from .continuum import solve_scene
-from .dataset import dataset_of, describe_flags
-from .progress import bar
+from .runs import dataset_of, describe_flags, run_all
 
 
 class UnresolvedRun(RuntimeError):
@@ -52,33 +52,101 @@ def simulate(
     UnresolvedRun
         With ``strict``, when a flag is set.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene: {short_repr(scene)}; allowed: a Scene")
-    if samples is not None and not isinstance(samples, Samples):
-        raise TypeError(f"samples: {short_repr(samples)}; allowed: Samples, or None")
+    _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
+    _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
+    known = isinstance(progress, bool | None) or callable(progress)
+    _require(known, "progress", progress, "a function of the fraction done, True, or None", TypeError)
+    _require(isinstance(strict, bool), "strict", strict, "true or false", TypeError)
     if samples is not None:
         samples.check_within(scene.duration)
-    if not isinstance(progress, bool) and progress is not None and not callable(progress):
-        raise TypeError(
-            f"progress: {short_repr(progress)}; allowed: a function of the fraction done, True, or None"
-        )
-    if not isinstance(strict, bool):
-        raise TypeError(f"strict: {short_repr(strict)}; allowed: true or false")
     if isinstance(progress, bool):
         progress = bar() if progress else None
-    data = dataset_of(scene, samples, run_or_solve(scene, samples, progress))
-    if strict and data.attrs["run_flags"]:
-        flags = data.attrs["run_flags"]
+    data = dataset_of(scene, samples, _run(scene, samples, progress))
+    if strict and (flags := data.attrs["run_flags"]):
         raise UnresolvedRun(f"the run is flagged: {flags} ({describe_flags(scene, data.attrs)})")
     return data
 
 
-def run_or_solve(
-    scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None
-) -> LatticeRun:
-    """Run a scene by its scheme: on a lattice, or exactly."""
+def run_sweep(
+    scenes: Sequence[Scene],
+    samples: Sequence[Samples | None] | None = None,
+    record: Sequence[str] = ("fronts",),
+    threads: int = 1,
+    progress: Callable[[float, int], None] | None = None,
+) -> xr.Dataset:
+    """Run scenes in a pool of threads.
+
+    Parameters
+    ----------
+    scenes : the scenes, one point each
+    samples : per scene, where and when to record; all of one shape
+    record : what is kept per block: "fronts" (release and stick times), "fields" (slip, velocity, acceleration at
+        the end); "samples" (the recorded samples)
+    threads : how many run at once; the result does not depend on it
+    progress : called with (done, all) after each scene; of a single one, with the fraction done as it goes
+
+    Returns
+    -------
+    Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous ragged
+    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
+
+    Raises
+    ------
+    ValueError
+        One line naming the argument and what is allowed.
+    """
+    listed = isinstance(scenes, Sequence) and scenes and all(isinstance(scene, Scene) for scene in scenes)
+    _require(bool(listed), "scenes", scenes, "a list of Scenes, at least one")
+    samples = [None] * len(scenes) if samples is None else samples
+    listed = isinstance(samples, Sequence) and all(isinstance(each, Samples | None) for each in samples)
+    one_each = listed and len(samples) == len(scenes)
+    _require(one_each, "samples", samples, f"a list of Samples, {len(scenes)} for as many scenes, or None")
+    for scene, of_scene in zip(scenes, samples, strict=True):
+        if of_scene is not None:
+            of_scene.check_within(scene.duration)
+    words = record if isinstance(record, Sequence) and not isinstance(record, str) else ()
+    known = bool(words) and all(isinstance(word, str) and word in RECORDS for word in words)
+    _require(known, "record", record, f"a list of {', '.join(RECORDS)}")
+    if "samples" in words:
+        shapes = {of_scene and (of_scene.times.shape, of_scene.positions.shape) for of_scene in samples}
+        if None in shapes:
+            raise ValueError(
+                "record: 'samples' without samples; allowed: Samples for each scene, the second argument"
+            )
+        _require(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
+    check_number("threads", threads, whole=True, at_least=1, at_most=1024)
+    _require(
+        progress is None or callable(progress), "progress", progress, "a function of (done, all), or None"
+    )
+    return run_all(_run, scenes, samples, record, int(threads), progress)
+
+
+def bar(stream=None) -> Callable[[float], None]:
+    """A function of the fraction done that draws a bar with the time left on a stream, standard error if left out."""
+    from tqdm import tqdm
+
+    shown = tqdm(
+        total=1.0, delay=0.2, mininterval=0.2, file=stream or sys.stderr,
+        bar_format="[{bar:30}] {percentage:3.0f}%  {elapsed}, {remaining} left",
+    )  # fmt: skip
+
+    def draw(done: float) -> None:
+        shown.update(done - shown.n)
+        if done >= 1.0:
+            shown.close()
+
+    return draw
+
+
+def _run(scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None) -> LatticeRun:
     solve = solve_scene if scene.scheme == "continuum" else run_scene
     return solve(scene, samples, progress)
 
 
-__all__ = ["Samples", "UnresolvedRun", "UnstableRun", "simulate"]
+def _require(holds: bool, name: str, value: object, allowed: str, error: type = ValueError) -> None:
+    """Refuse an argument in one line."""
+    if not holds:
+        raise error(f"{name}: {short_repr(value)}; allowed: {allowed}")
+
+
+__all__ = ["Samples", "UnresolvedRun", "UnstableRun", "run_sweep", "simulate"]

@@ -7,7 +7,7 @@ from functools import partial
 
 from ..configuration.expand import expand
 from ..data.store import save_dataset
-from ..simulation.pool import run_all
+from ..simulation.runs import run_all
 from ..solver.run import run_scene
 
 

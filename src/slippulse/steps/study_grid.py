@@ -16,7 +16,7 @@ from ..measure.promise import judged, summary
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import grid_tables
 from ..predict.measured import measured_table
-from ..simulation.pool import run_all
+from ..simulation.runs import run_all
 from ..solver.run import run_scene
 
 

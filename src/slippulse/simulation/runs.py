@@ -1,13 +1,16 @@
-"""A finished run as one Dataset, with flags for what its numbers are not."""
+"""Finished runs as Datasets, with flags for what their numbers are not: one, or many in threads put together."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from threading import Event
 
 import numpy as np
 import xarray as xr
 
-from ..data.variables import VARIABLES
+from ..data.variables import VARIABLES, combine
 from ..data.versions import versions
 from ..model.samples import Samples
 from ..model.scene import Scene
@@ -24,15 +27,60 @@ LAST_BLOCKS, FEW_STEPS = 30, 50
 FIELDS = ("prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 
 
+class Stopped(Exception):
+    """Another scene of the sweep failed, or the user stopped it."""
+
+
+def run_all(
+    solve: Callable[[Scene, Samples | None, Callable[[float], None]], LatticeRun],
+    scenes: Sequence[Scene],
+    samples: Sequence[Samples | None],
+    record: Sequence[str],
+    threads: int = 1,
+    progress: Callable[[float, int], None] | None = None,
+) -> xr.Dataset:
+    """Run scenes by a solver, long ones on fine lattices first; the rest is as `run_sweep` has it."""
+    results: dict[int, xr.Dataset] = {}
+    order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
+    stopped = Event()
+
+    def run(i: int) -> tuple[int, xr.Dataset]:
+        def check(done: float) -> None:
+            if stopped.is_set():
+                raise Stopped
+            if progress is not None and len(scenes) == 1:
+                progress(done, 1)
+
+        return i, dataset_of(scenes[i], samples[i], solve(scenes[i], samples[i], check))
+
+    # What exact solutions take is Python's, one at a time, and stops at once in the main thread alone.
+    alone = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
+    with ThreadPoolExecutor(max_workers=threads) as pool:
+
+        def finished() -> Iterator[tuple[int, xr.Dataset]]:
+            futures = [pool.submit(run, i) for i in order]
+            yield from (future.result() for future in as_completed(futures))
+
+        try:
+            for i, data in map(run, order) if alone else finished():
+                results[i] = data
+                if progress is not None:
+                    progress(len(results), len(scenes))
+        except BaseException:
+            stopped.set()
+            pool.shutdown(cancel_futures=True)
+            raise
+    return combine([results[i] for i in range(len(scenes))], record)
+
+
 def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dataset:
     """The Dataset of a run, as `slippulse.simulate` describes it."""
     data: dict = {name: ("x", getattr(run, name)) for name in FIELDS}
     coordinates = {"x": ("x", run.x)}
     if samples is not None:
-        coordinates["sample_time"] = ("sample_time", samples.times)
-        coordinates["sample_position"] = ("sample_position", samples.positions)
-        data["sample_slip"] = (("sample_time", "sample_position"), run.sample_slip)
-        data["sample_velocity"] = (("sample_time", "sample_position"), run.sample_velocity)
+        axes = ("sample_time", "sample_position")
+        coordinates |= {axes[0]: (axes[0], samples.times), axes[1]: (axes[1], samples.positions)}
+        data |= {"sample_slip": (axes, run.sample_slip), "sample_velocity": (axes, run.sample_velocity)}
     dataset = xr.Dataset(data, coords=coordinates)
     for name, variable in dataset.variables.items():
         variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
@@ -42,28 +90,24 @@ def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dat
 
 def judge(scene: Scene, run: LatticeRun) -> dict:
     """Flags of a finished run: what would make its numbers something else than the model's."""
-    pulse_blocks = narrowest_pulse(scene, run)
-    if run.numbers["releases"] == 0:
-        return {"pulse_blocks": pulse_blocks, "run_flags": "nothing_released"}
-    flags = ["nothing_sticks"] if nothing_sticks(scene, run) else []
+    blocks, numbers = narrowest_pulse(scene, run), run.numbers
+    if numbers["releases"] == 0:
+        return {"pulse_blocks": blocks, "run_flags": "nothing_released"}
+    found = {"nothing_sticks": nothing_sticks(scene, run)}
     if scene.scheme == "continuum":
-        flags += ["construction_ended"] if run.numbers["limit_reason"] else []
-        return {"pulse_blocks": pulse_blocks, "run_flags": ",".join(flags)}
-    if run.numbers["min_stuck_stress"] <= scene.reverse_threshold:
-        flags.append("reverse_sliding")
-    if 0 < pulse_blocks < scene.resolved_blocks:
-        flags.append("unresolved_pulse")
-    if died_out(run):
-        flags.append("died_out")
-    overshoot = -NEGATIVE_VELOCITY[scene.scheme] * max(1.0, float(np.max(run.slip_velocity)))
-    if run.numbers["min_velocity"] < overshoot:
-        flags.append("negative_velocity")
-    # Not NaN either.
-    if not run.numbers["energy_residual"] <= ENERGY_RESIDUAL:
-        flags.append("energy")
-    if scene.scheme == "fixed_step" and locked_front(run):
-        flags.append("locked_front")
-    return {"pulse_blocks": pulse_blocks, "run_flags": ",".join(flags)}
+        found["construction_ended"] = numbers["limit_reason"] != ""
+    else:
+        overshoot = -NEGATIVE_VELOCITY[scene.scheme] * max(1.0, float(np.max(run.slip_velocity)))
+        found |= {
+            "reverse_sliding": numbers["min_stuck_stress"] <= scene.reverse_threshold,
+            "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
+            "died_out": died_out(run),
+            "negative_velocity": numbers["min_velocity"] < overshoot,
+            # Not NaN either.
+            "energy": not numbers["energy_residual"] <= ENERGY_RESIDUAL,
+            "locked_front": scene.scheme == "fixed_step" and locked_front(run),
+        }
+    return {"pulse_blocks": blocks, "run_flags": ",".join(flag for flag in found if found[flag])}
 
 
 def nothing_sticks(scene: Scene, run: LatticeRun) -> bool:
@@ -86,24 +130,22 @@ def locked_front(run: LatticeRun) -> bool:
 
 
 def narrowest_pulse(scene: Scene, run: LatticeRun) -> int:
-    """Blocks across the narrowest pulse at the end; under a stress boundary the nucleation peak sets the scale."""
+    """Blocks across the narrowest pulse at the end.
+
+    Under a stress boundary nucleation sets the scale: the width of the Gaussian, or the distance to where it falls to 0
+    on the way to a strongly negative level.
+    """
     if scene.boundary == "stress":
-        return int(nucleation_size(scene) / scene.dx)
+        profile, sizes = scene.prestress, [scene.prestress.width]
+        for level in (profile.left, profile.right):
+            if level < 0.0 < profile.peak:
+                sizes.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
+        return int(min(sizes) / scene.dx)
     sliding = np.isfinite(run.release_time) & ~np.isfinite(run.stick_time)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], sliding, [False]]).astype(np.int8)))
+    edges = np.flatnonzero(np.diff(sliding, prepend=False, append=False))
     lengths = edges[1::2] - edges[0::2]
     # The pulses are the outermost segments; pieces left over behind them are not.
     return int(min(lengths[0], lengths[-1])) if lengths.size else 0
-
-
-def nucleation_size(scene: Scene) -> float:
-    """Width of the Gaussian, or the distance to where it falls to 0 on the way to a strongly negative level."""
-    profile = scene.prestress
-    sizes = [profile.width]
-    for level in (profile.left, profile.right):
-        if level < 0.0 < profile.peak:
-            sizes.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
-    return min(sizes)
 
 
 def died_out(run: LatticeRun) -> bool:
