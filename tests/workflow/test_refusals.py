@@ -20,270 +20,196 @@ from slippulse.model.checks import ConfigError
 KEPT = (
     "steady_displacement", "space_time_displacement", "space_time_stress", "burridge_knopoff_stress", "steady_stress",
 )  # fmt: skip
-STEADY, STRESS = "simulations: {steady_displacement: ", "simulations: {space_time_stress: "
-OWN = "simulations: {mine: {boundary: displacement, duration: {time: 10.0}, record: [fronts], "
-OWN_LEVEL = OWN + "gamma: [0.5], left: [0.5], right: same, "
-OWN_STRESS = "simulations: {mine: {boundary: stress, left: [-1.0], record: [fronts], "
-OWN_PROFILE = (
-    "simulations: {mine: {boundary: stress, record: [fronts], duration: {time: 1.0}, profiles: [{left: "
-)
+# What the key of a row may begin with: a shipped simulation, or one that is there before the row is laid over.
+SHORT = {"steady": "simulations.steady_displacement", "stress": "simulations.space_time_stress"}
+SPRINGS = "boundary: displacement, duration: {time: 10.0}, record: [fronts], left: [0.5], right: same"
+ADDED = {
+    "springs": SPRINGS,
+    "level": f"{SPRINGS}, gamma: [0.5]",
+    "held": "boundary: stress, left: [-1.0], record: [fronts]",
+    "profile": "boundary: stress, record: [fronts], duration: {time: 1.0}",
+}
+SHORT |= {name: f"simulations.{name}" for name in ADDED}
+SCENE = "{title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}"
 MANY = "[" + ", ".join(f"{0.001 * i:.3f}" for i in range(1, 801)) + "]"
 
-# Overlay, and what the refusal must name: the key, the value, what is allowed or the remedy.
-CASES = {
-    # unknown and misspelt keys
-    "misspelt root key": ("simulation: {}", ["simulation", "did you mean 'simulations'"]),
-    "unknown root key": ("colour: red", ["colour: unknown key", "allowed: preset"]),
-    "misspelt key of a simulation": (STEADY + "{gama: [0.3]}}", ["steady_displacement.gama", "did you mean 'gamma'"]),
-    "misspelt key of the model": ("model: {dampingratio: 0.1}", ["model.dampingratio", "did you mean 'damping_ratio'"]),
-    "misspelt key of measure": ("measure: {shares: 0.9}", ["measure.shares", "did you mean 'share'"]),
-    "misspelt figure": ("figures: {fig07_damage_zon: {}}", ["fig07_damage_zon", "did you mean 'fig07_damage_zone'"]),
-    "misspelt simulation": (
-        "simulations: {steady_displacment: {gamma: [0.3]}}",
-        ["steady_displacment.boundary", "did you mean 'steady_displacement'"],
-    ),
-    "misspelt preset": ("presets: {drafts: {dx: 0.1}}", ["presets.drafts", "did you mean 'draft'"]),
-    "preset that is not there": ("preset: papre", ["'papre'", "did you mean 'paper'", "draft, paper, reference"]),
-    "simulation that is not there": (
-        "published: {front_speed: {simulation: space_time_displacemnt}}",
-        ["published.front_speed.simulation", "did you mean 'space_time_displacement'"],
-    ),
-    # wrong types
-    "number in quotes": ("presets: {paper: {dx: '0.01'}}", ["presets.paper.dx", "'0.01'", "without quotes"]),
-    "decimal comma": ("model: {friction_ratio: '5,5'}", ["friction_ratio", "'5,5'", "write 5.5"]),
-    "one number for a list": (STEADY + "{gamma: 0.3}}", ["gamma: 0.3", "a list of different numbers"]),
-    "a list for one number": ("model: {damping_ratio: [0.1]}", ["model.damping_ratio: [0.1]", "a number >= 0"]),
-    "a switch for a number": ("model: {damping_ratio: true}", ["model.damping_ratio: True", "a number >= 0"]),
-    "null for a number": ("model: {damping_ratio: null}", ["model.damping_ratio: missing", "null removes a key"]),
-    "a fraction for a whole number": ("presets: {paper: {order: 4.5}}", ["order: 4.5", "a whole number from 3 to 8"]),
-    "a list for a mapping": ("simulations: [1, 2]", ["simulations: [1, 2]", "a mapping"]),
-    "text for a mapping": (STEADY + "{duration: long}}", ["duration: 'long'", "one of time"]),
-    "yes for a switch": ("presets: {paper: {whole: yes}}", ["presets.paper.whole: 'yes'", "true or false"]),
-    "a preset that is a number": ("preset: 3", ["preset: 3", "the name of a preset"]),
-    # ranges
-    "negative spacing": ("presets: {paper: {dx: -0.1}}", ["presets.paper.dx: -0.1", "> 0"]),
-    "order 9": ("presets: {paper: {order: 9}}", ["order: 9", "from 3 to 8"]),
-    "negative damping": (STEADY + "{damping_ratio: [-0.1]}}", ["damping_ratio.0: -0.1", ">= 0"]),
-    "zero gamma": (STEADY + "{gamma: [0.0]}}", ["gamma.0: 0.0", "> 0"]),
-    "level at the threshold": (STEADY + "{left: [1.0]}}", ["prestress.left: 1.0", "< 1"]),
-    "infinity": ("measure: {share: .inf}", ["measure.share: inf", "a finite number"]),
-    "not a number": (STEADY + "{left: [.nan]}}", ["left.0: nan", "a finite number"]),
-    "share above 1": ("measure: {share: 1.5}", ["measure.share: 1.5", "> 0 and < 1"]),
-    "zero duration": (STEADY + "{duration: {time: 0.0}}}", ["duration.time: 0.0", "> 0"]),
-    "one factor in the grid study": ("presets: {paper: {coarser: [2.0]}}", ["coarser: [2.0]", "two different factors"]),
-    "release rule": ("model: {release: both}", ["model.release: 'both'", "total, elastic"]),
-    "scheme": ("model: {scheme: euler}", ["model.scheme: 'euler'", "localised, fixed_step, continuum"]),
-    "boundary": (STEADY + "{boundary: free}}", ["boundary: 'free'", "displacement, stress"]),
-    "record": (STEADY + "{record: [everything]}}", ["record.0: 'everything'", "fronts, fields, samples"]),
-    "fields without fronts": (STEADY + "{record: [fields]}}", ["record: ['fields']", "a list of fronts (always"]),
-    "range of stiffness turned round": (
-        "figures: {fig07_damage_zone: {stiffness_ratios: {from: 2.0}}}", ["stiffness_ratios.to: 1.0", "> from = 2"],
-    ),
-    "accuracy above a tenth": ("accuracy: 0.5", ["accuracy: 0.5", "from 0.0001 to 0.1"]),
-    "accuracy too small to reach": ("accuracy: 1.0e-7", ["accuracy: 1e-07", "from 0.0001 to 0.1"]),
-    "misspelt null": (STEADY + "{gama: null}}", ["steady_displacement.gama: null", "did you mean 'gamma'"]),
-    "null for a name that is not there": (
-        "simulations: {steady_displacment: null}", ["steady_displacment: null", "did you mean 'steady_displacement'"],
-    ),
-    "null for a shipped simulation": (
-        "simulations: {steady_displacement: null}", ["steady_displacement: null", "what is shipped stays"],
-    ),
-    "null for the preset": ("preset: null", ["preset: missing", "null removes a key", "draft, paper, reference"]),
-    "null for a preset's key": ("presets: {paper: {dx: null}}", ["presets.paper.dx: missing", "null removes a key"]),
-    "null in a list": (STEADY + "{gamma: [null]}}", ["gamma.0: None", "a number > 0"]),
-    "a number as a name": ("simulations: {123: {boundary: stress}}", ["simulations: '123'", "begins with a letter"]),
-    "reading of a quantity that is not measured": (
-        "published: {front_speed: {quantity: front_speed_rigt}}",
-        ["published.front_speed.quantity: 'front_speed_rigt'", "did you mean 'front_speed_right'"],
-    ),
-    "reading of a quantity that is not recorded": (
-        "simulations: {space_time_displacement: {record: [fronts], samples: null}}",
-        ["published.velocity_displacement.quantity: 'largest_velocity'", "this takes record: [fronts, fields]"],
-    ),
-    "null for a scene that is not there": (
-        "scenes: {barier: null}", ["scenes.barier: null", "did you mean 'barrier'"],
-    ),
-    "name of a simulation for a scene": (
-        "scenes: {steady_displacement: {title: a, boundary: stress, left: 0.0, right: 0.0, duration: 1.0}}",
-        ["scenes.steady_displacement: also the name of a simulation", "another name"],
-    ),
-    # what belongs together
-    "samples that are not recorded": (
-        OWN_LEVEL + "samples: {times: 2, positions: 1, extent: 0.0}}}",
-        ["mine.samples: given, but not recorded", "samples in record"],
-    ),
-    "peak below 1 everywhere": (
-        OWN_PROFILE + "0.5, right: 0.5, peak: 0.9}]}}", ["mine.peak: 0.9", "at most 0.9 ", "reaches 1 somewhere"],
-    ),
-    "a dent that reaches the peak": (
-        OWN_PROFILE + "-0.2, right: 0.0, bumps: [[-3.0, -0.8, 0.7]]}]}}",
-        ["mine.peak: 1", "at most 0.9999178", "reaches 1 somewhere"],
-    ),
-    "a bump between two blocks": (
-        OWN_PROFILE + "0, right: 0, peak: 0, bumps: [[0.003, 1, 1.0e-4]]}]}}", ["mine.peak: 0,", "reaches 1 somewhere"],
-    ),
-    "balance distances of positive levels": (
-        STEADY + "{duration: {time: null, balance_distances: 2.0}}}",
-        ["steady_displacement.duration.balance_distances: 2.0 times |x_minus|, but right: 0.2", "allowed: 0"],
-    ),
-    "fixed spacing with a rule": (
-        OWN_LEVEL + "spacing: {fixed: 0.1, scale: 2.0}}}", ["mine.spacing.fixed: given with others", "alone"],
-    ),
-    "gamma that leaves no stable step": (STEADY + "{gamma: [1.0e+200]}}", ["steady_displacement.gamma: 1e+200"]),
-    "accuracy of the textbook scheme": (
-        "{accuracy: 1.0e-2, model: {scheme: fixed_step}}",
-        ["model.scheme: 'fixed_step'", "'localised' where accuracy is given"],
-    ),
-    "accuracy of one scene in the textbook scheme": (
-        "{accuracy: 1.0e-2, scenes: {barrier: {scheme: fixed_step}}}",
-        ["scenes.barrier.scheme: 'fixed_step'", "'localised' where accuracy is given"],
-    ),
-    "accuracy with friction that depends on slip rate": (
-        "{accuracy: 1.0e-2, simulations: {steady_displacement: {rate_strengthening: [0.2]}}}",
-        ["steady_displacement.rate_strengthening: [0.2]", "allowed: 0 where accuracy is given"],
-    ),
-    "accuracy at strong damping": (
-        "{accuracy: 1.0e-2, simulations: {steady_displacement: {damping_ratio: [3.0]}}}",
-        ["steady_displacement.damping_ratio: 3.0", "<= 1"],
-    ),
-    "gamma under stress": (STRESS + "{gamma: [0.5]}}", ["space_time_stress.gamma: [0.5]", "left out under"]),
-    "no gamma under displacement": (OWN + "left: [0.5], right: same}}", ["mine.gamma: missing"]),
-    "no levels": (OWN + "gamma: [0.5]}}", ["mine.left, right: missing"]),
-    "profiles and levels": (
-        OWN_LEVEL + "profiles: [{left: 0.5, right: 0.5}]}}", ["mine.profiles", "one or the other"],
-    ),
-    "beta and damping ratio": (STEADY + "{beta: [0.001]}}", ["beta", "damping_ratio", "one or the other"]),
-    "dx and spacing": (OWN_LEVEL + "dx: [0.1], spacing: {scale: 2.0}}}", ["mine.dx", "spacing", "one or the other"]),
-    "two durations": (STEADY + "{duration: {half_periods: 3.0}}}", ["duration", "one of time"]),
-    "half periods under stress": (
-        OWN_STRESS + "right: [0.0], duration: {half_periods: 1.0}}}", ["duration.half_periods", "displacement"],
-    ),
-    "samples not stated": (
-        OWN.replace("fronts", "fronts, samples") + "gamma: [0.5], left: [0.5], right: same}}",
-        ["mine.samples: missing"],
-    ),
-    "balance that does not exist": (
-        OWN_STRESS + "right: [0.2], duration: {balance_distances: 2.0}}}", ["but right: 0.2", "allowed: 0"],
-    ),
-    # the lattice
-    "peak narrower than the spacing": (
-        "simulations: {burridge_knopoff_stress: {width: [0.5]}}", ["prestress.width: 0.5", ">= dx = 1"],
-    ),
-    "unstable step": (STEADY + "{max_step: 3.0}}", ["max_step: 3.0", "stability bound"]),
-    "unstable on a coarser lattice": (
-        OWN_LEVEL + "width: [0.3], dx: [0.1]}}", ["prestress.width: 0.3", "4 times coarser of the grid study"],
-    ),
-    "pulse of a few blocks": (
-        OWN + "gamma: [1.0], left: [0.1], right: same, dx: [0.5]}}",
-        ["mine.resolved_blocks: 8", "blocks; allowed: a pulse of at least 4 blocks", "a smaller dx"],
-    ),
-    # scenes
-    "scene in which nothing moves": ("scenes: {barrier: {peak: 0.9}}", ["scenes.barrier.peak: 0.9", "reaches 1"]),
-    "misspelt key of a scene": ("scenes: {barrier: {gama: 0.3}}", ["scenes.barrier.gama", "did you mean 'gamma'"]),
-    "misspelt scene": ("scenes: {bariere: {gamma: 0.3}}", ["scenes.bariere.boundary", "did you mean 'barrier'"]),
-    "scene with a path as a name": ("scenes: {../barrier: {}}", ["'../barrier'", "lower-case letters"]),
-    "a scene named as the page of all": (
-        "scenes: {index: {title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}}",
-        ["scenes.index: another file of that name is there", "neither index nor SCENE_numbers"],
-    ),
-    "a scene named as the numbers of another": (
-        "scenes: {barrier_numbers: {title: a, boundary: stress, left: 0.5, right: 0.5, duration: 1.0}}",
-        ["scenes.barrier_numbers: another file of that name is there", "neither index nor SCENE_numbers"],
-    ),
-    "blank title": ("scenes: {barrier: {title: ' '}}", ["scenes.barrier.title: ' '", "not blank"]),
-    "title that rings": ('scenes: {barrier: {title: "\\a bell"}}', [r"scenes.barrier.title: '\x07 bell'", "printable"]),
-    "title of two lines": ('scenes: {barrier: {title: "a\\nb"}}', [r"scenes.barrier.title: 'a\nb'", "one line"]),
-    "two dampings in a scene": ("scenes: {barrier: {beta: 0.1, damping_ratio: 0.1}}", ["barrier.beta", "one or the"]),
-    # figures
-    "a thousand million points of a curve": (
-        "figures: {fig07_damage_zone: {stiffness_ratios: {count: 1000000000}}}",
-        ["stiffness_ratios.count: 1000", "to 10000"],
-    ),
-    "stiffness from nothing to everything": (
-        "figures: {fig07_damage_zone: {stiffness_ratios: {from: 5.0e-324, to: 1.0e+308}}}",
-        ["stiffness_ratios.from: 5e-324", "stiffness_ratios.to: 1e+308", "from 1e-6 to 1e6"],
-    ),
-    "a sketch of the universe": (
-        "figures: {fig01_system_sketch: {thickness: 1.0e+308}}", ["system_sketch.thickness: 1e+308", "0.01 to 100"],
-    ),
-    "a window of no block": ("measure: {front_window: 1.0e-6}", ["measure.front_window: 1e-06", ">= 0.05 and < 1"]),
-    # sweeps
-    "empty axis": (STEADY + "{gamma: []}}", ["gamma: []", "at least one"]),
-    "duplicate value": (STEADY + "{left: [0.5, 0.5]}}", ["left: [0.5, 0.5]", "different"]),
-    "duplicate profile": (
-        "simulations: {steady_stress: {profiles: [{left: -1.0, right: 0.0}, {left: -1.0, right: 0.0}]}}",
-        ["profiles", "different"],
-    ),
-    "no chunks": (STEADY + "{chunks: 0}}", ["steady_displacement.chunks: 0", "a whole number from 1 to 1000"]),
-    "more chunks than a system opens files": (STEADY + "{chunks: 1001}}", ["chunks: 1001", "from 1 to 1000"]),
-    "more chunks than runs": (STEADY + "{chunks: 13}}", ["displacement.chunks: 13", "the number of runs, 12"]),
-    "chunks of a scene": ("scenes: {barrier: {chunks: 2}}", ["scenes.barrier.chunks: unknown key"]),
-    "a number that overflows": (STEADY + "{gamma: [1.0e+300]}}", ["steady_displacement"]),
-    # hostile
-    "path as a name": ("simulations: {../../etc/passwd: {}}", ["'../../etc/passwd'", "lower-case letters"]),
-    "command as a name": ("simulations: {$(touch written): {}}", ["'$(touch written)'", "lower-case letters"]),
-    "newline in a name": ('simulations: {"a\\nb": {}}', [r"'a\nb'", "lower-case letters"]),
-    "command as a preset": ("preset: '`touch written`'", ["preset: '`touch written`'", "draft, paper, reference"]),
-    "newline in a preset": ('preset: "paper\\ndraft"', [r"'paper\ndraft'", "draft, paper, reference"]),
-    "a very long name": ("simulations: {" + "a" * 900 + ": {}}", ["'aaaa", "..."]),
-    "claim with an unknown key": ("claims: {pulse_slip: {kind: exact}}", ["claims.pulse_slip.kind: unknown key"]),
-    "study that is text": ("studies: extremes", ["studies: 'extremes'", "a list of different names"]),
-    "sexagesimal": ("model: {friction_ratio: 1:30}", ["friction_ratio: '1:30'", "a number >= 0"]),
-    "a quote in a preset": ("preset: \"draft'\"", ["preset: \"draft'\"", "did you mean 'draft'"]),
-}  # fmt: skip
+# Key and value of an overlay (without a key the whole of it), and what the refusal must name besides the key: the
+# value, what is allowed, the remedy.
+MISTAKES = r"""
+ | {simulation: {}, colour: red} | simulation: unknown key (did you mean 'simulations'?) | colour: unknown key
+steady.gama         | [0.3] | did you mean 'gamma'
+model.dampingratio  | 0.1 | did you mean 'damping_ratio'
+measure.shares      | 0.9 | did you mean 'share'
+figures.fig07_damage_zon | {} | did you mean 'fig07_damage_zone'
+simulations.steady_displacment | {gamma: [0.3]} | steady_displacment.boundary | did you mean 'steady_displacement'
+presets.drafts      | {dx: 0.1} | did you mean 'draft'
+preset              | papre | 'papre' | did you mean 'paper' | draft, paper, reference
+published.front_speed.simulation | space_time_displacemnt | did you mean 'space_time_displacement'
+steady.gamma        | 0.3 | gamma: 0.3 | a list of different numbers
+presets.paper       | {dx: '0.01', order: 4.5, whole: yes} | dx: '0.01'; allowed: a number > 0 and <= 1 \
+     | without quotes | order: 4.5; allowed: a whole number from 3 to 8 | whole: 'yes'; allowed: true or false
+model               | {release: both, scheme: euler} | release: 'both'; allowed: total, elastic \
+     | scheme: 'euler'; allowed: localised, fixed_step, continuum
+model               | {friction_ratio: '5,5', damping_ratio: [0.1]} | friction_ratio: '5,5' | write 5.5 \
+     | model.damping_ratio: [0.1] | a number >= 0
+model.damping_ratio | true | model.damping_ratio: True | a number >= 0
+model.damping_ratio | null | model.damping_ratio: missing | null removes a key
+simulations         | [1, 2] | simulations: [1, 2] | a mapping
+steady.duration     | long | duration: 'long' | one of time
+preset              | 3 | preset: 3 | the name of a preset
+model.friction_ratio | 1:30 | friction_ratio: '1:30' | a number >= 0
+studies             | extremes | studies: 'extremes' | a list of different names
+steady              | {left: [1.0]} | prestress.left: 1.0 | < 1
+steady              | {boundary: free, record: [everything]} | boundary: 'free'; allowed: displacement, stress \
+     | record.0: 'everything'; allowed: fronts, fields, samples
+steady              | {damping_ratio: [-0.1], gamma: [0.0], left: [.nan]} \
+     | damping_ratio.0: -0.1; allowed: a number >= 0 | gamma.0: 0.0; allowed: a number > 0 \
+     | left.0: nan; allowed: a finite number
+presets.paper       | {dx: -0.1, order: 9, coarser: [2.0]} | dx: -0.1; allowed: a number > 0 \
+     | order: 9; allowed: a whole number from 3 to 8 | coarser: [2.0]; allowed: two different factors
+measure.share       | .inf | measure.share: inf | a finite number
+measure.share       | 1.5 | measure.share: 1.5 | > 0 and < 1
+steady              | {gamma: [], left: [0.5, 0.5], chunks: 0} \
+     | gamma: []; allowed: a list of different numbers > 0, at least one \
+     | left: [0.5, 0.5]; allowed: a list of different | chunks: 0; allowed: a whole number from 1 to 1000
+steady.duration.time | 0.0 | duration.time: 0.0 | > 0
+steady.record       | [fields] | record: ['fields'] | a list of fronts (always
+accuracy            | 0.5 | accuracy: 0.5 | from 0.0001 to 0.1
+accuracy            | 1.0e-7 | accuracy: 1e-07 | from 0.0001 to 0.1
+measure.front_window | 1.0e-6 | measure.front_window: 1e-06 | >= 0.05 and < 1
+simulations.steady_stress.profiles | [{left: -1.0, right: 0.0}, {left: -1.0, right: 0.0}] | different
+steady.chunks       | 1001 | chunks: 1001 | from 1 to 1000
+steady.chunks       | 13 | displacement.chunks: 13 | the number of runs, 12
+steady              | {gamma: [1.0e+300]} | steady_displacement
+steady.gamma        | [1.0e+200] | steady_displacement.gamma: 1e+200
+steady.gama         | null | steady_displacement.gama: null | did you mean 'gamma'
+simulations.steady_displacment | null | steady_displacment: null | did you mean 'steady_displacement'
+simulations.steady_displacement | null | steady_displacement: null | what is shipped stays
+preset              | null | preset: missing | null removes a key | draft, paper, reference
+presets.paper.dx    | null | presets.paper.dx: missing | null removes a key
+steady.gamma        | [null] | gamma.0: None | a number > 0
+scenes.barier       | null | scenes.barier: null | did you mean 'barrier'
+published.front_speed.quantity | front_speed_rigt | 'front_speed_rigt' | did you mean 'front_speed_right'
+ | simulations: {space_time_displacement: {record: [fronts], samples: null}} \
+     | published.velocity_displacement.quantity: 'largest_velocity' | this takes record: [fronts, fields]
+level.samples       | {times: 2, positions: 1, extent: 0.0} | samples: given, but not recorded | samples in record
+springs             | {gamma: [0.5], record: [fronts, samples]} | springs.samples: missing
+springs             | {} | springs.gamma: missing
+springs             | {gamma: [0.5], left: null} | springs.left, right: missing
+stress.gamma        | [0.5] | space_time_stress.gamma: [0.5] | left out under
+level.profiles      | [{left: 0.5, right: 0.5}] | level.profiles | one or the other
+steady.beta         | [0.001] | damping_ratio | one or the other
+level               | {dx: [0.1], spacing: {scale: 2.0}} | level.dx | spacing | one or the other
+level.spacing       | {fixed: 0.1, scale: 2.0} | level.spacing.fixed: given with others | alone
+steady.duration     | {half_periods: 3.0} | one of time
+held                | {right: [0.0], duration: {half_periods: 1.0}} | duration.half_periods | displacement
+held                | {right: [0.2], duration: {balance_distances: 2.0}} | but right: 0.2 | allowed: 0
+steady.duration     | {time: null, balance_distances: 2.0} | balance_distances: 2.0 times |x_minus|, but right: 0.2
+figures.fig07_damage_zone.stiffness_ratios | {from: 2.0} | stiffness_ratios.to: 1.0 | > from = 2
+ | {accuracy: 1.0e-2, model: {scheme: fixed_step}} | model.scheme: 'fixed_step' | 'localised' where accuracy is given
+ | {accuracy: 1.0e-2, scenes: {barrier: {scheme: fixed_step}}} | barrier.scheme: 'fixed_step' | 'localised' where
+ | {accuracy: 1.0e-2, simulations: {steady_displacement: {rate_strengthening: [0.2]}}} \
+     | steady_displacement.rate_strengthening: [0.2] | allowed: 0 where accuracy is given
+ | {accuracy: 1.0e-2, simulations: {steady_displacement: {damping_ratio: [3.0]}}} | damping_ratio: 3.0 | <= 1
+profile | {profiles: [{left: 0.5, right: 0.5, peak: 0.9}]} | profile.peak: 0.9 | at most 0.9 (dx | reaches 1 somewhere
+profile | {profiles: [{left: -0.2, right: 0.0, bumps: [[-3.0, -0.8, 0.7]]}]} | peak: 1, | at most 0.9999178 | reaches 1
+profile | {profiles: [{left: 0, right: 0, peak: 0, bumps: [[0.003, 1, 1.0e-4]]}]} | profile.peak: 0, | reaches 1
+ | simulations: {burridge_knopoff_stress: {width: [0.5]}} | prestress.width: 0.5 | >= dx = 1
+steady              | {max_step: 3.0} | max_step: 3.0 | stability bound
+level               | {width: [0.3], dx: [0.1]} | prestress.width: 0.3 | 4 times coarser of the grid study
+springs             | {gamma: [1.0], left: [0.1], dx: [0.5]} | blocks: 8, | at least 4 blocks: a smaller dx
+scenes.barrier.peak | 0.9 | scenes.barrier.peak: 0.9 | reaches 1
+scenes.barrier.gama | 0.3 | did you mean 'gamma'
+scenes.bariere      | {gamma: 0.3} | scenes.bariere.boundary | did you mean 'barrier'
+scenes.barrier.chunks | 2 | scenes.barrier.chunks: unknown key
+scenes.steady_displacement | <scene> | also the name of a simulation | another name
+scenes.index        | <scene> | another file of that name is there | neither index nor SCENE_numbers
+scenes.barrier_numbers | <scene> | another file of that name is there | neither index nor SCENE_numbers
+scenes.barrier.title | ' ' | title: ' ' | not blank
+scenes.barrier.title | "\a bell" | title: '\x07 bell' | printable
+scenes.barrier.title | "a\nb" | title: 'a\nb' | one line
+scenes.barrier      | {beta: 0.1, damping_ratio: 0.1} | barrier.beta | one or the
+figures.fig07_damage_zone.stiffness_ratios | {from: 5.0e-324, to: 1.0e+308, count: 1000000000} \
+     | from: 5e-324; allowed: a number from 1e-6 to 1e6 | to: 1e+308 | count: 1000000000 | from 2 to 10000
+claims.pulse_slip.kind | exact | claims.pulse_slip.kind: unknown key
+figures.fig01_system_sketch.thickness | 1.0e+308 | thickness: 1e+308 | 0.01 to 100
+ | simulations: {123: {boundary: stress}} | simulations: '123' | begins with a letter
+ | scenes: {../barrier: {}} | '../barrier' | lower-case letters
+ | simulations: {../../etc/passwd: {}} | '../../etc/passwd' | lower-case letters
+ | simulations: {$(touch written): {}} | '$(touch written)' | lower-case letters
+ | simulations: {"a\nb": {}} | 'a\nb' | lower-case letters
+ | simulations: {<long>: {}} | 'aaaa | ...
+preset              | '`touch written`' | preset: '`touch written`' | draft, paper, reference
+preset              | "paper\ndraft" | 'paper\ndraft' | draft, paper, reference
+preset              | "draft'" | preset: "draft'" | did you mean 'draft'
+"""
 
-# Sweeps that take too much: overlay, simulation, and what the refusal of its job names.
-EXPENSIVE = {
-    "fronts that outrun the waves": (
-        OWN_STRESS.replace("-1.0", "0.9999")
-        + "right: same, damping_ratio: [1.0], dx: [0.01], duration: {time: 60.0}}}",
-        "mine", "block updates; allowed: 4e+13",
-    ),
-    "a nucleation of a million layers": (OWN_LEVEL + "width: [1.0e+9], dx: [0.01]}}", "mine", "block updates"),
-    "damping of ten thousand": (OWN_LEVEL + "damping_ratio: [1.0e+4], dx: [0.001]}}", "mine", "block updates"),
-    "too many runs": (
-        STEADY + f"{{left: {MANY}, gamma: {MANY}}}}}", "steady_displacement", "1.92e+06 runs; allowed: 2e+04",
-    ),
-    "too many hours": (STEADY + "{duration: {time: 1.0e+6}}}", "steady_displacement", "block updates"),
-    "too much memory": (
-        "simulations: {space_time_stress: {samples: {times: 100000, positions: 100000}}}", "space_time_stress", "bytes",
-    ),
-    "too many runs for the chunks": (
-        STEADY + f"{{chunks: 3, left: {MANY}, gamma: {MANY}}}}}", "steady_displacement",
-        "6.4e+05 runs in each of 3 chunks; allowed: 2e+04",
-    ),
-    "too many runs in all chunks": (
-        STEADY + f"{{chunks: 1000, left: {MANY}, gamma: {MANY}}}}}", "steady_displacement",
-        "1.92e+03 runs in each of 1000 chunks; allowed: 1e+03",
-    ),
-}  # fmt: skip
+# Sweeps that take too much, and what the refusal of their job names.
+EXPENSIVE = """
+held                | {left: [0.9999], right: same, damping_ratio: [1.0], dx: [0.01], duration: {time: 60.0}} \
+     | block updates; allowed: 4e+13
+level               | {width: [1.0e+9], dx: [0.01]} | block updates
+level               | {damping_ratio: [1.0e+4], dx: [0.001]} | block updates
+steady              | {left: <many>, gamma: <many>} | 1.92e+06 runs; allowed: 2e+04
+steady              | {duration: {time: 1.0e+6}} | block updates
+stress              | {samples: {times: 100000, positions: 100000}} | bytes
+steady              | {chunks: 3, left: <many>, gamma: <many>} | 6.4e+05 runs in each of 3 chunks; allowed: 2e+04
+steady              | {chunks: 1000, left: <many>, gamma: <many>} | 1.92e+03 runs in each of 1000 chunks; allowed: 1e+03
+"""
+
+# What the command line may not say.
+SAID = """
+allow_large         | maybe | 'maybe'; allowed: true or false
+allow_large         | 2     | 2; allowed: true or false
+model.damping_ratio | 1:30  | '1:30'; allowed: a number >= 0
+model.damping_ratio | much  | 'much'; allowed: a number >= 0
+preset              | &a    | '&a'; allowed: a plain value
+preset              | draft' | "draft'" (did you mean 'draft'?); allowed: draft, paper, reference
+"""
 
 # Files that are no overlay at all.
-FILES = {
-    "text": (b"just some text\n", ["'just some text'", "a mapping of keys"]),
-    "list": (b"- preset\n- draft\n", ["['preset', 'draft']", "a mapping of keys"]),
-    "number": (b"42\n", ["42", "a mapping of keys"]),
-    "empty": (b"# nothing\n", ["None", "a mapping of keys"]),
-    "nothing for a number": (b"model: {damping_ratio: }", ["line 1", "no value", "null, which removes the key"]),
-    "broken": (b"preset: [draft\n", ["not YAML", "line 2"]),
-    "tabs": (b"simulations:\n\tmine: 1\n", ["not YAML", "line 2"]),
-    "binary": (b"\x89PNG\r\n\x1a\n\xff\xfe", ["not text"]),
-    "python tag": (b"preset: !!python/object/apply:os.system [touch written]\n", ["line 1", "no tags"]),
-    "own tag": (b"preset: !preset draft\n", ["line 1", "'!preset'", "no tags"]),
-    "alias": (b"model: &a {release: total}\nmeasure: *a\n", ["line 1", "anchor or alias"]),
-    "template": (b"__use_yte__: true\n?if True:\n  preset: draft\n", ["a template"]),
-    "duplicate key": (b"preset: draft\npreset: paper\n", ["line 2", 'duplicate key "preset"', "each key once"]),
-    "a collection as a key": (b"{[1, 2]: 3}", ["line 1", "a collection as a key", "text"]),
-    "two documents": (b"preset: draft\n---\npreset: paper\n", ["line 2", "another document"]),
-    "deep": (b"[" * 5000, ["nested too deeply"]),
-    "huge": (b"# " + b"x" * LARGEST_FILE, [f"more than {LARGEST_FILE} bytes"]),
-    "laughs": (
-        b"a0: &a0 [x]\n" + b"".join(b"a%d: &a%d [%s*a0]\n" % (i, i, b"*a%d, " % (i - 1) * 10) for i in range(1, 30)),
-        ["anchor or alias"],
-    ),
-}  # fmt: skip
+LAUGHS = b"".join(b"a%d: &a%d [%s*a0]\n" % (i, i, b"*a%d, " % (i - 1) * 10) for i in range(1, 30))
+FILES = [
+    (b"just some text\n", "'just some text'", "a mapping of keys"),
+    (b"- preset\n- draft\n", "['preset', 'draft']", "a mapping of keys"),
+    (b"42\n", "42", "a mapping of keys"),
+    (b"# nothing\n", "None", "a mapping of keys"),
+    (b"model: {damping_ratio: }", "line 1", "no value", "null, which removes the key"),
+    (b"preset: [draft\n", "not YAML", "line 2"),
+    (b"simulations:\n\tmine: 1\n", "not YAML", "line 2"),
+    (b"\x89PNG\r\n\x1a\n\xff\xfe", "not text"),
+    (b"preset: !!python/object/apply:os.system [touch written]\n", "line 1", "no tags"),
+    (b"preset: !preset draft\n", "line 1", "'!preset'", "no tags"),
+    (b"model: &a {release: total}\nmeasure: *a\n", "line 1", "anchor or alias"),
+    (b"__use_yte__: true\n?if True:\n  preset: draft\n", "a template"),
+    (b"preset: draft\npreset: paper\n", "line 2", 'duplicate key "preset"', "each key once"),
+    (b"{[1, 2]: 3}", "line 1", "a collection as a key", "text"),
+    (b"preset: draft\n---\npreset: paper\n", "line 2", "another document"),
+    (b"[" * 1000, "nested too deeply"),
+    (b"# " + b"x" * LARGEST_FILE, f"more than {LARGEST_FILE} bytes"),
+    (b"a0: &a0 [x]\n" + LAUGHS, "anchor or alias"),
+]
 
-SWITCHES = {1: True, "yes": True, "on": True, 0: False, "no": False, "False": False}
+# Sweeps that are altered, with a key that is then gone.
+ALTERED = """
+steady              | {damping_ratio: null, beta: [0.001]} | damping_ratio
+steady              | {boundary: stress, gamma: null, left: [0.3], right: same} | gamma
+steady              | {duration: {time: null, half_periods: 3.0}}
+steady              | {scheme: continuum, spacing: null}
+simulations.steady_stress | {profiles: null, left: [-0.5], right: [0.0]} | profiles
+"""
+
+
+def rows(table: str) -> list[list[str]]:
+    """The cells of each line that is not empty, the first with the whole key, and what is in angles written out."""
+    for name, text in {"\\\n": "", "<scene>": SCENE, "<many>": MANY, "<long>": "a" * 900}.items():
+        table = table.replace(name, text)
+    cells = [[cell.strip() for cell in f" {line}".split(" | ")] for line in table.splitlines() if line]
+    return [[re.sub(r"^\w+", lambda key: SHORT.get(key[0], key[0]), row[0]), *row[1:]] for row in cells]
+
+
+def of_rows(table: str):
+    return pytest.mark.parametrize("row", rows(table), ids=lambda row: f"{row[0]} {row[1]}"[:60])
 
 
 @pytest.fixture(scope="module")
@@ -291,6 +217,20 @@ def shipped(project) -> dict:
     config = read_overlay(project / "config/config.yaml")
     config["simulations"] = {name: config["simulations"][name] for name in KEPT}
     return config
+
+
+def overlaid(tmp_path, text: str) -> dict:
+    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    return read_overlay(tmp_path / "mine.yaml")
+
+
+def read_row(shipped, tmp_path, key: str, value: str):
+    """The configuration with a value at a key."""
+    added = [
+        f"simulations: {{{name}: {{{text}}}}}" for name, text in ADDED.items() if f"simulations.{name}" in key
+    ]
+    text = ": {".join(key.split(".")) + f": {value}" + "}" * key.count(".") if key else value
+    return read_config(shipped, [overlaid(tmp_path, overlay) for overlay in (*added, text)])
 
 
 def assert_one_clear_message(message: str, named: list[str]) -> None:
@@ -301,22 +241,13 @@ def assert_one_clear_message(message: str, named: list[str]) -> None:
     assert len(message.splitlines()) <= 6 and "Traceback" not in message
 
 
-def test_what_is_shipped_passes_here_too(shipped):
-    read_config(shipped)
-
-
-def overlaid(tmp_path, text: str) -> dict:
-    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
-    return read_overlay(tmp_path / "mine.yaml")
-
-
-@pytest.mark.parametrize("case", CASES)
-def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, case):
-    text, named = CASES[case]
+@of_rows(MISTAKES)
+def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, row):
+    key, value, *named = row
     with pytest.raises(ConfigError) as refusal, warnings.catch_warnings():
         warnings.simplefilter("error")
-        read_config(shipped, [overlaid(tmp_path, text)])
-    assert_one_clear_message(str(refusal.value), named)
+        read_row(shipped, tmp_path, key, value)
+    assert_one_clear_message(str(refusal.value), [key, *named])
     assert [path.name for path in tmp_path.iterdir()] == ["mine.yaml"]
 
 
@@ -325,10 +256,10 @@ def bound_and_chunks(config, name: str):
     return bound_of_sweep(resolve(sweep, config.model, accuracy_of(config)), sweep.chunks), sweep.chunks
 
 
-@pytest.mark.parametrize("case", EXPENSIVE)
-def test_a_sweep_that_takes_too_much_is_refused(shipped, tmp_path, case):
-    text, name, said = EXPENSIVE[case]
-    bound, chunks = bound_and_chunks(read_config(shipped, [overlaid(tmp_path, text)]), name)
+@of_rows(EXPENSIVE)
+def test_a_sweep_that_takes_too_much_is_refused(shipped, tmp_path, row):
+    key, value, said = row
+    bound, chunks = bound_and_chunks(read_row(shipped, tmp_path, key, value), key.split(".")[1])
     reason = bound.exceeded(chunks)
     assert said in reason and HOW_TO_GO_ON in reason and "\n" not in reason
 
@@ -343,9 +274,9 @@ def test_nothing_that_is_shipped_takes_too_much(project, preset):
     assert max(bound.bytes for bound in bounds) < 0.5 * 4e9
 
 
-@pytest.mark.parametrize("case", FILES)
-def test_a_file_that_is_no_overlay_is_refused(tmp_path, case, capsys):
-    content, named = FILES[case]
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file[1])
+def test_a_file_that_is_no_overlay_is_refused(tmp_path, file, capsys):
+    content, *named = file
     (tmp_path / "mine.yaml").write_bytes(content)
     assert main([str(tmp_path / "mine.yaml")]) == 1
     heading, message = capsys.readouterr().err.split("\n", 1)
@@ -353,14 +284,14 @@ def test_a_file_that_is_no_overlay_is_refused(tmp_path, case, capsys):
     assert_one_clear_message(message, [f"{tmp_path}/mine.yaml: ", *named])
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [("1", 1), ("-2.5", -2.5), (".5", 0.5), ("1e-3", 1e-3), ("0x10", 16), ("true", True), ("null", None),
-     ("010", 10), ("'010'", "010"), ("yes", "yes"), ("total", "total"), ("1:30", "1:30"), ("1.", 1.0)],
-)  # fmt: skip
-def test_scalars_are_what_yaml_says(tmp_path, text, value):
-    read = overlaid(tmp_path, f"key: {text}\n")["key"]
-    assert read == value and type(read) is type(value)
+def test_scalars_are_what_yaml_says(tmp_path):
+    scalars = {
+        "1": 1, "-2.5": -2.5, ".5": 0.5, "1e-3": 1e-3, "0x10": 16, "true": True, "null": None, "010": 10,
+        "'010'": "010", "yes": "yes", "total": "total", "1:30": "1:30", "1.": 1.0,
+    }  # fmt: skip
+    for text, value in scalars.items():
+        read = overlaid(tmp_path, f"key: {text}\n")["key"]
+        assert read == value and type(read) is type(value)
 
 
 def test_json_is_read_as_json(tmp_path):
@@ -368,56 +299,34 @@ def test_json_is_read_as_json(tmp_path):
 
 
 def test_the_command_line_sets_nested_values(shipped):
-    given = {
-        "model": {"damping_ratio": "0.2", "release": "elastic"},
-        "allow_large": "true",
-        "accuracy": "1e-2",
-    }
-    config = read_config(shipped, (), given)
+    nested = {"damping_ratio": "0.2", "release": "elastic"}
+    config = read_config(shipped, (), {"model": nested, "allow_large": "true", "accuracy": "1e-2"})
     assert (config.model.damping_ratio, config.model.release) == (0.2, "elastic")
     assert config.model.scheme == shipped["model"]["scheme"]
     assert config.allow_large is True and config.accuracy == 0.01
 
 
-@pytest.mark.parametrize("said", SWITCHES)
-def test_words_for_a_switch_on_the_command_line(shipped, said):
-    assert read_config(shipped, (), {"allow_large": said}, every_run=False).allow_large is SWITCHES[said]
+def test_words_for_a_switch_on_the_command_line(shipped):
+    for said, meant in {1: True, "yes": True, "on": True, 0: False, "no": False, "False": False}.items():
+        assert read_config(shipped, (), {"allow_large": said}, every_run=False).allow_large is meant
 
 
-@pytest.mark.parametrize(
-    ("given", "named"),
-    [
-        ({"allow_large": "maybe"}, "allow_large: 'maybe'; allowed: true or false"),
-        ({"allow_large": 2}, "allow_large: 2; allowed: true or false"),
-        ({"model": {"damping_ratio": "1:30"}}, "model.damping_ratio: '1:30'; allowed: a number >= 0"),
-        ({"preset": "&a"}, "preset: '&a'; allowed: a plain value"),
-        (
-            {"preset": "draft'"},
-            "preset: \"draft'\" (did you mean 'draft'?); allowed: draft, paper, reference",
-        ),
-        ({"model": {"damping_ratio": "much"}}, "model.damping_ratio: 'much'; allowed: a number >= 0"),
-    ],
-)
-def test_what_the_command_line_may_not_say(shipped, given, named):
-    with pytest.raises(ConfigError) as refusal:
+@of_rows(SAID)
+def test_what_the_command_line_may_not_say(shipped, row):
+    key, given, named = row
+    for part in reversed(key.split(".")):
+        given = {part: given}
+    with pytest.raises(ConfigError, match=re.escape(f"{key}: {named}")):
         read_config(shipped, (), given)
-    assert named in str(refusal.value)
 
 
-@pytest.mark.parametrize(
-    ("name", "change", "gone"),
-    [
-        ("steady_displacement", "{damping_ratio: null, beta: [0.001]}", "damping_ratio"),
-        ("steady_displacement", "{boundary: stress, gamma: null, left: [0.3], right: same}", "gamma"),
-        ("steady_displacement", "{duration: {time: null, half_periods: 3.0}}", ""),
-        ("steady_stress", "{profiles: null, left: [-0.5], right: [0.0]}", "profiles"),
-        ("steady_displacement", "{scheme: continuum, spacing: null}", ""),
-    ],
-)
-def test_a_shipped_sweep_can_be_altered(shipped, tmp_path, name, change, gone):
-    config = read_config(shipped, [overlaid(tmp_path, f"simulations: {{{name}: {change}}}")])
-    assert gone not in config.simulations[name].given()
-    assert expand(resolve(config.simulations[name], config.model, accuracy_of(config)))[0]
+@of_rows(ALTERED)
+def test_a_shipped_sweep_can_be_altered(shipped, tmp_path, row):
+    key, value, *gone = row
+    config = read_row(shipped, tmp_path, key, value)
+    simulation = config.simulations[key.split(".")[1]]
+    assert not {*gone} & {*simulation.given()}
+    assert expand(resolve(simulation, config.model, accuracy_of(config)))[0]
 
 
 def test_scenes_are_simulations_once_read(project):
@@ -426,6 +335,6 @@ def test_scenes_are_simulations_once_read(project):
     assert [*simulations] == [*config.simulations, *config.scenes]
     for name, scene in config.scenes.items():
         (run,), (samples,) = expand(resolve(simulations[name], config.model, accuracy_of(config)))
-        found = (run.boundary, run.duration, run.prestress.left)
-        assert found == (scene.boundary, scene.duration, scene.left)
+        expected = (scene.boundary, scene.duration, scene.left)
+        assert (run.boundary, run.duration, run.prestress.left) == expected
         assert samples is not None and {*simulations[name].record} == {"fronts", "fields", "samples"}
