@@ -6,8 +6,6 @@ spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1, gamma W^2 = 0.001 to 64 under a 
 -10 under a stress boundary. What is promised, and what is not, is in `slippulse.measure.promise`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import lru_cache
@@ -21,7 +19,6 @@ from ..theory.front_law import front_speed
 from ..theory.pulse import pulse_behind_front
 from .expand import promise_of, runs
 
-SMALLEST, LARGEST = 1e-4, 0.1
 # At beta/dx = 10 the longest stable step alone errs by 3e-3 in the front speed, at any spacing, which a grid study does
 # not see; the constants below were found up to 1.
 STRONGEST_DAMPING = 1.0
@@ -76,7 +73,7 @@ def settings_for(
     Raises ValueError: one line naming the key, the value and what is allowed.
     Source: module docstring; the numbers that are covered are listed in `slippulse.measure.promise`.
     """
-    check_number("accuracy", accuracy, at_least=SMALLEST, at_most=LARGEST)
+    check_number("accuracy", accuracy, at_least=1e-4, at_most=0.1)
     check_choice("release", release, RELEASES)
     check_kind("prestress", prestress, Prestress)
     if not isinstance(fields, bool):

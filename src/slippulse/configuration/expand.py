@@ -1,7 +1,5 @@
 """Resolved simulations, expanded into scenes. Plain builtins in, scenes out; every job imports this, and no more."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product

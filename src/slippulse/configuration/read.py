@@ -6,8 +6,6 @@ Files are YAML 1.2 without tags, anchors, templates or keys given twice. Snakema
 evaluate expressions in it; a file that passes here holds none.
 """
 
-from __future__ import annotations
-
 import json
 import re
 import sys

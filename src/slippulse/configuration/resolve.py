@@ -1,12 +1,9 @@
-"""What a rule passes to its job: a simulation, or a scene by name, with everything that its data depend on; and what of
-it is refused before any of it runs: scenes that are none, and simulations that may take too much.
+"""What a rule passes to its job: a simulation with everything that its data depend on; and what is refused before it.
 
 A front goes at most at the speed that the highest pre-stress level drives it at, and what it has passed slides at most
 until the end. So the work of a run is at most its steps times the blocks that its fronts can reach. What is measured in
 the shipped sweeps is at most 0.43 of that; undamped blocks that slip again and again may take twice as much.
 """
-
-from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
@@ -22,10 +19,6 @@ from .accuracy import ORDER, STEP, promised
 from .expand import expand, run_count
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
 
-# Samples of a map and of an animation.
-TIMES, POSITIONS = 241, 801
-# Numbers of a scene that are lists of a simulation.
-LISTED = ("gamma", "damping_ratio", "beta", "dx", "rate_strengthening")
 # Below this fraction of resolved_blocks in every run a sweep says nothing about the continuum.
 HARDLY_RESOLVED = 0.5
 
@@ -49,9 +42,8 @@ START_MINUTES, START_MEGABYTES = 10, 1000
 def accuracy_of(config: Configuration) -> dict[str, Any]:
     """The preset that a configuration names; with `accuracy` another step and order, and the promise."""
     preset = config.presets[config.preset].plain()
-    if config.accuracy is None:
-        return preset
-    return preset | {"max_step": STEP, "order": ORDER, "promise": config.accuracy}
+    promise = {"max_step": STEP, "order": ORDER, "promise": config.accuracy}
+    return preset if config.accuracy is None else preset | promise
 
 
 def resolve(
@@ -93,10 +85,12 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     given = scene.plain()
     del given["title"]
     profile = {key: given.pop(key) for key in Profile.model_fields}
-    given |= {key: [given[key]] for key in LISTED if key in given}
+    listed = ("gamma", "damping_ratio", "beta", "dx", "rate_strengthening")
+    given |= {key: [given[key]] for key in listed if key in given}
     given["profiles"], given["duration"] = [profile], {"time": scene.duration}
     given["record"] = ["fronts", "fields", "samples"]
-    given["samples"] = {"times": TIMES, "positions": POSITIONS, "extent": extent}
+    # Of a map and of an animation.
+    given["samples"] = {"times": 241, "positions": 801, "extent": extent}
     return Simulation.model_validate(given)
 
 
@@ -114,13 +108,11 @@ def simulation_problems(config: Configuration) -> list[str]:
             sweep = resolve(simulation, config.model, accuracy)
             if simulation.chunks > (count := run_count(sweep)):
                 raise ValueError(f"chunks: {simulation.chunks}; allowed: up to the number of runs, {count}")
-            scenes, _ = expand(promised(corners(sweep)))
-            _check_runs(scenes)
+            _check_runs(expand(promised(corners(sweep)))[0])
             where = f" (on the lattice {coarsest:g} times coarser of the grid study)"
             expand(promised(corners(sweep | {"coarser": coarsest})))
         except ArithmeticError:
-            found = "a number too large or too small to compute with"
-            problems.append(f"{key}: {found}; allowed: numbers near 1")
+            problems.append(f"{key}: a number too large or small to compute with; allowed: numbers near 1")
         except ValueError as error:
             problems.append(f"{key}.{error}{where}")
     return problems

@@ -4,8 +4,6 @@ From these come the refusals (`read`), and through docs/describe.py the JSON Sch
 tables of config/README.md. What a key says of a mapping is not said again of its class.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Self, TypeVar
 
@@ -66,11 +64,9 @@ Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
-Count = Annotated[int, Field(ge=1)]
-Boundary = Literal["displacement", "stress"]
+Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
-Record = Literal["fronts", "fields", "samples"]
 # Rows of numbers, which YAML has as lists.
 Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, float], Field(strict=False)]
@@ -125,9 +121,11 @@ class Recording(Block):
 class Physics(Block):
     """What a simulation and a scene share."""
 
-    boundary: Boundary = key("held on top: displacement (Gamma = 1) or stress (Gamma = 0)")
+    boundary: Literal["displacement", "stress"] = key(
+        "held on top: displacement (Gamma = 1) or stress (Gamma = 0)"
+    )
     scheme: Scheme | None = key("by default the model's", None)
-    resolved_blocks: Count | None = key("by default the model's", None)
+    resolved_blocks: int | None = key("by default the model's", None, ge=1)
     max_step: Positive | None = key("by default the preset's, cut to the bound [dx]", None)
 
     def alone(self, key: str, *others: str) -> None:
@@ -169,7 +167,7 @@ class Simulation(Physics):
         "by default the model's", None, "total, elastic, or a list of both"
     )
     friction_ratio: NonNegative | None = key("by default the model's", None)
-    record: Distinct[Record] = key(
+    record: Distinct[Literal["fronts", "fields", "samples"]] = key(
         "what is kept: release and stick times; slip, velocity, acceleration at the end; samples",
         words=RECORDED,
     )
@@ -228,7 +226,7 @@ class Model(Block):
         " `continuum`: the exact solution of the continuum limit, to which `max_step` and `order` mean nothing"
     )
     friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): sliding back, beyond -(1 + 2 of it), is flagged")
-    resolved_blocks: Count = key("pulses (under `stress` Gaussians) of fewer blocks are flagged unresolved")
+    resolved_blocks: int = key("pulses (Gaussians, under `stress`) of fewer blocks are flagged", ge=1)
 
 
 class Measure(Block):
@@ -242,9 +240,6 @@ class Measure(Block):
 class Sketch(Block):
     thickness: float = key("of the layer in the sketch [H]", ge=0.01, le=100.0)
     strip_width: float = key("of the integrated strip in the sketch [H]", ge=0.01, le=2.0)
-
-
-Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 
 class Steps(Block):
