@@ -20,13 +20,13 @@ from slippulse.steps.targets import selected
 
 # A claim that a choice decides, and one without a choice, as in claims.json.
 CLAIMS = [
-    {"id": "estimate", "kind": "approximate", "verdict": "depends on an open choice", "tolerance": 0.2,
-     "choice": "release", "deviation": 0.24, "choices": [
+    {"id": "estimate", "label": "an estimate", "kind": "approximate",
+     "verdict": "depends on an open choice", "tolerance": 0.2, "choice": "release", "deviation": 0.24, "choices": [
          {"release": "total", "deviation": 0.24, "solution": "lattice"},
          {"release": "elastic", "deviation": 0.16, "solution": "exact"}]},
-    {"id": "equation", "kind": "exact", "verdict": "reproduced", "tolerance": 0.01, "choice": "", "deviation": 1e-9,
-     "choices": []},
-    {"id": "position_of_arrest", "kind": "approximate", "verdict": "reproduced", "tolerance": 0.2,
+    {"id": "equation", "label": "an equation", "kind": "exact", "verdict": "reproduced", "tolerance": 0.01,
+     "choice": "", "deviation": 1e-9, "choices": []},
+    {"id": "position", "label": "a position", "kind": "approximate", "verdict": "reproduced", "tolerance": 0.2,
      "choice": "damping_ratio", "deviation": 0.01, "choices": [
          {"release": "total", "deviation": 0.04, "solution": "lattice"}]},
 ]  # fmt: skip

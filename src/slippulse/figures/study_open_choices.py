@@ -36,7 +36,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 
     Returns
     -------
-    DataFrame of id, verdict, tolerance, deviation, over (deviation over tolerance), choice (that matters most),
+    DataFrame of id, label, verdict, tolerance, deviation, over (deviation over tolerance), choice (that matters most),
     release (rule) and solution (exact or lattice)
     """
     rows = []
@@ -44,7 +44,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
         if claim["kind"] in NUMERIC and claim["tolerance"]:
             for found in claim["choices"] or [{"deviation": claim["deviation"]}]:
                 rows.append(
-                    {name: claim[name] for name in ("id", "verdict", "tolerance", "choice")}
+                    {name: claim[name] for name in ("id", "label", "verdict", "tolerance", "choice")}
                     | {"deviation": found["deviation"], "release": found.get("release", "")}
                     | {"solution": found.get("solution", "lattice")}
                 )
@@ -52,28 +52,22 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
-def _name(id: str) -> str:
-    """A claim as the texts call it."""
-    quantity, _, boundary = id.partition("_trans_")
-    return rf"${quantity}_\mathrm{{trans}}$, {boundary} held" if boundary else id.replace("_", " ")
-
-
 def plot(table: pd.DataFrame) -> Figure:
     """Deviation over tolerance, a claim a row; those that depend on a choice above."""
     table = table.fillna({"choice": "", "release": ""})
-    farthest = table.groupby("id")["over"].max().sort_values()
+    farthest = table.groupby(["id", "label"])["over"].max().sort_values()
     figure = new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
     axes = figure.subplots()
     axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8, gid="tolerance")
-    for place, id in enumerate(farthest.index):
+    for position, (id, _) in enumerate(farthest.index):
         for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):
             look = {"color": LOOKS.get(str(choice), LOOKS[""])["color"]} | MARKERS[str(solution)]
             over = np.maximum(rows["over"], LEAST)
-            height = place + rows["release"].map(APART).fillna(0.0)
+            height = position + rows["release"].map(APART).fillna(0.0)
             axes.plot(over, height, linestyle="none", gid=f"claim {id}", **look)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
-    axes.set_yticks(range(len(farthest)), [_name(id) for id in farthest.index], fontsize=7.0)
+    axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)
     figure.supylabel("claim", fontsize=9.0)
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
