@@ -102,7 +102,7 @@ def test_findings_and_further_numbers_are_asked_for_by_name():
     found = [
         {"id": id, "numbers": numbers, "text": ""} for id, numbers in {"ours": {"gap": 0.5}, "no": {}}.items()
     ]
-    further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "else": 1.0}
+    further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
     ledger = Ledger([CLAIM | {"further": further}], found)
     assert ledger.listed("one", "apart") == "3 arrested; 2 growing"
     assert ledger.found("ours").gap == 0.5 and ledger.found("no") is None
