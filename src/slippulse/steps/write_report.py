@@ -19,7 +19,7 @@ NEEDS = {
     "measured": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
     "predicted": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
-    "studies": ["derivations", "extremes"],
+    "studies": ["arrest_path", "derivations", "extremes"],
 }
 HEAD = (
     "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"

@@ -13,8 +13,8 @@ from ..theory.arrest import ArrestingCrack
 # The simulation whose parameters the path has.
 NEEDS = {"sweeps": ["arrest"]}
 
-# What is still to go, in units of |x_minus|: denser towards the end, which takes for ever.
-TO_GO = np.geomspace(1.0, 1e-4, 200)[1:]
+# What is still to go, in units of |x_minus|: denser towards the end, which takes for ever; last a value for the text.
+TO_GO = np.append(np.geomspace(1.0, 1e-4, 200)[1:], 1e-6)
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
