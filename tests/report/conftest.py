@@ -1,7 +1,5 @@
 """A report made from a small invented run: a ledger, tables and figures of the right form, executed and rendered."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from types import SimpleNamespace

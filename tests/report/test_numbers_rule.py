@@ -7,8 +7,6 @@ in words.
 In code and in expressions, whole numbers below ten (counts of digits, indices, factors) and no others.
 """
 
-from __future__ import annotations
-
 import io
 import re
 import tokenize

@@ -1,7 +1,5 @@
 """The page of results: structure, keyboard, alternative texts, links, nothing from outside. No browser needed."""
 
-from __future__ import annotations
-
 import json
 import re
 from html.parser import HTMLParser

@@ -1,7 +1,5 @@
 """The report as a reader gets it: whole, self-contained, the same bytes each time, with the numbers of its run."""
 
-from __future__ import annotations
-
 import copy
 import json
 import re

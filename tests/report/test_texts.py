@@ -1,7 +1,5 @@
 """The texts of the report name only what there is."""
 
-from __future__ import annotations
-
 import re
 from functools import partial
 

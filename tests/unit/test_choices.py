@@ -1,7 +1,5 @@
 """One verdict over every choice that the paper leaves open, and where it would change."""
 
-from __future__ import annotations
-
 import pytest
 import yaml
 

@@ -1,7 +1,5 @@
 """One definition of the keys: the JSON Schema and the tables of the manual are what follows from it."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

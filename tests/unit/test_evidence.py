@@ -1,7 +1,5 @@
 """Claims of each kind from invented tables on three lattices, and how they are written."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What texts read from the ledger: numbers by kind, counts that leave out what follows, and one sentence of why."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import pytest

@@ -1,7 +1,5 @@
 """Numbers as texts, pages and figures write them."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

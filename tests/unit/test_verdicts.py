@@ -1,7 +1,5 @@
 """The rule of each kind of claim, on made-up numbers, before anything was measured by it."""
 
-from __future__ import annotations
-
 import pytest
 
 from slippulse.claims import rules

@@ -3,8 +3,6 @@
 Which runs, and what is to hold in them, are expressions over the columns of a table (`pandas.DataFrame.eval`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 

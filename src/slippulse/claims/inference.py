@@ -1,7 +1,5 @@
 """The published space-time figure as one inference: which parameters its readings make likely."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -19,8 +17,8 @@ def curve(profile: pd.DataFrame) -> pd.DataFrame:
 
     Returns
     -------
-    DataFrame of damping_ratio, dx, tau0, gamma, their errors at that damping ratio, chi2, and one column a reading:
-    its pull, (predicted - drawn)/reading_error; cubic in the logarithm of the damping ratio
+    damping_ratio, dx, tau0, gamma, their errors, chi2, and of each reading the pull, (predicted - drawn)/reading_error;
+    cubic in the logarithm of the damping ratio
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     numbers = profile.groupby("damping_ratio")[["dx", "tau0", "gamma", "tau0_error", "gamma_error"]].first()
@@ -38,7 +36,7 @@ def likely(level: float, parameters: int = 1) -> float:
 
 
 def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
-    """What the figure says of its parameters, under each release rule and over both.
+    """What the figure says of its parameters, per release rule, for the "best" rule, and by how much chi2 differs.
 
     Parameters
     ----------
@@ -47,9 +45,8 @@ def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
 
     Returns
     -------
-    per rule and under "best" (the better rule, named by ``release``): chi2, dof, p_value, damping_ratio, dx, tau0,
-    gamma; ``regions`` of the damping ratio and of tau0 and gamma by confidence level, given the rule; pulls by reading;
-    and ``difference``, by how much chi-square of the worse rule exceeds that of the better
+    of each rule release, chi2, dof, p_value, damping_ratio, dx, tau0, gamma, pulls by reading, and regions of the
+    damping ratio, tau0 and gamma by confidence level
 
     Source: profile likelihood; the readings have independent Gaussian errors.
     """

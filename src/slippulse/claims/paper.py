@@ -1,7 +1,5 @@
 """The whole ledger: every claim with its text, and what we found beside, in the order of manuscript/claims.yaml."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
@@ -12,10 +10,10 @@ import numpy as np
 
 from ..data.numerals import number, rounded
 from ..data.prose import fill
-from . import pulses, regimes, rules, transition
+from . import pulses, rules, transition
 from .evidence import ESTIMATE, Claim, Evidence, NoRuns, evaluated
 from .inference import inference, right_panel
-from .reading import namespace, positions, why_text
+from .reading import positions, why_text
 
 # The claims about the two panels of the published figure.
 LEFT, RIGHT = "published_space_time_figure", "published_space_time_figure_right"
@@ -41,7 +39,7 @@ PREDICTED = [
 Judge = Callable[[Evidence, str], Claim]
 ROWS: dict[Judge, Collection[str]] = {
     pulses.equation: pulses.EQUATIONS,
-    regimes.always: regimes.ALWAYS,
+    pulses.always: pulses.ALWAYS,
     transition.under_displacement: ("T_trans_displacement", "L_trans_displacement"),
     transition.under_stress: ("T_trans_stress", "L_trans_stress"),
 }
@@ -52,9 +50,9 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
 
     ``readings``: numbers read off the published figure. Refused if entries and code are not about the same claims.
     """
-    evidence.assign("regimes_beyond", regimes.meet)
+    evidence.assign("regimes_beyond", pulses.meet)
     judges: dict[str, Judge] = {id: judge for judge, ids in ROWS.items() for id in ids}
-    for module in (pulses, regimes, transition):
+    for module in (pulses, transition):
         judges |= {id: getattr(module, id) for id in evidence.entries if hasattr(module, id)}
     found = {id: judge(evidence, id) for id, judge in judges.items()} | published_figure(evidence, readings)
     if odd := sorted({*evidence.entries} ^ {*found}):
@@ -141,7 +139,7 @@ def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Map
                 found |= numbers(evidence, damping_ratio, **row)
             if id in COMPUTED:
                 found |= COMPUTED[id](evidence)
-        text = fill(entry["text"], {"n": namespace(found)})
+        text = fill(entry["text"], {"n": SimpleNamespace(**found) if found else None})
         source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
         out.append({"id": id, "numbers": found, "text": text, "source": source})
     return out

@@ -1,7 +1,5 @@
 """Entries of manuscript/claims.yaml with the sentences that they test; those of claims.json as texts ask for them."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -62,11 +60,6 @@ def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> d
     }
 
 
-def namespace(numbers: Mapping[str, float | None]) -> SimpleNamespace | None:
-    """Numbers of a finding by name; None if this run has no runs for them."""
-    return SimpleNamespace(**numbers) if numbers else None
-
-
 class Ledger:
     """Claims by id, each with its fields as attributes, and findings.
 
@@ -87,8 +80,9 @@ class Ledger:
         return _known("claim", id, self.claims)
 
     def found(self, id: str) -> SimpleNamespace | None:
-        """The numbers of one finding, as `namespace`."""
-        return namespace(_known("finding", id, self.findings)["numbers"])
+        """The numbers of one finding by name; None if this run has no runs for them."""
+        numbers = _known("finding", id, self.findings)["numbers"]
+        return SimpleNamespace(**numbers) if numbers else None
 
     def measured(self, id: str) -> str:
         """Measured value, as `measured_text`."""

@@ -1,7 +1,5 @@
 """From deviation and uncertainty to a verdict: one rule for each kind of claim."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np

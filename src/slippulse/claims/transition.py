@@ -3,11 +3,9 @@
 The choices are those of manuscript/open_choices.yaml. A function is named as its claim.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import permutations
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -30,7 +28,6 @@ NAMES = {
     "damping_ratio": r"the damping ratio $\beta/\Delta x$",
     "nucleation": "the nucleation",
 }
-Runs = TypeVar("Runs")
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
 # A front that ends within this of x_minus, in units of H, is within the smallest length of the model.
@@ -53,7 +50,7 @@ Tables = list[tuple[Chosen, list[pd.DataFrame]]]
 
 
 def over_choices(
-    runs: Iterable[tuple[Chosen, Runs]], judge: Callable[[Runs], Claim], shown: Claim | None = None
+    runs: Iterable[tuple[Chosen, Any]], judge: Callable[[Any], Claim], shown: Claim | None = None
 ) -> Claim:
     """One claim with the verdict over all combinations of choices, each given with what the claim is judged by.
 
@@ -75,9 +72,9 @@ def over_choices(
     if all("at" in claim for claim in claims):
         found["at"] = lambda tolerance: rules.over_choices([claim["at"](tolerance) for claim in claims])
     if verdict == rules.DEPENDS:
-        sides = [f"{NAMES[name]}: {sides_of(name, pair, 'held' in found)}" for name, pair in decided.items()]
+        pairs_of = [sides(name, pair, "held" in found) for name, pair in decided.items()]
         found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations."
-        found["why"] += f" It depends on {'; on '.join(sides)}."
+        found["why"] += f" It depends on {'; on '.join(pairs_of)}."
     elif verdict == "reproduced with caveat":
         unsure = next(row for row in rows if row["verdict"] == verdict)
         where = " and ".join(f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure)
@@ -85,15 +82,14 @@ def over_choices(
     return found
 
 
-def sides_of(name: str, pair: Iterable[Mapping], counted: bool) -> str:
+def sides(name: str, pair: Iterable[Mapping], counted: bool) -> str:
     """What combinations say of a claim, by their value of one choice; ``counted``: by runs, not by a deviation."""
-
-    def side(row: Mapping) -> str:
+    parts = []
+    for row in pair:
         size = percent(row["deviation"], 3) + (" of the runs against" if counted else "")
         size += ", at the last release" if name != "fraction" and row.get("fraction") == LAST else ""
-        return f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({size})"
-
-    return " and ".join(map(side, pair))
+        parts.append(f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({size})")
+    return f"{NAMES[name]}: {' and '.join(parts)}"
 
 
 def named(value: float | str) -> str:

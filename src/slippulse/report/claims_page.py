@@ -1,7 +1,5 @@
 """results/claims.html: the ledger by kind and failures first, each deviation next to its tolerance."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial

@@ -3,8 +3,6 @@
 python -m slippulse.report.compare results other/results
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -31,19 +29,14 @@ SHOWN = 10
 
 @dataclass
 class Comparison:
-    """Numbers of two trees of results.
+    """Numbers of two trees of results."""
 
-    Attributes
-    ----------
-    compared, agree : how many measured numbers both have, and how many differ by no more than both uncertainties
-    unknown : how many differ, are of two lattices, and have no uncertainty on either side
-    apart : one line for each number or text that differs otherwise
-    other : what is not comparable: other configurations, other runs, tables in one tree only; and other verdicts
-    """
-
+    # How many measured numbers both have, and how many differ by no more than both uncertainties.
     compared: int = 0
     agree: int = 0
+    # How many differ, are of two lattices, and have no uncertainty on either side.
     unknown: int = 0
+    # A line for each number or text that differs otherwise; and what is not comparable, and other verdicts.
     apart: list[str] = field(default_factory=list)
     other: list[str] = field(default_factory=list)
 
@@ -101,14 +94,15 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
     allowed = allowed.mask(~known & alike, ROUNDING * value.abs().clip(lower=1.0))
     within = (value - value_there).abs() <= allowed
     counted = (value.notna() & value_there.notna()) | ((value.notna() | value_there.notna()) & alike)
-    unknown = counted & ~within & ~known & ~alike
-    found.compared += int(counted.to_numpy().sum())
-    found.agree += int((counted & within).to_numpy().sum())
-    found.unknown += int(unknown.to_numpy().sum())
+    off = counted & ~within
+    unknown = off & ~known & ~alike
+    found.compared += len(_where(counted))
+    found.agree += len(_where(counted & within))
+    found.unknown += len(_where(unknown))
     found.apart += [
         f"{name}: point {point}, {quantity}: {value[quantity][point]:.6g} against"
         f" {value_there[quantity][point]:.6g}; allowed: a difference of {allowed[quantity][point]:.2g}"
-        for point, quantity in _where(counted & ~within & ~unknown)
+        for point, quantity in _where(off & ~unknown)
     ]
     ours, theirs = (table[texts].astype(object).fillna("") for table in (one, two))
     found.apart += [

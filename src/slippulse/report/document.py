@@ -1,7 +1,5 @@
 """The executed manuscript as one self-contained HTML file and a PDF, by pandoc and Typst; no network, no clock."""
 
-from __future__ import annotations
-
 import json
 import re
 import tempfile

@@ -4,8 +4,6 @@ The page computes by itself, in the scripts next to its template; from here it h
 the Wiener-Hopf factor, and the measured numbers of the sweeps.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Iterable
@@ -31,8 +29,7 @@ def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame]) -> str:
     Parameters
     ----------
     law : the front law, as `slippulse.studies.explorer_law` has it
-    measured : measured tables of sweeps; runs without equal positive levels and a plain peak, or with a larger damping
-        ratio than the law, are left out
+    measured : measured tables of sweeps
     """
     shades = matplotlib.colormaps[VELOCITY_MAP](np.linspace(0.0, 1.0, COLOURS))
     largest = float(law["damping_ratio"].max())
@@ -64,7 +61,10 @@ def front_law(law: pd.DataFrame) -> dict:
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
-    """Rows of tau_0, gamma, W, beta, b, release rule and `MEASURED` of the runs that the page can compare with."""
+    """Rows of tau_0, gamma, W, beta, b, release rule and `MEASURED` of the runs that the page can compare with.
+
+    They have equal positive levels, a plain peak, and no larger damping ratio than the law.
+    """
     kept = []
     for run in table[table["boundary"] == "displacement"].to_dict("records"):
         prestress = prestress_from(run)

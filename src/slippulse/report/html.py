@@ -1,7 +1,5 @@
 """Templates and Markdown to HTML; every value is escaped unless it is HTML already."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """results/index.html, the page to open. Relative links only; nothing is loaded from outside."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from functools import partial

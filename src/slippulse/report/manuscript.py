@@ -1,7 +1,5 @@
 """The manuscript executed: its code run, its prose filled, its figures numbered by where they stand."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

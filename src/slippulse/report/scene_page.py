@@ -1,7 +1,5 @@
 """The page of one scene, with its figure inside, and the list of all scenes."""
 
-from __future__ import annotations
-
 import base64
 import math
 from collections.abc import Mapping

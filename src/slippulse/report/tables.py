@@ -3,8 +3,6 @@
 The cells of the report import them.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
@@ -60,18 +58,11 @@ FLUSH = "`````{=typst}\n#place.flush()\n`````"
 
 
 def table(head: str, rows: Iterable[Sequence[object]]) -> str:
-    """A pipe table of Markdown cells without bare bars.
-
-    Parameters
-    ----------
-    head : title of each column with its side, l or r, and relative width, as in "claim l40 | deviation r10"
-    """
+    """A pipe table of Markdown cells; ``head``: of each column title, side (l or r) and relative width."""
     columns = [column.strip().rpartition(" ") for column in head.split("|")]
     total = sum(int(form[1:]) for *_, form in columns)
-    marks = []
-    for *_, form in columns:
-        dashes = "-" * max(3, round(FULL * int(form[1:]) / total))
-        marks.append(f":{dashes}" if form[0] == "l" else f"{dashes}:")
+    dashes = [(form[0], "-" * max(3, round(FULL * int(form[1:]) / total))) for *_, form in columns]
+    marks = [f":{dash}" if side == "l" else f"{dash}:" for side, dash in dashes]
     lines = [[title for title, *_ in columns], marks, *rows]
     return "\n".join("| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines)
 

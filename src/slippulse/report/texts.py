@@ -1,7 +1,5 @@
 """The texts of the manuscript: captions, errata, the parameters of a simulation in words, and the answer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
