@@ -51,8 +51,8 @@ def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     drawn = draw(name)
     assert len(drawn.table) > 0
     # The resolution is not what is tested, and takes most of the time.
-    with matplotlib.rc_context({"savefig.dpi": 50}):
-        save_figure(drawn.figure, tmp_path / "first.png", tmp_path / "first.pdf")
+    drawn.figure.set_dpi(50)
+    save_figure(drawn.figure, tmp_path / "first.png", tmp_path / "first.pdf")
     for ending in ("png", "pdf"):
         assert (tmp_path / f"first.{ending}").stat().st_size > 2000
     # As many grey levels as letters and lines have.
@@ -71,7 +71,7 @@ def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
 @pytest.mark.parametrize("name", ["fig03_steady_state", pytest.param("study_arrest", marks=pytest.mark.slow)])
 def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
     drawn = draw(name)
-    with matplotlib.rc_context({"savefig.dpi": 50}):
+    with matplotlib.rc_context({"figure.dpi": 50}):
         for take in ("first", "again"):
             save_figure(drawn.module.plot(drawn.table), tmp_path / f"{take}.png", tmp_path / f"{take}.pdf")
     for ending in ("png", "pdf"):

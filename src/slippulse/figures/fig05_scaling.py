@@ -47,7 +47,7 @@ def plot(table: pd.DataFrame) -> Figure:
             draw_ratio(inset, runs[runs[other].isin(chosen(runs[other], 3))], quantity, "left", other, "o")
             inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
             inset.set_xlabel(LEVEL[boundary][1], fontsize=7.0, labelpad=0.0)
-            inset.set_title("measured / formula", fontsize=7.0, pad=1.5)
+            inset.set_title("measured / formula", fontsize=7.0, pad=2.0)
         narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
         narrow = narrow[narrow["left"].isin(chosen(runs["left"], 3))]
         prestress_inset(panels[column], (0.7, 0.13, 0.26, 0.22), narrow, list(colours(narrow, "left")), 6.0)

@@ -58,7 +58,7 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     label(axes, ORIGIN + 0.5 * imposed, top + 0.2, r"imposed $\hat u$", va="bottom")
     label(axes, ORIGIN + 1.45, 1.5, "before", "0.35", ha="right")
     label(axes, ORIGIN + 1.45, 0.4, "after", BLUE, ha="left")
-    label(axes, ORIGIN + 0.6 * slip, 0.14, "change", BLUE)
+    label(axes, ORIGIN + 0.61 * slip, 0.15, "change", BLUE, fontsize=7.0)
     label(axes, WIDTH + 0.26, 0.5, "$H$", MUTED, ha="left")
     label(axes, WIDTH + 0.26, 0.5 + 0.5 * top, "$H_r$", MUTED, ha="left")
     for y, text in ((0.0, "fault  $0$"), (1.0, "$H$"), (top, "$H + H_r$")):

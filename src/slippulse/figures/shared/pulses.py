@@ -155,5 +155,5 @@ def prestress_inset(
         tau = Prestress(run["left"], run["right"], run["width"])(x)
         inset.plot(x, tau, color=colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
-    inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=1.0)
+    inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=2.5)
     inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
