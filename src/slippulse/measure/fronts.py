@@ -9,22 +9,13 @@ import xarray as xr
 def path(run: xr.Dataset, side: str = "right", edge: str = "release_time") -> tuple[np.ndarray, np.ndarray]:
     """Times and distances from x = 0 of a front ("release_time") or trailing edge ("stick_time") on one side.
 
-    Parameters
-    ----------
-    run : one run with release and stick times over x
-    side : "right" or "left"
-    edge : "release_time" or "stick_time"
-
-    Returns
-    -------
-    times, distances : shape (n,), in order of distance; blocks without the event are left out
+    In order of distance; blocks without the event are left out.
     """
     x, time = run.variables["x"].values, run.variables[edge].values
     sign = 1.0 if side == "right" else -1.0
     chosen = np.isfinite(time) & (sign * x >= 0.0)
-    distance, time = sign * x[chosen], time[chosen]
-    order = np.argsort(distance, kind="stable")
-    return time[order], distance[order]
+    order = np.argsort(sign * x[chosen], kind="stable")
+    return time[chosen][order], (sign * x[chosen])[order]
 
 
 def position_at(run: xr.Dataset, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
@@ -44,33 +35,27 @@ def position_at(run: xr.Dataset, time, side: str = "right", edge: str = "release
 
 def arrival(run: xr.Dataset, distance: float, side: str = "right") -> float:
     """Time at which the front on one side reaches a distance; NaN if it never does."""
-    times, distances = path(run, side)
-    if times.size == 0 or distances[-1] < distance:
-        return float("nan")
-    return float(np.interp(distance, distances, np.maximum.accumulate(times)))
+    return _on_the_way(run, distance, side)[0]
 
 
 def longest_wait(run: xr.Dataset, distance: float, side: str = "right") -> float:
     """Longest time between two blocks of a front on its way to a distance; NaN if it never gets there."""
+    return _on_the_way(run, distance, side)[1]
+
+
+def _on_the_way(run: xr.Dataset, distance: float, side: str) -> tuple[float, float]:
     times, distances = path(run, side)
     if times.size == 0 or distances[-1] < distance:
-        return float("nan")
-    on_the_way = np.maximum.accumulate(times)[: np.searchsorted(distances, distance) + 1]
-    return float(np.max(np.diff(on_the_way), initial=0.0))
+        return np.nan, np.nan
+    latest = np.maximum.accumulate(times)
+    waits = np.diff(latest[: np.searchsorted(distances, distance) + 1])
+    return float(np.interp(distance, distances, latest)), float(np.max(waits, initial=0.0))
 
 
 def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[float, float, float]:
     """Speed, intercept (units of H) and standard error of the speed from the last fraction of a front's path.
 
-    Parameters
-    ----------
-    run : one run
-    window : fraction of the path, in (0, 1)
-    side : "right" or "left"
-
-    Returns
-    -------
-    as `straight_line`, NaN with fewer than 4 blocks
+    As `straight_line`; NaN with fewer than 4 blocks.
     """
     times, distances = path(run, side)
     chosen = distances >= (1.0 - window) * distances[-1] if distances.size else np.zeros(0, dtype=bool)

@@ -27,21 +27,16 @@ LARGEST_FRACTION = 0.95
 
 
 def covers(run: Mapping, quantity: str, fraction: float) -> bool:
-    """Whether a promise covers one number of one run.
+    """Whether a promise covers one number of a run, a row of the measured table.
 
-    Parameters
-    ----------
-    run : a row of the measured table
-    quantity : its column
-    fraction : fraction of |x_minus| that the left front covers at T_trans under a stress boundary
+    ``fraction`` : of |x_minus| that the left front covers at T_trans under a stress boundary.
     """
     if quantity not in COVERED[run["boundary"]] or run["run_flags"] or not math.isfinite(run[quantity]):
         return False
     if quantity.startswith("front_speed"):
-        ahead = [run[quantity.removeprefix("front_speed_")]]
+        ahead = run[quantity.removeprefix("front_speed_")]
         # A step on either side.
-        ahead += [run["beyond"]] if run["beyond"] != run["right"] else []
-        return min(ahead) >= LOWEST_LEVEL
+        return (ahead if run["beyond"] == run["right"] else min(ahead, run["beyond"])) >= LOWEST_LEVEL
     if quantity.startswith("pulse"):
         return run["pulse_state"] == "steady"
     if run["boundary"] == "displacement":
@@ -61,7 +56,7 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction
 
     Parameters
     ----------
-    study : of a sweep, one row a number (`slippulse.measure.uncertainty.grid_tables`)
+    study : as `grid_tables` has it
     measured : the table at the finest spacing
     promise : largest relative uncertainty; NaN for a spacing of its own, which promises nothing
     fraction : see `covers`
@@ -74,10 +69,8 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction
         for row in study.itertuples()
     ]
     within = study["uncertainty"] <= promise * study["value"].abs()
-    return study.assign(
-        promised=np.where(covered, promise, np.nan),
-        kept=np.where(covered, np.where(within, "true", "false"), ""),
-    )
+    kept = np.where(covered, np.where(within, "true", "false"), "")
+    return study.assign(promised=np.where(covered, promise, np.nan), kept=kept)
 
 
 def summary(study: pd.DataFrame, promise: float) -> str:

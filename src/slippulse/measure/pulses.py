@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,8 +12,7 @@ from .fronts import front_speed, path
 NAN = float("nan")
 
 
-@dataclass(frozen=True)
-class LeadingPulse:
+class LeadingPulse(NamedTuple):
     """The pulse behind the right front, at the end of a run.
 
     Attributes
@@ -34,13 +33,7 @@ class LeadingPulse:
 
 
 def leading_pulse(run: xr.Dataset, window: float) -> LeadingPulse:
-    """Measure the pulse behind the right front.
-
-    Parameters
-    ----------
-    run : one run with fronts and fields
-    window : fraction of the front's path that its speed is measured on
-    """
+    """Measure the pulse of a run with fronts and fields, its speed on the last fraction ``window`` of its path."""
     end = run.attrs["end_time"]
     speed, _, _ = front_speed(run, window)
     release, distance = path(run)
@@ -65,29 +58,21 @@ def leading_pulse(run: xr.Dataset, window: float) -> LeadingPulse:
 
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     """Largest value of sampled y and its position, from the parabola through the largest sample and its neighbours."""
-    if y.size == 0:
-        return NAN, NAN
-    i = int(np.argmax(y))
-    if i == 0 or i == y.size - 1:
-        return float(y[i]), float(x[i])
-    left, middle, right = y[i - 1], y[i], y[i + 1]
+    i = int(np.argmax(y)) if y.size else 0
+    if not 0 < i < y.size - 1:
+        return (float(y[i]), float(x[i])) if y.size else (NAN, NAN)
+    left, middle, right = y[i - 1 : i + 2]
     bend = left - 2.0 * middle + right
     shift = 0.5 * (left - right) / bend if bend != 0.0 else 0.0
     return float(middle - 0.25 * (left - right) * shift), float(x[i] + shift * (x[i + 1] - x[i]))
 
 
 def comoving(run: xr.Dataset, pulse: LeadingPulse) -> dict[str, np.ndarray]:
-    """Fields in the frame of the front, from the nucleation point to the end of the lattice on the right.
-
-    Returns
-    -------
-    dict of xi = distance - front <= 0 behind it, slip, slip_velocity, slip_acceleration
-    """
+    """Slip, slip_velocity and slip_acceleration right of the nucleation point, over xi = distance - front."""
+    names = ("x", "slip", "slip_velocity", "slip_acceleration")
     right = run.variables["x"].values >= 0.0
-    names = ("slip", "slip_velocity", "slip_acceleration")
-    return {"xi": run.variables["x"].values[right] - pulse.front} | {
-        name: run.variables[name].values[right] for name in names
-    }
+    fields = {name: run.variables[name].values[right] for name in names}
+    return {"xi": fields.pop("x") - pulse.front} | fields
 
 
 def acceleration_amplitude(run: xr.Dataset, pulse: LeadingPulse) -> float:

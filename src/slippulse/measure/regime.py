@@ -31,9 +31,7 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     steady_tolerance : a largest velocity that changes less than this fraction over the last third is steady; a front
         this fraction slower than the waves still keeps up with them
 
-    Returns
-    -------
-    dict with `regime`, one of REGIMES, and the numbers it is decided by
+    Returns `regime`, one of REGIMES, and the numbers it is decided by.
 
     The rule. *Arrested*: no release in the last tenth of the duration, or what still slides has less than ``still``
     of the largest velocity sampled. Otherwise a side *runs* if its front keeps up with the waves over the last
@@ -44,8 +42,7 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     """
     times, velocity = run.variables["sample_time"].values, run.variables["sample_velocity"].values
     before = velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))]
-    largest_before = float(np.max(before))
-    change = float(np.max(velocity[-1])) / largest_before - 1.0 if largest_before > 0.0 else -1.0
+    change = float(np.max(velocity[-1]) / np.max(before)) - 1.0 if np.max(before) > 0.0 else -1.0
     if "slip_velocity" in run:
         x, now = run.variables["x"].values, run.variables["slip_velocity"].values
     else:
@@ -53,9 +50,7 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     largest_now = float(np.max(now))
     largest_ever = max(largest_now, float(np.max(velocity)))
     centre = float(now[int(np.argmin(np.abs(x)))])
-    release = run.variables["release_time"].values
-    released = release[np.isfinite(release)]
-    latest = float(np.max(released)) if released.size else 0.0
+    latest = float(np.nan_to_num(run.variables["release_time"].values).max())
 
     window = np.array([2.0 / 3.0, 1.0]) * run.attrs["end_time"]
     speeds = {}

@@ -35,9 +35,8 @@ def lattice_noise(run: xr.Dataset) -> float:
 
     Over the blocks that slide, without the two at each end, where the velocity has corners.
     """
-    moving = run.variables["slip_velocity"].values[
-        (run.variables["x"].values >= 0.0) & (run.variables["slip_velocity"].values > 0.0)
-    ]
+    x, velocity = run.variables["x"].values, run.variables["slip_velocity"].values
+    moving = velocity[(x >= 0.0) & (velocity > 0.0)]
     if moving.size < FEWEST:
         return NAN
     # Gain 1 for waves of two blocks, sin^4(pi/n) for waves of n.
@@ -59,15 +58,9 @@ def sliding_at_once(run: xr.Dataset) -> float:
 def far_field(run: xr.Dataset) -> dict[str, float]:
     """Change of the right pulse far from nucleation, where the pre-stress is uniform, over the last third of a run.
 
-    Parameters
-    ----------
-    run : one run with samples
-
-    Returns
-    -------
-    dict of profile_change (largest difference of the velocity profile from itself moved at the wave speed, over its
-    largest velocity), energy_change (relative change of kinetic plus strain energy) and strain_left (largest strain
-    left where it entered, over the largest strain); NaN where nothing slides there at two thirds of the run
+    Of a run with samples: profile_change (largest difference of the velocity profile from itself moved at the wave
+    speed, over its largest velocity), energy_change (relative change of kinetic plus strain energy) and strain_left
+    (largest strain left where it entered, over the largest strain); NaN where nothing slides there at two thirds.
     """
     steps = [abs(position) for position, _ in prestress_from(run.attrs).steps]
     start = max([FAR * run.attrs["width"], *steps])
@@ -79,10 +72,7 @@ def far_field(run: xr.Dataset) -> dict[str, float]:
     if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
         return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
     strain = np.gradient(slip[:, far], x[far], axis=1)
-    energies = [
-        np.trapezoid(0.5 * (velocity[i][far] ** 2 + s**2), x[far])
-        for i, s in ((early, strain[early]), (-1, strain[-1]))
-    ]
+    energies = [np.trapezoid(0.5 * (velocity[i][far] ** 2 + strain[i] ** 2), x[far]) for i in (early, -1)]
     inside = far & (x + moved <= x[-1])
     later = np.interp(x[inside] + moved, x, velocity[-1])
     entered = x[far] <= start + run.attrs["width"]

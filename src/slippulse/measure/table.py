@@ -24,17 +24,12 @@ PARAMETERS = (
 
 
 def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
-    """Measure one run.
+    """Measure one run, out of a sweep or as `simulate` returned it.
 
-    Parameters
-    ----------
-    run : one run, out of a sweep or as `simulate` returned it
     settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
 
-    Returns
-    -------
-    its parameters, then what the recorded data allow, NaN where a quantity does not apply; and its leading pulse, where
-    slip velocity is recorded
+    Returns its parameters, then what the recorded data allow, NaN where a quantity does not apply; and its leading
+    pulse, where slip velocity is recorded.
     """
     # A file from before the last of them opens as the paper's model.
     row = {name: run.attrs[name] for name in PARAMETERS[:-1]}
@@ -42,12 +37,8 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
     steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]
     for side in ("right", "left"):
-        speed, intercept, error = front_speed(run, settings["front_window"], side)
-        row |= {
-            f"front_speed_{side}": speed,
-            f"front_intercept_{side}": intercept,
-            f"front_speed_error_{side}": error,
-        }
+        names = (f"front_speed_{side}", f"front_intercept_{side}", f"front_speed_error_{side}")
+        row |= zip(names, front_speed(run, settings["front_window"], side), strict=True)
     if run.attrs["boundary"] == "displacement" and run.attrs["left"] == run.attrs["right"] > 0.0:
         row |= transition_displacement(run)
     if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:

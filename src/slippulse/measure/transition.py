@@ -23,12 +23,9 @@ def transition_displacement(run: xr.Dataset) -> dict[str, float]:
     point; it is measured with the level's tau_0 and with the tau = 1 that stands there, and is NaN where slip never
     reaches it.
     """
-    time = run.attrs["first_stick_time"]
-    out = {
-        "transition_time": time,
-        "transition_length": between_fronts(run, time),
-        "first_stick_position": run.attrs["first_stick_position"],
-    }
+    time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
+    length = between_fronts(run, time)
+    out = {"transition_time": time, "transition_length": length, "first_stick_position": position}
     for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
         out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
@@ -37,9 +34,7 @@ def transition_displacement(run: xr.Dataset) -> dict[str, float]:
 
 def between_fronts(run: xr.Dataset, time: float) -> float:
     """Distance between both fronts at a time; NaN for NaN."""
-    return (
-        float(position_at(run, time, "right") + position_at(run, time, "left")) if np.isfinite(time) else NAN
-    )
+    return float(position_at(run, time, "right") + position_at(run, time, "left")) if time == time else NAN
 
 
 def slip_time(run: xr.Dataset, slip: float) -> float:
@@ -48,12 +43,9 @@ def slip_time(run: xr.Dataset, slip: float) -> float:
         return NAN
     centre = int(np.argmin(np.abs(run.variables["sample_position"].values)))
     history, times = run.variables["sample_slip"].values[:, centre], run.variables["sample_time"].values
-    beyond = np.flatnonzero(history >= slip)
-    if beyond.size == 0:
-        return NAN
-    i = int(beyond[0])
+    i = int(np.argmax(history >= slip))
     if i == 0:
-        return float(times[0])
+        return float(times[0]) if history[0] >= slip else NAN
     fraction = (slip - history[i - 1]) / (history[i] - history[i - 1])
     return float(times[i - 1] + fraction * (times[i] - times[i - 1]))
 
@@ -71,13 +63,12 @@ def transition_stress(run: xr.Dataset, fraction: float) -> dict[str, float | str
     arrest = float(np.max(times)) if times.size else NAN
     waited = longest_wait(run, fraction * distance, "left") / time
     state = "not reached" if np.isnan(waited) else "stalled" if waited > STALL else "resolved"
+    right = NAN if np.isnan(time) else float(position_at(run, time, "right"))
     return {
         "transition_time": time,
         "transition_longest_wait": waited,
         "transition_state": state,
-        "transition_length": fraction * distance + float(position_at(run, time, "right"))
-        if np.isfinite(time)
-        else NAN,
+        "transition_length": fraction * distance + right,
         "balance_distance": distance,
         "last_release_time": arrest,
         "last_release_distance": float(distances[-1]) if distances.size else NAN,

@@ -32,43 +32,30 @@ class GridStudy(NamedTuple):
 
 
 def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
-    """Observed order, extrapolation and uncertainty from values at spacings dx, c_1 dx and c_2 dx.
-
-    Parameters
-    ----------
-    values : at the finest, the middle and the coarsest spacing
-    factors : c_1 < c_2, both > 1
+    """Observed order, extrapolation and uncertainty from values at spacings dx, c_1 dx and c_2 dx, 1 < c_1 < c_2.
 
     Source: f(h) = f_0 + C h^p through the three values (Richardson).
     """
     finest, middle, coarsest = (float(value) for value in values)
-    nan = float("nan")
     if not np.isfinite([finest, middle, coarsest]).all():
-        return GridStudy(finest, finest, nan, nan)
+        return GridStudy(finest, finest, np.nan, np.nan)
     spread = max(finest, middle, coarsest) - min(finest, middle, coarsest)
     first, second = middle - finest, coarsest - finest
-    if spread <= 1e-14 * max(1.0, abs(finest)):
-        return GridStudy(finest, finest, nan, spread)
 
     def mismatch(order: float) -> float:
         return second * (factors[0] ** order - 1.0) - first * (factors[1] ** order - 1.0)
 
     low, high = ORDERS
-    if first == 0.0 or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
-        return GridStudy(finest, finest, nan, spread)
+    alike = spread <= 1e-14 * max(1.0, abs(finest))
+    if alike or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
+        return GridStudy(finest, finest, np.nan, spread)
     order = float(root_between(mismatch, low, high))
     extrapolated = finest - first / (factors[0] ** order - 1.0)
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
 
 
 def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
-    """Columns of a measured table of which a grid study is made.
-
-    Parameters
-    ----------
-    table : measured numbers of a sweep, as read from its file
-    keys : columns that name a point rather than measure it
-    """
+    """Columns of a measured table, as read from its file, of which a grid study is made: none of the ``keys``."""
     return [
         name
         for name in table.columns
@@ -84,12 +71,10 @@ def grid_tables(
     Parameters
     ----------
     tables : measured tables at the finest, the middle and the coarsest spacing, rows in the same order
-    factors : c_1 < c_2
+    factors : of `grid_study`
     keys : columns that name a point rather than measure it
 
-    Returns
-    -------
-    long table: the keys and `point`, then quantity, value, extrapolated, observed_order, uncertainty
+    Returns a long table: the keys and `point`, then quantity, value, extrapolated, observed_order, uncertainty.
     """
     finest = tables[0]
     rows = []
