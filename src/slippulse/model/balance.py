@@ -16,13 +16,7 @@ def prestress_balance_position(prestress: Prestress) -> float:
     ----------
     prestress : a profile whose level is 0 far to the right and negative far to the left
 
-    Raises
-    ------
-    ValueError
-        If it is no Prestress, or the levels are otherwise: the integral has no finite value, or never returns to 0.
-    ArithmeticError
-        If numbers are too large to compute with.
-
+    Raises ValueError: if it is none such; ArithmeticError: if numbers are too large to compute with.
     Source: equation (11) of the paper, section III C.
     """
     check_kind("prestress", prestress, Prestress)

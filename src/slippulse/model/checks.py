@@ -40,19 +40,10 @@ def nearest(name: object, known: Iterable[str]) -> str:
 
 
 def check_number(
-    key: str,
-    value: Any,
-    *,
-    above: float | None = None,
-    at_least: float | None = None,
-    at_most: float | None = None,
-    below: float | None = None,
-    whole: bool = False,
-) -> None:
-    """Refuse anything but a finite number in the stated range, or a whole one.
-
-    Raises ValueError: naming the key, the value and the range.
-    """
+    key: str, value: Any, *, above: float | None = None, at_least: float | None = None, at_most: float | None = None,
+    below: float | None = None, whole: bool = False,
+) -> None:  # fmt: skip
+    """Refuse anything but a finite number in the stated range, or a whole one."""
     number = type(value) is float or (isinstance(value, Real) and not isinstance(value, (bool, np.bool_)))
     if (
         number
@@ -65,20 +56,13 @@ def check_number(
     ):
         return
     signs = ((">", above), (">=", at_least), ("<=", at_most), ("<", below))
-    allowed = " and ".join(
-        [
-            "a whole number" if whole else "a finite number",
-            *(f"{sign} {bound:.10g}" for sign, bound in signs if bound is not None),
-        ]
-    )
-    raise ValueError(f"{key}: {short_repr(value)}; allowed: {allowed}")
+    bounds = "".join(f" and {sign} {bound:.10g}" for sign, bound in signs if bound is not None)
+    kind = "whole" if whole else "finite"
+    raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind} number{bounds}")
 
 
 def check_domains(**values: Any) -> None:
-    """Refuse arguments of formulas, by name, that are outside DOMAINS.
-
-    Raises ValueError: naming the key, the value and the range.
-    """
+    """Refuse arguments of formulas, by name, that are outside DOMAINS."""
     for key, value in values.items():
         check_number(key, value, **DOMAINS[key])
 
@@ -89,11 +73,8 @@ def check_runaway(gamma: float, alpha: float) -> None:
     Raises ValueError: where alpha < 0 and alpha^2 >= 4 gamma; then no velocity ever returns to 0.
     """
     if alpha < 0.0 and alpha * alpha >= 4.0 * gamma:
-        bound = (
-            f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}"
-            if gamma > 0.0
-            else ">= 0 without leaf springs"
-        )
+        least = f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}"
+        bound = least if gamma > 0.0 else ">= 0 without leaf springs"
         raise ValueError(f"rate_strengthening: {alpha!r}; allowed: {bound}, or slip runs away")
 
 
@@ -127,10 +108,7 @@ def as_numbers(key: str, value: object, **bounds: Any) -> np.ndarray:
 
 
 def of_one_shape(**arrays: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Arrays broadcast to each other.
-
-    Raises ValueError: naming the arrays and their shapes.
-    """
+    """Arrays broadcast to each other."""
     try:
         return np.broadcast_arrays(*arrays.values())
     except ValueError:
@@ -139,18 +117,12 @@ def of_one_shape(**arrays: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def check_kind(key: str, value: object, kind: type) -> None:
-    """Refuse anything that is not of a class.
-
-    Raises ValueError: naming the key, the value and the class.
-    """
+    """Refuse anything that is not of a class."""
     if not isinstance(value, kind):
         raise ValueError(f"{key}: {short_repr(value)}; allowed: a {kind.__name__}")
 
 
 def check_choice(key: str, value: object, choices: tuple) -> None:
-    """Refuse anything that is not one of ``choices``.
-
-    Raises ValueError: naming the key, the value and the choices.
-    """
+    """Refuse anything that is not one of ``choices``."""
     if not isinstance(value, str | int | float) or isinstance(value, bool) or value not in choices:
         raise ValueError(f"{key}: {short_repr(value)}; allowed: {', '.join(map(str, choices))}")

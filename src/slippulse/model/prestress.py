@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby, pairwise
 from numbers import Real
 from typing import Any
@@ -26,16 +27,12 @@ class Prestress:
 
     Parameters
     ----------
-    left, right : float
-        Levels far to the left and right (tau_{0,l} and tau_{0,r}; units of the static minus the kinetic friction).
-    width : float
-        Standard deviation W of the Gaussian (units of the layer thickness H), > 0.
-    peak : float
-        Value at x = 0. At 1 the block there is released at t = 0; below 1 nothing moves.
-    steps : tuple of (position, level)
-        Beyond ``position`` (away from x = 0) the side's level becomes ``level``.
-    bumps : tuple of (centre, amplitude, width)
-        Gaussians added to the profile: a barrier (amplitude < 0), an asperity, or a second nucleation point.
+    left, right : levels far to the left and right (tau_{0,l} and tau_{0,r}), < 1
+    width : standard deviation W of the Gaussian (units of H), > 0
+    peak : value at x = 0; at 1 the block there is released at t = 0, below 1 nothing moves
+    steps : tuple of (position, level): beyond the position (away from x = 0) the side's level becomes this
+    bumps : tuple of (centre, amplitude, width): Gaussians added, as a barrier (amplitude < 0), an asperity, or a second
+        nucleation point
 
     Raises ValueError: if a value is not a finite number, a width is not positive, or a step stands at x = 0.
 
@@ -57,10 +54,8 @@ class Prestress:
         check_number("prestress.width", self.width, above=0.0)
         for name in ("left", "right", "width", "peak"):
             object.__setattr__(self, name, float(getattr(self, name)))
-        object.__setattr__(self, "steps", _tuples("prestress.steps", self.steps, ("position", "level")))
-        object.__setattr__(
-            self, "bumps", _tuples("prestress.bumps", self.bumps, ("centre", "amplitude", "width"))
-        )
+        for name, parts in (("steps", ("position", "level")), ("bumps", ("centre", "amplitude", "width"))):
+            object.__setattr__(self, name, _tuples(f"prestress.{name}", getattr(self, name), parts))
         for position, level in self.steps:
             check_number("prestress.steps level", level, below=1.0)
             if position == 0.0:
@@ -92,13 +87,14 @@ class Prestress:
             level = np.where(x * math.copysign(1.0, position) >= abs(position), value, level)
         return level
 
-    def _level_at(self, x: float) -> float:
-        """`level` at one position: root finding asks for thousands, one at a time."""
-        level = self.left if x < 0.0 else self.right
-        for position, value in sorted(self.steps, key=lambda step: abs(step[0])):
-            if x * math.copysign(1.0, position) >= abs(position):
-                level = value
-        return float(level)
+    @cached_property
+    def intervals(self) -> list[tuple[float, float, float]]:
+        """Where the side level is constant, from left to right: left end, right end, level."""
+        jumps = sorted({0.0, *(position for position, _ in self.steps)})
+        inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
+        return list(
+            zip([-math.inf, *jumps], [*jumps, math.inf], self.level(np.array(inside)).tolist(), strict=True)
+        )
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 when there are no bumps."""
@@ -129,14 +125,14 @@ class Prestress:
         """
         check_number("lower", lower)
         check_number("upper", upper)
-        inside = sorted({0.0, *(position for position, _ in self.steps)} | {lower, upper})
-        edges = [x for x in inside if min(lower, upper) <= x <= max(lower, upper)]
+        low, high = min(lower, upper), max(lower, upper)
         total = 0.0
-        for a, b in pairwise(edges):
-            level = self._level_at(0.5 * (a + b))
-            total += level * (b - a) + (self.peak - level) * _gaussian_area(a, b, 0.0, self.width)
+        for left, right, level in self.intervals:
+            a, b = max(left, low), min(right, high)
+            if a < b:
+                total += level * (b - a) + (self.peak - level) * _gaussian_area(a, b, 0.0, self.width)
         for centre, amplitude, width in self.bumps:
-            total += amplitude * _gaussian_area(min(lower, upper), max(lower, upper), centre, width)
+            total += amplitude * _gaussian_area(low, high, centre, width)
         return total if upper >= lower else -total
 
 
@@ -145,19 +141,15 @@ def prestress_from(attributes: Mapping) -> Prestress:
 
     Raises ValueError if a value is none that `Scene.attributes` writes, KeyError if one is missing.
     """
-    steps, bumps = _steps_and_bumps(attributes["steps_and_bumps"])
     left, right, width, peak = (attributes[name] for name in ("left", "right", "width", "peak"))
-    return Prestress(left, right, width, peak, steps, bumps)
-
-
-def _steps_and_bumps(text: str) -> tuple[Any, Any]:
+    text = attributes["steps_and_bumps"]
     try:
         more = json.loads(text)
-        return more["steps"], more["bumps"]
+        steps, bumps = more["steps"], more["bumps"]
     except (TypeError, ValueError, LookupError):
-        raise ValueError(
-            f"steps_and_bumps: {short_repr(text)}; allowed: a JSON object of steps and bumps"
-        ) from None
+        allowed = "a JSON object of steps and bumps"
+        raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
+    return Prestress(left, right, width, peak, steps, bumps)
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:
@@ -171,13 +163,10 @@ def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> f
     return scale * (math.erf(b) - math.erf(a))
 
 
-def _tuples(key: str, rows: object, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:
+def _tuples(key: str, rows: Any, names: tuple[str, ...]) -> tuple[tuple[float, ...], ...]:
     allowed = f"a list of [{', '.join(names)}]"
-    if (
-        isinstance(rows, str | bytes | Mapping)
-        or not hasattr(rows, "__iter__")
-        or getattr(rows, "ndim", 1) == 0
-    ):
+    many = hasattr(rows, "__iter__") and getattr(rows, "ndim", 1) != 0
+    if isinstance(rows, str | bytes | Mapping) or not many:
         raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     out = []
     for row in rows:

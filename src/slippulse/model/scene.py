@@ -43,36 +43,23 @@ class Scene:
 
     Parameters
     ----------
-    boundary : "displacement" or "stress"
-        Condition at the top of the layer: Gamma = 1 or Gamma = 0.
-    prestress : Prestress
-        Non-dimensional pre-stress tau(x).
-    duration : float
-        Time to simulate (units of H / wave speed), > 0.
-    dx : float
-        Block spacing (units of H), >= 1e-100; dx = 1 is the Burridge-Knopoff model.
-    gamma : float
-        Elasticity ratio 2G/(lambda + 2G); > 0 under "displacement", left at 0 under "stress".
-    beta : float
-        Damping, >= 0. What selects the front speed is beta/dx.
-    release : "total" or "elastic"
-        Whether the released stress includes the damping force.
-    scheme : "localised", "fixed_step" or "continuum"
-        Taylor steps with each release and stick at its instant, symplectic Euler with events checked once a step, or
-        the exact solution of the continuum limit.
-    max_step : float
-        Largest time step in units of dx; the step itself under "fixed_step"; not used by "continuum".
-    order : int
-        Order of the Taylor step, 3 to 8; used by "localised" alone.
-    half_lattice : bool
-        Simulate x >= 0 only when the pre-stress is symmetric.
-    friction_ratio : float
-        mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio).
-    resolved_blocks : int
-        A pulse of fewer sliding blocks is flagged as unresolved.
-    rate_strengthening : float
-        alpha (units of wave speed / H), by which friction grows with slip rate; 0 in the paper, below 0 where friction
-        weakens. Refused where no sliding state could slow down: alpha <= -2 sqrt(gamma), alpha < 0 under "stress".
+    boundary : "displacement" or "stress", the condition at the top of the layer: Gamma = 1 or Gamma = 0
+    prestress : the profile of the pre-stress tau(x)
+    duration : time to simulate (units of H / wave speed), > 0
+    dx : block spacing (units of H), >= 1e-100; 1 is the Burridge-Knopoff model
+    gamma : elasticity ratio 2G/(lambda + 2G); > 0 under "displacement", left at 0 under "stress"
+    beta : damping, >= 0; what selects the front speed is beta/dx
+    release : "total" or "elastic", whether the released stress includes the damping force
+    scheme : "localised" (Taylor steps with each release and stick at its instant), "fixed_step" (symplectic Euler,
+        events checked once a step) or "continuum" (the exact solution of the continuum limit)
+    max_step : largest time step in units of dx; the step itself under "fixed_step"; not used by "continuum"
+    order : of the Taylor step, 3 to 8; used by "localised" alone
+    half_lattice : simulate x >= 0 only when the pre-stress is symmetric
+    friction_ratio : mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio)
+    resolved_blocks : a pulse of fewer sliding blocks is flagged as unresolved
+    rate_strengthening : alpha (units of wave speed / H), by which friction grows with slip rate; 0 in the paper, below
+        0 where friction weakens; refused where no sliding state could slow down: alpha <= -2 sqrt(gamma), alpha < 0
+        under "stress"
 
     Raises ValueError: one line naming the key, the value and what is allowed.
 
@@ -178,48 +165,29 @@ class Scene:
     def attributes(self) -> dict:
         """Every parameter as plain numbers and text, for attributes of a data file; inverse of `from_attributes`."""
         profile = self.prestress
+        parts = {name: [list(part) for part in getattr(profile, name)] for name in ("steps", "bumps")}
+
+        def own(*names: str) -> dict:
+            return {name: getattr(self, name) for name in names}
+
         return {
-            "boundary": self.boundary,
-            "gamma": self.gamma,
-            "beta": self.beta,
-            "damping_ratio": self.damping_ratio,
-            "left": profile.left,
-            "right": profile.right,
-            "width": profile.width,
-            "peak": profile.peak,
-            "steps_and_bumps": json.dumps(
-                {
-                    "steps": [list(step) for step in profile.steps],
-                    "bumps": [list(bump) for bump in profile.bumps],
-                }
-            ),
-            "duration": self.duration,
-            "dx": self.dx,
-            "release": self.release,
-            "scheme": self.scheme,
-            "max_step": self.max_step,
-            "order": self.order,
+            **own("boundary", "gamma", "beta", "damping_ratio"),
+            **{name: getattr(profile, name) for name in ("left", "right", "width", "peak")},
+            "steps_and_bumps": json.dumps(parts),
+            **own("duration", "dx", "release", "scheme", "max_step", "order"),
             "half_lattice": int(self.half_lattice),
-            "friction_ratio": self.friction_ratio,
-            "resolved_blocks": self.resolved_blocks,
-            "rate_strengthening": self.rate_strengthening,
+            **own("friction_ratio", "resolved_blocks", "rate_strengthening"),
         }
 
     def _repr_html_(self) -> str:
         """The parameters as a table, for a notebook."""
-        rows = (
-            f"<tr><th>{name}</th><td>{escape(str(value))}</td></tr>"
-            for name, value in self.attributes().items()
-        )
-        return f"<table>{''.join(rows)}</table>"
+        cells = ((name, escape(str(value))) for name, value in self.attributes().items())
+        rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in cells)
+        return f"<table>{rows}</table>"
 
     @classmethod
     def from_attributes(cls, attributes: Mapping) -> Scene:
-        """The scene of a run.
-
-        Parameters
-        ----------
-        attributes : the attributes of a Dataset, or a row of a measured table
+        """The scene of a run, of the attributes of its Dataset or its row of a measured table.
 
         Raises ValueError: if a parameter is missing or is none that `attributes` writes.
         """
@@ -227,26 +195,20 @@ class Scene:
             raise ValueError(f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values")
         try:
             # As whole numbers of a data file, which are not Python's.
-            whole = {name: attributes[name] for name in ("half_lattice", "order", "resolved_blocks")}
-            for name, value in whole.items():
-                check_number(
-                    name, value, whole=True, at_least=0, at_most=1 if name == "half_lattice" else None
-                )
+            kinds = {"half_lattice": bool, "order": int, "resolved_blocks": int}
+            for name in kinds:
+                most = 1 if name == "half_lattice" else None
+                check_number(name, attributes[name], whole=True, at_least=0, at_most=most)
+            named = (
+                "boundary", "release", "scheme", "duration", "dx", "gamma", "beta", "max_step", "friction_ratio",
+            )  # fmt: skip
             return cls(
                 prestress=prestress_from(attributes),
-                half_lattice=bool(whole["half_lattice"]),
-                order=int(whole["order"]),
-                resolved_blocks=int(whole["resolved_blocks"]),
                 # Data files of the paper's model need not name it.
                 rate_strengthening=attributes.get("rate_strengthening", 0.0),
-                **{
-                    name: attributes[name]
-                    for name in (
-                        "boundary", "release", "scheme", "duration", "dx", "gamma", "beta", "max_step",
-                        "friction_ratio",
-                    )
-                },
-            )  # fmt: skip
+                **{name: kind(attributes[name]) for name, kind in kinds.items()},
+                **{name: attributes[name] for name in named},
+            )
         except KeyError as error:
             raise ValueError(f"{error.args[0]}: missing; allowed: every attribute of a run") from None
 

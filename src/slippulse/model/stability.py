@@ -80,24 +80,9 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     return float(lower)
 
 
-def taylor_amplification(order: int, step: float, stiffness: np.ndarray, damping: np.ndarray) -> float:
-    """Largest amplification of a mode by one localised step, in units of dx.
-
-    Parameters
-    ----------
-    order : order of the velocity's polynomial; slip is advanced to one order more
-    step : in units of dx
-    stiffness, damping : of each mode, d^2u/dt^2 = -stiffness u - damping du/dt
-    """
-    return float(np.max(_amplifications(np.array([step]), _derivatives(order, stiffness, damping))))
-
-
 def _derivatives(order: int, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
     """Time derivatives of slip of each mode, each a combination of slip and velocity at the start."""
-    derivatives = [
-        np.outer([1.0, 0.0], np.ones_like(stiffness)),
-        np.outer([0.0, 1.0], np.ones_like(stiffness)),
-    ]
+    derivatives = [np.outer(start, np.ones_like(stiffness)) for start in np.eye(2)]
     for _ in range(order):
         derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
     return np.array(derivatives)

@@ -25,31 +25,16 @@ DONE, CONTINUE, GROW, UNSTABLE, ALL_STUCK = 0, 1, 2, 3, 4
 
 # Records whose fields are attributes, for kernels and for Python alike. One dtype object for each kind: numba knows it
 # again by its address, and would find the type of a copy anew in each call.
+# pending_step: the step whose viscous loss still lacks the part of the dissipation at its end. rate_time: when the loss
+# to rate strengthening was last added, its rate then, and the derivative of that.
+_TIMES = ("time", "first_stick_time", "pending_step", "rate_time", "rate", "rate_change")
+_SUMS = ("viscous_loss", "stick_loss", "min_velocity", "min_stuck_stress")
+_UPDATES = ("steps", "block_updates", "event_updates", "samples_taken")
+_EVENTS = ("releases", "re_releases", "sticks", "first_stuck_block")
 TALLY = np.dtype(
     (
         np.record,
-        [
-            ("time", np.float64),
-            ("steps", np.int64),
-            ("block_updates", np.int64),
-            ("event_updates", np.int64),
-            ("releases", np.int64),
-            ("re_releases", np.int64),
-            ("sticks", np.int64),
-            ("first_stuck_block", np.int64),
-            ("first_stick_time", np.float64),
-            ("samples_taken", np.int64),
-            ("viscous_loss", np.float64),
-            # Step whose viscous loss still lacks the part of the dissipation at its end.
-            ("pending_step", np.float64),
-            # When the loss to rate strengthening was last added, its rate then, and the derivative of that.
-            ("rate_time", np.float64),
-            ("rate", np.float64),
-            ("rate_change", np.float64),
-            ("stick_loss", np.float64),
-            ("min_velocity", np.float64),
-            ("min_stuck_stress", np.float64),
-        ],
+        [(name, np.float64) for name in _TIMES + _SUMS] + [(name, np.int64) for name in _UPDATES + _EVENTS],
     )
 )
 COUNT = np.dtype((np.record, [("n", np.int64)]))
@@ -197,5 +182,5 @@ def make_scratch(size: int, order: int) -> Scratch:
 
 
 def make_medium(dx: float, leaf: float, beta: float, mirror: bool, total: bool, alpha: float = 0.0) -> Medium:
-    """Constants of one run: ``leaf`` is Gamma gamma."""
+    """Constants of one run."""
     return Medium(dx, 1.0 / dx, 1.0 / (dx * dx), leaf, beta, beta / (dx * dx), alpha, mirror, total)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 
@@ -78,16 +78,6 @@ class Lattice:
     def tally(self) -> np.record:
         """Counters and totals of the run."""
         return self.history.tally
-
-    def arrays(self) -> Iterator[np.ndarray]:
-        """Every array of the run."""
-        groups = [self.motion, self.segments, self.scratch, self.history, self.recorder, self.sliding]
-        while groups:
-            item = groups.pop()
-            if isinstance(item, tuple):
-                groups.extend(item)
-            elif isinstance(item, np.ndarray):
-                yield item
 
     def _sampled_blocks(self, size: int) -> np.ndarray:
         """Array position of the block nearest to each sampled position; -1 outside the lattice."""

@@ -42,11 +42,9 @@ def energies(lattice: Lattice, totals: dict) -> dict:
     strain = motion.strain
     if not lattice.localised:
         strain = np.append(np.diff(u) / dx, 0.0)
-    weight = np.full(size, 2.0 if medium.mirror else 1.0)
-    bond = weight.copy()
+    weight, bond = np.full((2, size), 2.0 if medium.mirror else 1.0)
     if medium.mirror:
-        weight[0], weight[1] = 0.0, 1.0
-        bond[0] = 0.0
+        weight[:2], bond[0] = (0.0, 1.0), 0.0
     parts = {
         "work_of_prestress": float(np.sum(weight * motion.tau * u) * dx),
         "kinetic_energy": float(0.5 * np.sum(weight * v * v) * dx),
@@ -55,10 +53,9 @@ def energies(lattice: Lattice, totals: dict) -> dict:
         "viscous_loss": totals["viscous_loss"],
         "event_loss": totals["stick_loss"],
     }
-    stored = sum(value for key, value in parts.items() if key != "work_of_prestress")
-    largest = max(abs(value) for value in parts.values())
-    parts["energy_residual"] = abs(parts["work_of_prestress"] - stored) / largest if largest else 0.0
-    return parts
+    work, *stored = parts.values()
+    largest = max(map(abs, parts.values()))
+    return parts | {"energy_residual": abs(work - sum(stored)) / largest if largest else 0.0}
 
 
 def stress(lattice: Lattice) -> np.ndarray:

@@ -66,7 +66,7 @@ def mirrored(prestress: Prestress) -> Prestress:
 def pieces(prestress: Prestress) -> list[Piece]:
     """The pieces from left to right."""
     out = []
-    for left, right, level in _between_jumps(prestress):
+    for left, right, level in prestress.intervals:
         sign, marks = _crossings(prestress, left, right, level, 0.0)
         for a, b in pairwise([left, *marks, right]):
             if b > a:
@@ -78,7 +78,7 @@ def pieces(prestress: Prestress) -> list[Piece]:
 def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     """The intervals (points, where tau only touches 1) with tau >= 1, from left to right."""
     found: list[tuple[float, float]] = []
-    for left, right, level in _between_jumps(prestress):
+    for left, right, level in prestress.intervals:
         over, marks = _crossings(prestress, left, right, level, 1.0)
         marks = [left, *marks] if over else marks
         found += zip(marks[::2], [*marks[1::2], right], strict=False)
@@ -112,15 +112,6 @@ def _crossings(prestress, left: float, right: float, level: float, value: float)
 def _gaussians(prestress: Prestress) -> list[tuple[float, float]]:
     """Centre and width of the peak and of each bump."""
     return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
-
-
-def _between_jumps(prestress: Prestress) -> list[tuple[float, float, float]]:
-    """Intervals of one side level: left, right, level."""
-    jumps = sorted({0.0, *(position for position, _ in prestress.steps)})
-    inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
-    levels = prestress.level(np.array(inside)).tolist()
-    ends = [-np.inf, *jumps, np.inf]
-    return list(zip(ends[:-1], ends[1:], levels, strict=True))
 
 
 def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
