@@ -1,7 +1,5 @@
 """What all tests share: the project's folders and its configuration."""
 
-from __future__ import annotations
-
 import copy
 import os
 import shutil
@@ -22,16 +20,13 @@ from slippulse.steps.inputs import given
 from slippulse.steps.reach import declared
 from slippulse.steps.targets import selected
 
-PROJECT = Path(__file__).resolve().parents[1]
 # Two workers share two cores.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Files first that run no kernel, while the kernels are compiled; then those that take longest, so that the workers end
 # together.
-WITHOUT_KERNELS = ("test_rendering", "test_final_regime", "test_refused_commands", "test_dependencies")
+WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_dependencies")
 FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults", "test_pipeline")
-
-
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
 # The file beside both that says that they are there, and how long a worker waits for it in seconds.
@@ -63,11 +58,8 @@ def prepare(folder: Path) -> None:
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """A worker waits for the kernels, or after a while compiles them itself."""
-    if (
-        item.path.stem not in WITHOUT_KERNELS
-        and hasattr(item.config, "workerinput")
-        and UNTOUCHED in os.environ
-    ):
+    worker = hasattr(item.config, "workerinput") and UNTOUCHED in os.environ
+    if worker and item.path.stem not in WITHOUT_KERNELS:
         ready, end = Path(os.environ[UNTOUCHED]).with_name(READY), time.monotonic() + LONGEST_WAIT
         while not ready.exists() and time.monotonic() < end:
             time.sleep(0.1)
@@ -97,37 +89,42 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="session")
 def project() -> Path:
     """The folder of the project."""
-    return PROJECT
+    return Path(__file__).resolve().parents[1]
+
+
+@pytest.fixture(scope="session")
+def shipped(project: Path) -> dict:
+    """The shipped configuration, to be read only."""
+    return yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
 
 
 @pytest.fixture
-def config(project: Path) -> dict:
+def config(shipped: dict) -> dict:
     """The shipped configuration, a fresh copy."""
-    return copy.deepcopy(yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8")))
+    return copy.deepcopy(shipped)
 
 
 @pytest.fixture(scope="session")
-def paper_accuracy() -> dict:
+def paper_accuracy(shipped: dict) -> dict:
     """Order and step of the preset "paper"."""
-    config = yaml.safe_load((PROJECT / "config/config.yaml").read_text(encoding="utf-8"))
-    return {key: config["presets"]["paper"][key] for key in ("max_step", "order")}
+    return {key: shipped["presets"]["paper"][key] for key in ("max_step", "order")}
 
 
 @pytest.fixture(scope="session")
-def study(project, tmp_path_factory):
+def study(project, shipped, tmp_path_factory):
     """A function that runs a study with the shipped settings and returns its table, through the CSV."""
-    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
     # Of all workers: what one has made the other reads.
-    shared = UNTOUCHED in os.environ
-    folder = Path(os.environ[UNTOUCHED]).parent if shared else tmp_path_factory.mktemp("studies")
+    folder = (
+        Path(os.environ[UNTOUCHED]).parent if UNTOUCHED in os.environ else tmp_path_factory.mktemp("studies")
+    )
 
     def run(name: str, data: dict | None = None, tables: dict | None = None):
         path = folder / f"{name}.csv"
         if not path.exists():
             needs = declared(f"studies.{name}", "NEEDS")
-            settings = selected(config, needs.get("settings", ()), {})
+            settings = selected(shipped, needs.get("settings", ()), {})
             if "sweeps" in needs:
-                settings["sweeps"] = {sweep: small_sweep(config, sweep) for sweep in needs["sweeps"]}
+                settings["sweeps"] = {sweep: small_sweep(shipped, sweep) for sweep in needs["sweeps"]}
             module = import_module(f"slippulse.studies.{name}")
             lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
             save_table(module.table(data or {}, (tables or {}) | lists, settings), path)

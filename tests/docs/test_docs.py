@@ -1,7 +1,5 @@
 """The tutorial runs from top to bottom, its numbers are what its text says, and the reference has every public name."""
 
-from __future__ import annotations
-
 import math
 import runpy
 
@@ -18,8 +16,7 @@ def test_the_tutorial_keeps_what_it_says(project, tmp_path):
     balance = (1.5 + 1.0) / 0.5 * math.sqrt(math.pi / 2.0)
     assert 0.9 * balance < -names["stopped"] < 1.001 * balance
     # The lattice is near the exact solution.
-    assert 0.0 < names["stick_error"] < 2.0 * names["scene"].dx
-    assert 0.0 < names["slip_error"] < 2.0 * names["scene"].dx
+    assert all(0.0 < names[error] < 2.0 * names["scene"].dx for error in ("stick_error", "slip_error"))
     # Softer springs give more slip at the same speed.
     assert names["slip"]["soft"] > 1.5 * names["slip"]["stiff"]
     assert names["fronts"]["soft"] == pytest.approx(names["fronts"]["stiff"], rel=tol.FRONT_SPEED)

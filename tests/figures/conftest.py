@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
-import yaml
 from selection import small_sweep
 
 from slippulse.configuration.expand import expand
@@ -33,18 +32,17 @@ CLAIMS = [
 
 
 @pytest.fixture(scope="session")
-def draw(project, tmp_path_factory, study):
+def draw(shipped, tmp_path_factory, study):
     """A function that draws a figure by name and returns its table, its Figure and what it was drawn from."""
-    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
     folder = tmp_path_factory.mktemp("tables")
     simulated, drawn = {}, {}
 
     def simulate(name: str):
         if name not in simulated:
-            block = small_sweep(config, name)
+            block = small_sweep(shipped, name)
             scenes, samples = expand(block)
             sweep = run_sweep(scenes, samples, block["record"], threads=2)
-            save_table(measured_table(sweep, config["measure"]), folder / f"{name}.csv")
+            save_table(measured_table(sweep, shipped["measure"]), folder / f"{name}.csv")
             simulated[name] = (sweep, load_table(folder / f"{name}.csv"), scenes)
         return simulated[name]
 
@@ -53,7 +51,7 @@ def draw(project, tmp_path_factory, study):
         data = {source: simulate(source)[0] for source in needs.get("data", [])}
         tables = {source: simulate(source)[1] for source in needs.get("measured", [])}
         for source in needs.get("predicted", []):
-            path, measure = folder / f"{source}.predicted.csv", config["measure"]
+            path, measure = folder / f"{source}.predicted.csv", shipped["measure"]
             if not path.exists():
                 save_table(predictions(simulate(source)[2], measure["share"], measure["still"]), path)
             predicted = load_table(path)
@@ -68,7 +66,7 @@ def draw(project, tmp_path_factory, study):
         if name not in drawn:
             module = import_module(f"slippulse.figures.{name}")
             needs = declared(f"figures.{name}", "NEEDS")
-            settings = selected(config, needs.get("settings", ()), config["figures"].get(name, {}))
+            settings = selected(shipped, needs.get("settings", ()), shipped["figures"].get(name, {}))
             data, tables = inputs(needs)
             save_table(module.table(data, tables, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")

@@ -44,15 +44,12 @@ SCENES = {
 
 
 @pytest.fixture(scope="module")
-def drawn(project, tmp_path_factory):
+def drawn(shipped, tmp_path_factory):
     """Each scene through the same steps as in the pipeline."""
-    import yaml
-
-    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
-    folder, accuracy, made = tmp_path_factory.mktemp("scenes"), config["presets"]["draft"], {}
+    folder, accuracy, made = tmp_path_factory.mktemp("scenes"), shipped["presets"]["draft"], {}
 
     def sweep(scene, coarser):
-        model = Model.model_validate(config["model"])
+        model = Model.model_validate(shipped["model"])
         block = resolve(
             scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model),
             model,
@@ -64,11 +61,11 @@ def drawn(project, tmp_path_factory):
 
     for name, scene in SCENES.items():
         runs = [sweep(scene, coarser) for coarser in (1.0, *accuracy["coarser"])]
-        tables = tuple(measured_table(run, config["measure"]) for run in runs)
+        tables = tuple(measured_table(run, shipped["measure"]) for run in runs)
         study = grid_tables(tables, tuple(accuracy["coarser"]), PARAMETERS)
         run = point(runs[0], 0)
         predicted = predictions(
-            [Scene.from_attributes(run.attrs)], *(config["measure"][k] for k in ("share", "still"))
+            [Scene.from_attributes(run.attrs)], *(shipped["measure"][k] for k in ("share", "still"))
         )
         numbers = scene_numbers(tables[0].join(predicted).iloc[0], study)
         save_table(figure.table(run, numbers, TITLE), folder / f"{name}.csv")

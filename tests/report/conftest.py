@@ -104,11 +104,6 @@ def manuscript(project) -> Path:
 
 
 @pytest.fixture(scope="session")
-def shipped(project) -> dict:
-    return read(project / "config/config.yaml")
-
-
-@pytest.fixture(scope="session")
 def make_inputs(manuscript, shipped, tmp_path_factory):
     """A function that invents a run of a configuration: the inputs of its report."""
     folder = tmp_path_factory.mktemp("figures")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-import yaml
 
 from slippulse.configuration.resolve import resolve
 from slippulse.steps.inputs import given
@@ -19,10 +18,9 @@ ARRESTS = {0.9: (8.96, 5.64), 0.95: (21.8, 12.6), 0.99: (41.0, 24.1)}
 
 
 @pytest.mark.slow
-def test_known_cases(project):
-    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
+def test_known_cases(project, shipped):
     sweeps = {
-        name: resolve(config["simulations"][name], config["model"], config["presets"]["paper"], 1.0)
+        name: resolve(shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"])
         for name in open_choices.NEEDS["sweeps"]
     }
     lists = given({"lists": [project / path for path in open_choices.NEEDS["lists"]]})[1]

@@ -64,17 +64,14 @@ def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
 
 
 @pytest.fixture(scope="module")
-def made(project, tmp_path_factory):
+def made(shipped, tmp_path_factory):
     """A function that makes all files of a sweep, or of one chunk of it, and returns their paths."""
-    import yaml
-
-    config = yaml.safe_load((project / "config/config.yaml").read_text(encoding="utf-8"))
     folder = tmp_path_factory.mktemp("chunks")
 
     def make(name: str, chunk: list[int] | None = None) -> list:
         part = {"chunk": chunk} if chunk else {}
         blocks = {
-            factor: resolve(SWEEPS[name], config["model"], COARSE, factor) | part
+            factor: resolve(SWEEPS[name], shipped["model"], COARSE, factor) | part
             for factor in (1.0, 1.5, 2.0)
         }
         files = [
@@ -83,7 +80,7 @@ def made(project, tmp_path_factory):
         ]
         if not files[0].exists():
             data, measured, study, coarser = files
-            settings = {"simulation": name, "measure": config["measure"], "threads": 1}
+            settings = {"simulation": name, "measure": shipped["measure"], "threads": 1}
             with pytest.MonkeyPatch.context() as patch:
                 patch.setenv(VARIABLE, CONFIGURATION)
                 simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})

@@ -1,6 +1,7 @@
 """The pipeline's own command refuses wrong input before any job, and goes on where that is asked for."""
 
 import os
+import runpy
 import shutil
 import site
 import subprocess
@@ -151,3 +152,12 @@ def test_a_command_says_in_one_line_how_it_is_used(project, tmp_path, case):
         cwd=project, capture_output=True, text=True, timeout=60, check=False,
     )  # fmt: skip
     assert result.returncode == code and said in result.stderr and result.stderr.count("\n") == 1
+
+
+def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
+    monkeypatch.chdir(project)
+    meant = runpy.run_path("workflow/run.py")["meant"]
+    path = "results/figures/fig07_damage_zone.png"
+    short = {"fig7": "fig07_damage_zone", "figure_07.png": path, path: path}
+    short["fig07_wrong.png"] = "fig07_wrong.png"
+    assert {name: meant(name) for name in short} == short
