@@ -44,23 +44,19 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
     claims = []
     for i, (id, entry) in enumerate(entries.items()):
-        deviation = abs(scale * (1.0 + 0.00137 * (i + 1)) - 1.0)
-        claims.append(
-            CLAIM
-            | {
-                "id": id, "kind": entry["kind"], "predicted": 1.0, "measured": 1.0 + deviation, "uncertainty": 0.00021,
-                "statement": rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$",
-                "counted": "follows_from" not in entry, "follows_from": entry.get("follows_from", []),
-                "tolerance": entry["tolerance"], "tolerance_exponent": entry.get("tolerance_exponent"),
-                "deviation": deviation, "verdict": within(deviation, 0.00021, entry["tolerance"]),
-                "reason": entry["reason"],
-                "why": "since $x$ is so", "note": r"measured at $\Delta x=0$", "figure": "fig05_scaling",
-                "ninety": 1e-3 * (i + 1), "largest": 2e-3 * (i + 1), "further": further,
-                "exponent": 1.01 if "tolerance_exponent" in entry else None, "exponent_uncertainty": 0.002,
-                "exact_median": 1e-5 * (i + 1), "exact_largest": 2e-5 * (i + 1),
-            }
-            | ({"held": i, "failed": 0, "undecided": 3} if entry["kind"] == "qualitative" else {})
-        )  # fmt: skip
+        off = abs(scale * (1.0 + 0.00137 * (i + 1)) - 1.0)
+        claim = CLAIM | {key: entry[key] for key in ("kind", "tolerance", "reason")} | {
+            "id": id, "predicted": 1.0, "measured": 1.0 + off, "uncertainty": 0.00021, "deviation": off,
+            "statement": rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$",
+            "counted": "follows_from" not in entry, "follows_from": entry.get("follows_from", []),
+            "tolerance_exponent": entry.get("tolerance_exponent"),
+            "verdict": within(off, 0.00021, entry["tolerance"]), "further": further, "figure": "fig05_scaling",
+            "why": "since $x$ is so", "note": r"measured at $\Delta x=0$", "ninety": 1e-3 * (i + 1),
+            "largest": 2e-3 * (i + 1), "exponent": 1.01 if "tolerance_exponent" in entry else None,
+            "exponent_uncertainty": 0.002, "exact_median": 1e-5 * (i + 1), "exact_largest": 2e-5 * (i + 1),
+        }  # fmt: skip
+        counts = {"held": i, "failed": 0, "undecided": 3} if entry["kind"] == "qualitative" else {}
+        claims.append(claim | counts)
     return claims
 
 
@@ -75,27 +71,26 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     """What the report reads, with a number for each that its text asks for."""
 
-    scaling = {f"{who}transition_{name}": 1.0 for who in ("", "exact_") for name in ("time", "length")}
-
     def row(variable: str) -> dict[str, float]:
         return {name: 1.0 + 0.01 * i for i, name in enumerate(re.findall(rf"\b{variable}\.(\w+)", texts))}
 
     quoted = [{"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()]
     for name in ("release_time", "stick_time", "final_slip"):
         quoted += [{"quantity": name, "x": x, "value": 1.0 + x} for x in (0.0, 1.0)]
-    study = pd.DataFrame(
-        {"point": [0, 1], "quantity": "front_speed_right", "value": 1.25, "uncertainty": [0.0013, np.nan],
-         "observed_order": [1.04, np.nan]}
-    )  # fmt: skip
-    rows = {
+    found = {
         "space_time_displacement": [row("scene")], "space_time_stress": [row("crack")],
-        "scaling_displacement": [scaling],
+        "scaling_displacement": [
+            {f"{who}transition_{name}": 1.0 for who in ("", "exact_") for name in ("time", "length")}
+        ],
+        "arrest_path": [{"to_go": 1e-6, "time": 2.88} | row("crack")],
         "derivations": quoted, "extremes": [EDGE],
     }  # fmt: skip
-    studied = write_report.NEEDS["uncertainties"]
-    return {name: pd.DataFrame(found) for name, found in rows.items()} | {
-        f"uncertainties/{name}": study for name in studied
-    }
+    for name in write_report.NEEDS["uncertainties"]:
+        found[f"uncertainties/{name}"] = [
+            {"quantity": "front_speed_right", "value": 1.25, "uncertainty": 0.0013, "observed_order": 1.04},
+            {"quantity": "front_speed_right", "value": 1.25},
+        ]
+    return {name: pd.DataFrame(rows) for name, rows in found.items()}
 
 
 @pytest.fixture(scope="session")
