@@ -61,22 +61,16 @@ class Outline(HTMLParser):
 def results(project, tmp_path_factory):
     """A small run whose preset is not the shipped one, and beside its folder the texts of its page."""
     results = tmp_path_factory.mktemp("page") / "results"
-    for folder in ("figures", "scenes"):
-        (results / folder).mkdir(parents=True)
+    made = [f"figures/{name}.{ending}" for name in NAMES for ending in ("pdf", "csv")]
+    for path in [*TABLES, *made, "scenes/made.html"]:
+        (results / path).parent.mkdir(parents=True, exist_ok=True)
+        (results / path).touch()
     for name in NAMES:
         Image.new("1", (900, 600)).save(results / f"figures/{name}.png")
-        for ending in ("pdf", "csv"):
-            (results / f"figures/{name}.{ending}").touch()
-    for name in TABLES:
-        (results / name).parent.mkdir(exist_ok=True)
-        (results / name).touch()
     (results / "claims.html").write_text(claims_page(CLAIMS, tables=TABLES), encoding="utf-8")
-    (results / "scenes/made.html").write_text("<p>")
     config = read(project / "config/config.yaml")
     facts = provenance(project, "", config | {"preset": "draft"}, config, results)
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
-    for name, content in {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}.items():
-        (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
     caption = {
         "alt": "A line <up>", "caption": "(a) $x$.", "finding": "Found in {{ claim('speed').runs }} runs.",
     }  # fmt: skip
@@ -86,24 +80,23 @@ def results(project, tmp_path_factory):
         {"topic": "Back", "named": "a length", "claims": ["length"], "text": "No."},
         {"topic": "Ahead", "named": "a front", "claims": ["length"], "text": "No."},
     ]
-    texts = {
-        "captions": {name: caption | {"title": title} for name, title in NAMES.items()},
-        "summary": {
-            "picture": "fig01_one",
-            "accuracy": "Of {{ claim('speed').runs }} runs.",
-            "verdict": lines,
-        },
-    }
-    for name, content in texts.items():
-        (results.parent / f"{name}.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    summary = {"picture": "fig01_one", "accuracy": "Of {{ claim('speed').runs }} runs.", "verdict": lines}
+    captions = {name: caption | {"title": title} for name, title in NAMES.items()}
+    for path, content in {
+        "results/claims.json": CLAIMS, "results/findings.json": [FINDING], "results/provenance.json": facts,
+        "captions.yaml": captions, "summary.yaml": summary,
+    }.items():  # fmt: skip
+        write = json.dumps if path.endswith("json") else yaml.safe_dump
+        (results.parent / path).write_text(write(content), encoding="utf-8")
     return results
 
 
 def written(results, captions: str = "captions") -> str:
     texts = {"captions": results.parent / f"{captions}.yaml", "summary": results.parent / "summary.yaml"}
     galleries = {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]}
-    scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
-    return index_page(results, texts, galleries, scenes)
+    return index_page(
+        results, texts, galleries, {"made": "A scene <that> is there", "not_made": "A scene that is not"}
+    )
 
 
 @pytest.fixture(scope="module")

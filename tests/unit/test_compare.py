@@ -39,27 +39,25 @@ def tree(
 
 NAN = math.nan
 ELASTIC, DRAFT = CONFIG | {"model": {"release": "elastic"}}, CONFIG | {"preset": "draft"}
+DIFFERENT = [
+    # The measured numbers are compared, whatever an older study has.
+    ({}, {"speed": 1.03, "studied": 1.0}, "point 0, speed: 1 against 1.03"),
+    ({}, {"speed": 1.03}, "point 0, speed: 1 against 1.03; allowed: a difference of 0.02"),
+    ({}, {"run": {"left": -2.0}}, "sweep.csv: other runs"),
+    ({}, {"run": {"gamma": 0.3}}, "sweep.csv: other runs"),
+    ({}, {"verdict": "not reproduced"}, "speed: verdict 'reproduced' against 'not reproduced'"),
+    ({}, {"config": ELASTIC}, "model.release: 'total' against 'elastic'"),
+    # On one lattice everything agrees.
+    ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: 1 against 1.5"),
+    ({}, {"speed": NAN, "studied": 1.0}, "speed: 1 against nan"),
+    ({"pulse_state": "steady"}, {"pulse_state": "unsteady"}, "pulse_state: 'steady' against 'unsteady'"),
+    ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
+    ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
+    ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
+]
 
 
-@pytest.mark.parametrize(
-    ("one", "two", "said"),
-    [
-        # The measured numbers are compared, whatever an older study has.
-        ({}, {"speed": 1.03, "studied": 1.0}, "point 0, speed: 1 against 1.03"),
-        ({}, {"speed": 1.03}, "point 0, speed: 1 against 1.03; allowed: a difference of 0.02"),
-        ({}, {"run": {"left": -2.0}}, "sweep.csv: other runs"),
-        ({}, {"run": {"gamma": 0.3}}, "sweep.csv: other runs"),
-        ({}, {"verdict": "not reproduced"}, "speed: verdict 'reproduced' against 'not reproduced'"),
-        ({}, {"config": ELASTIC}, "model.release: 'total' against 'elastic'"),
-        # On one lattice everything agrees.
-        ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: 1 against 1.5"),
-        ({}, {"speed": NAN, "studied": 1.0}, "speed: 1 against nan"),
-        ({"pulse_state": "steady"}, {"pulse_state": "unsteady"}, "pulse_state: 'steady' against 'unsteady'"),
-        ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
-        ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
-        ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
-    ],
-)
+@pytest.mark.parametrize(("one", "two", "said"), DIFFERENT)
 def test_what_differs_is_said(tmp_path, capsys, one, two, said):
     assert main([str(tree(tmp_path / "here", **one)), str(tree(tmp_path / "there", **two))]) == 1
     assert said in capsys.readouterr().out
@@ -71,20 +69,18 @@ def test_numbers_agree_within_both_uncertainties_at_any_preset(tmp_path, capsys,
     assert "1 of 1 numbers agree" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        # As after a run of a single figure with another gamma: the study of uncertainties is the old one.
-        (
-            lambda tree: pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}]).to_csv(tree / TABLE, index=False),
-            "0 of 0 numbers agree",
-        ),
-        (lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"), "own.csv: in one tree only"),
-        (lambda tree: (tree / "provenance.json").unlink(), "configurations not compared"),
-        (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
-        (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
-    ],
-)
+CHANGED = pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}])
+MISSING = [
+    # As after a run of a single figure with another gamma: the study of uncertainties is the old one.
+    (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
+    (lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"), "own.csv: in one tree only"),
+    (lambda tree: (tree / "provenance.json").unlink(), "configurations not compared"),
+    (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
+    (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), MISSING)
 def test_what_is_missing_in_one_tree_is_said(tmp_path, capsys, change, said):
     here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
     change(here)

@@ -8,54 +8,34 @@ from slippulse.data.numerals import number, percent, rounded, setting, short, wi
 from slippulse.data.prose import fill
 from slippulse.report.html import markup_of
 
+NOT = "not measured"
+# Value, its uncertainty, and how both are written.
+UNCERTAIN = [
+    (1.9169812, 3.3e-6, "1.91698(1)"), (1.47554, 0.01267, "1.476(13)"), (0.0867, 0.00984, "0.087(10)"),
+    (116.57648, 0.05685, "116.58(6)"), (-0.0087971, 0.0010633, "−0.0088(11)"), (1.0, 0.5, "1.0(5)"),
+    (-6.0e-17, 1.6e-16, "−0.6(1.6)×10⁻¹⁶"), (123456789.0, 1.0, "1.23457(1)×10⁸"), (1.0, 0.0, "1"),
+    (0.123456789, 0.0, "0.12346"), (0.123456789, math.nan, "0.12346"), (None, None, NOT),
+]  # fmt: skip
+WRITTEN = [
+    (number, {0.0: "0", 2: "2", -0.5: "−0.500", 1e-7: "1.00×10⁻⁷", math.inf: "∞", math.nan: NOT, None: NOT}),
+    (lambda value: number(value, 9), {math.pi: "3.1416"}),
+    # Digits are counted in what is written: 0.9996 with three digits is 1.00.
+    (number, {0.9996: "1.00", 0.9994: "0.999", 9.996: "10.0", 0.09996: "0.100"}),
+    (percent, {0.95: "95 %", 0.0712: "7.1 %", 1e-8: "10⁻⁸", None: NOT}),
+    (setting, {0.01: "0.01", -0.3: "−0.3", 1e-9: "10⁻⁹", 12: "12"}),
+    (rounded, {0.1: "0.1", 1.23456: "1.235", None: NOT}),
+    (lambda value: short(value, 10), {(1,) * 99: "(1, 1, ...", None: "–"}),
+]
 
-@pytest.mark.parametrize(
-    ("value", "uncertainty", "text"),
-    [
-        (1.9169812, 3.3e-6, "1.91698(1)"),
-        (1.47554, 0.01267, "1.476(13)"),
-        (0.0867, 0.00984, "0.087(10)"),
-        (116.57648, 0.05685, "116.58(6)"),
-        (-0.0087971, 0.0010633, "−0.0088(11)"),
-        (-6.0e-17, 1.6e-16, "−0.6(1.6)×10⁻¹⁶"),
-        (123456789.0, 1.0, "1.23457(1)×10⁸"),
-        (1.0, 0.5, "1.0(5)"),
-        (1.0, 0.0, "1"),
-        (0.123456789, 0.0, "0.12346"),
-        (0.123456789, math.nan, "0.12346"),
-        (None, None, "not measured"),
-    ],
-)
+
+@pytest.mark.parametrize(("value", "uncertainty", "text"), UNCERTAIN)
 def test_an_uncertainty_stands_in_the_last_digits(value, uncertainty, text):
     assert with_uncertainty(value, uncertainty) == text
 
 
-NOT = "not measured"
-
-
-@pytest.mark.parametrize(
-    ("write", "values", "texts"),
-    [
-        (
-            number,
-            (0.0, 2, -0.5, 1e-7, math.inf, math.nan, None),
-            ("0", "2", "−0.500", "1.00×10⁻⁷", "∞", NOT, NOT),
-        ),
-        (lambda value: number(value, 9), (math.pi,), ("3.1416",)),
-        # Digits are counted in what is written: 0.9996 with three digits is 1.00.
-        (
-            lambda value: number(value, 3),
-            (0.9996, 0.9994, 9.996, 0.09996),
-            ("1.00", "0.999", "10.0", "0.100"),
-        ),
-        (percent, (0.95, 0.0712, 1e-8, None), ("95 %", "7.1 %", "10⁻⁸", NOT)),
-        (setting, (0.01, -0.3, 1e-9, 12), ("0.01", "−0.3", "10⁻⁹", "12")),
-        (rounded, (0.1, 1.23456, None), ("0.1", "1.235", NOT)),
-        (lambda value: short(value, 10), ([1] * 99, None), ("[1, 1, ...", "–")),
-    ],
-)
-def test_numbers_as_they_are_written(write, values, texts):
-    assert tuple(write(value) for value in values) == texts
+@pytest.mark.parametrize(("write", "texts"), WRITTEN)
+def test_numbers_as_they_are_written(write, texts):
+    assert {value: write(value) for value in texts} == texts
 
 
 def test_prose_says_what_is_missing_and_refuses_what_is_unknown():
