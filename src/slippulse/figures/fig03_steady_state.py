@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .shared.pulses import conditions, draw_prestress, draw_pulses, handles, pulse_rows
+from .shared.pulses import conditions, draw_prestress, draw_pulses, handles, pulse_table
 from .style import COLUMN, new_panels
 
 NEEDS = {
@@ -20,10 +20,8 @@ NEEDS = {
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Slip velocity of the pulses of both sweeps in the frame of its largest value, as `pulse_rows` has it."""
-    names = NEEDS["data"]
-    parts = [pulse_rows(name, data, tables, settings, ("slip_velocity",)) for name in names]
-    return pd.concat(parts, ignore_index=True)
+    """Slip velocity of the pulses of both sweeps in the frame of its largest value, as `pulse_table` has it."""
+    return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -33,7 +31,7 @@ def plot(table: pd.DataFrame) -> Figure:
         rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")
         draw_prestress(axes, rows, (0.14, 0.7, 0.28, 0.2), widths)
-        axes.set_title(conditions(rows), fontsize=9, loc="right")
+        axes.set_title(conditions(rows), loc="right")
         axes.set_ylim(-0.03, 1.06)
         axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.45, -0.2))
     return figure

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import pandas as pd
 from matplotlib.figure import Figure
 
+from .shared import scaling
 from .shared.pulses import prestress_inset
-from .shared.scaling import (
-    LEVEL,
-    OTHER,
-    SYMBOLS,
-    chosen,
-    colour_bar,
-    colours,
-    draw_collapse,
-    draw_ratio,
-    transition_rows,
-)
+from .shared.scaling import OTHER, SYMBOLS, chosen
+from .shared.scaling import transition_table as table
 from .style import BLACK, PAGE, new_panels
+
+__all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
@@ -28,30 +20,31 @@ NEEDS = {
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Every run of both sweeps, as `transition_rows` has it."""
-    return pd.concat([transition_rows(tables[f"scaling_{name}"]) for name in BOUNDARIES], ignore_index=True)
-
-
 def plot(table: pd.DataFrame) -> Figure:
     """A row a quantity, a column a boundary: the collapse, and inset measured over predicted against the level."""
     figure, panels = new_panels(PAGE, 4.8, 2, 2)
     for column, (boundary, title) in enumerate(BOUNDARIES.items()):
         runs, other = table[table["boundary"] == boundary], OTHER[boundary][0]
         for axes, (quantity, symbol) in zip(panels[column::2], SYMBOLS.items(), strict=True):
-            draw_collapse(axes, runs, quantity)
+            scaling.draw_collapse(axes, runs, quantity)
             axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
             inset = axes.inset_axes((0.09, 0.58, 0.36, 0.33))
             inset.set_in_layout(False)
             inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
-            draw_ratio(inset, runs[runs[other].isin(chosen(runs[other], 3))], quantity, "left", other, "o")
+            scaling.draw_ratio(
+                inset, runs[runs[other].isin(chosen(runs[other], 3))], quantity, "left", other, "o"
+            )
             inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
-            inset.set_xlabel(LEVEL[boundary][1], fontsize=7.0, labelpad=0.0)
+            inset.set_xlabel(scaling.LEVEL[boundary][1], fontsize=7.0, labelpad=0.0)
             inset.set_title("measured / formula", fontsize=7.0, pad=2.0)
         narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
         narrow = narrow[narrow["left"].isin(chosen(runs["left"], 3))]
-        prestress_inset(panels[column], (0.7, 0.13, 0.26, 0.22), narrow, list(colours(narrow, "left")), 6.0)
+        prestress_inset(
+            panels[column], (0.7, 0.13, 0.26, 0.22), narrow, list(scaling.colours(narrow, "left")), 6.0
+        )
         panels[column].set_title(title, fontsize=9)
         for kind in ("left", other):
-            colour_bar(figure, panels[column::2], boundary, kind, location="bottom", aspect=35, pad=0.02)
+            scaling.colour_bar(
+                figure, panels[column::2], boundary, kind, location="bottom", aspect=35, pad=0.02
+            )
     return figure

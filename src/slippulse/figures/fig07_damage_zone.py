@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import matplotlib
 import numpy as np
 import pandas as pd
@@ -13,17 +11,15 @@ from matplotlib.patches import Rectangle
 
 from .shared.sketch import BOTH, arrow, label
 from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, new_panels
+from .style import as_given as table
+
+__all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {"studies": ["damage_zone"]}
 
 # Width of the sketch, and where displacements are counted from, in thicknesses of the zone.
 WIDTH, ORIGIN = 4.2, 1.95
 MUTED = "0.25"
-
-
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The study of the same name: displacements of the sketch (roles before, after) and stress drops (role curve)."""
-    return tables["damage_zone"]
 
 
 def plot(table: pd.DataFrame) -> Figure:

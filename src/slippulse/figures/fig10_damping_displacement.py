@@ -1,22 +1,8 @@
 """Figure 10: the transition under a displacement boundary for several damping ratios."""
 
-from __future__ import annotations
+from .shared.scaling import damping_figure as plot
+from .shared.scaling import transition_table as table
 
-from collections.abc import Mapping
-
-import pandas as pd
-from matplotlib.figure import Figure
-
-from .shared.scaling import damping_figure, transition_rows
+__all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {"measured": ["damping_displacement"], "predicted": ["damping_displacement"]}
-
-
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Every run, as `transition_rows` has it."""
-    return transition_rows(tables["damping_displacement"])
-
-
-def plot(table: pd.DataFrame) -> Figure:
-    """Measured over predicted against the damping ratio: L_trans left, T_trans right."""
-    return damping_figure(table)

@@ -11,6 +11,9 @@ from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, entry, few_ticks, new_panels
+from .style import as_given as table
+
+__all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {"studies": ["exact_rupture"]}
 
@@ -18,11 +21,6 @@ SCENES = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress"
 # Their names and markers.
 QUANTITIES = {"release": ("release", "o"), "stick": ("stick", "s"), "slip": ("slip", "^")}
 QUANTITIES["velocity"] = ("slip velocity", "D")
-
-
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The study exact_rupture as it is."""
-    return tables["exact_rupture"]
 
 
 def plot(table: pd.DataFrame) -> Figure:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import matplotlib
 import numpy as np
 import pandas as pd
@@ -11,16 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, new_panels
+from .style import as_given as table
+
+__all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {"studies": ["rate_dependence"]}
 
 REGIMES = {"pulse": (BLUE, "o"), "crack": (ORANGE, "s")}
 LINES: Look = {"color": BLACK, "linewidth": 1.0}
-
-
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The study rate_dependence as it is."""
-    return tables["rate_dependence"]
 
 
 def plot(table: pd.DataFrame) -> Figure:

@@ -9,12 +9,13 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...data.points import point
 from ...measure.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
-from ..style import BLACK, Look, colour_scale, entry
+from ..style import BLACK, PAGE, Look, colour_scale, entry, legend_below, new_panels
 from .scaling import chosen
 
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
@@ -47,27 +48,22 @@ SCALES = ("slip", "peak_velocity", "acceleration")
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
-def pulse_rows(
-    name: str, data: Mapping, tables: Mapping, settings: Mapping, fields: Sequence[str] = tuple(FIELDS)
-) -> pd.DataFrame:
-    """Simulated pulses of a sweep at some of its levels, and the exact one of each run.
+def pulse_table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+    """Simulated pulses of each sweep at some of its levels, and the exact one of each run.
 
-    Parameters
-    ----------
-    name : of the sweep, whose data and whose measured and predicted table are given
-    data, tables, settings : as of the figure, with the study pulse_profiles and the key measure.front_window
-    fields : which of FIELDS
-
-    Returns
-    -------
-    role "run" with the parameters, and roles "simulation" and "exact" over x, both in units of the scales: width, slip,
+    Role "run" has the parameters, roles "simulation" and "exact" are over x, both in units of the scales: width, slip,
     velocity and acceleration of the paper's pulse under a displacement boundary; under a stress boundary the width of
     the Gaussian, largest slip and velocity of the exact pulse far from nucleation, and that velocity over that width,
-    since its acceleration has no bound; panel: the boundary
+    since its acceleration has no bound. Panel is the boundary.
     """
-    runs, profiles = tables[name], tables["pulse_profiles"]
+    window = settings["measure"]["front_window"]
+    profiles = tables["pulse_profiles"].groupby("simulation")
+    parts = [_rows(sweep, tables[name], profiles.get_group(name), window) for name, sweep in data.items()]
+    return pd.concat(parts, ignore_index=True)
+
+
+def _rows(sweep: xr.Dataset, runs: pd.DataFrame, profiles: pd.DataFrame, window: float) -> pd.DataFrame:
     runs = runs[runs["left"].isin(chosen(runs["left"], LEVELS[runs["boundary"].iloc[0]]))]
-    profiles = profiles[profiles["simulation"] == name]
     parts = [runs[PARAMETERS].assign(role="run", run=runs.index)]
     for index, numbers in runs.iterrows():
         exact = profiles[profiles["run"] == index].assign(role="exact")
@@ -78,10 +74,8 @@ def pulse_rows(
             peak, width = numbers["exact_largest_velocity"], numbers["width"]
             scale = {"slip": exact["slip"].max(), "slip_velocity": peak, "slip_acceleration": peak / width}
             scale["x"], span, reach = width, float(np.ptp(exact["x"])), 1.0
-        run = point(data[name], int(index))
-        simulated = simulation(run, settings["measure"]["front_window"], span, reach)
-        found = pd.concat([simulated, exact])
-        curves = {key: (found[key] / scale[key]).round(DIGITS) for key in ("x", *fields)}
+        found = pd.concat([simulation(point(sweep, int(index)), window, span, reach), exact])
+        curves = {key: (found[key] / scale[key]).round(DIGITS) for key in ("x", *FIELDS)}
         parts.append(pd.DataFrame({"role": found["role"], "run": index, **curves}))
     return pd.concat(parts, ignore_index=True).assign(panel=runs["boundary"].iloc[0])
 
@@ -114,6 +108,24 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
         axes.plot(exact["x"], exact[field], style, color=colour, linewidth=0.8, gid=f"exact {run}")
     boundary = table["panel"].iloc[0]
     axes.set(xlabel=DISTANCE[boundary], ylabel=LABELS[boundary][FIELDS.index(field)])
+
+
+def plot_fields(table: pd.DataFrame) -> Figure:
+    """Figures 8 and 9: slip, slip velocity and acceleration of the pulses of one boundary."""
+    figure, panels = new_panels(PAGE, 2.8, 1, 3)
+    for axes, field in zip(panels, FIELDS, strict=True):
+        draw_pulses(axes, table, field)
+    panels[1].set_title(conditions(table))
+    if table["panel"].iloc[0] == "displacement":
+        # The undamped lattice rings beyond the theory at the front.
+        panels[2].set_ylim(-1.3, 1.3)
+    else:
+        # Where slip and velocity are small.
+        draw_prestress(panels[1], table, (0.09, 0.66, 0.33, 0.22), 5.0)
+        # The exact acceleration has no bound at the front.
+        panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
+    legend_below(figure, handles(table), 6)
+    return figure
 
 
 def draw_prestress(

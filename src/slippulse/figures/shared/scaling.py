@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -21,15 +21,14 @@ MARKERS, DRAWN = "os^Dv", 3
 NEAR, FAR = np.arange(0.5, 1.5, 0.05), np.array([0.5, 0.7, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0])
 
 
-def transition_rows(runs: pd.DataFrame) -> pd.DataFrame:
+def transition_table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """One row a run: parameters, length and time as measured, by the paper, and exact."""
+    runs = pd.concat(tables.values(), ignore_index=True)
     kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
-    found = runs[kept].copy()
-    for quantity in SYMBOLS:
-        found[quantity] = runs[f"transition_{quantity}"]
-        found[f"paper_{quantity}"] = runs[f"paper_transition_{quantity}"]
-        found[f"exact_{quantity}"] = runs[f"exact_transition_{quantity}"]
-    return found
+    sources = [(source, quantity) for quantity in SYMBOLS for source in ("", "paper_", "exact_")]
+    return runs[kept].assign(
+        **{source + name: runs[f"{source}transition_{name}"] for source, name in sources}
+    )
 
 
 def chosen(values: pd.Series, count: int) -> np.ndarray:
@@ -93,6 +92,8 @@ def damping_figure(runs: pd.DataFrame) -> Figure:
     other, symbol = OTHER[boundary]
     ratios, values = np.sort(runs["damping_ratio"].unique()), chosen(runs[other], DRAWN)
     runs = runs[runs["left"].isin(chosen(runs["left"], DRAWN))]
+    spacing = runs["dx"] / runs["width"]
+    spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
     figure, panels = new_panels(PAGE, 2.8, 1, 2)
     for axes, quantity in zip(panels, SYMBOLS, strict=True):
         axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
@@ -107,15 +108,10 @@ def damping_figure(runs: pd.DataFrame) -> Figure:
         few_ticks(axes.yaxis, ticks[(low < ticks) & (ticks < high)])
         axes.minorticks_off()
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"${SYMBOLS[quantity]}$ / paper's formula")
-    spacing = runs["dx"] / runs["width"]
-    spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
-    for axes in panels:
-        axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}", fontsize=9)
+        axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}")
     colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
-    handles = [
-        entry(f"simulation, {symbol} = {value:g}", marker=marker, color=GREY)
-        for marker, value in zip(MARKERS, values, strict=False)
-    ]
+    looks = zip(MARKERS, values, strict=False)
+    handles = [entry(f"simulation, {symbol} = {value:g}", marker=mark, color=GREY) for mark, value in looks]
     handles.append(entry(r"exact, $\Delta x\to0$", color=GREY, linewidth=0.8))
     legend_below(figure, handles, len(handles))
     return figure
