@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import matplotlib
 import matplotlib.rcsetup
 import numpy as np
+import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
