@@ -38,7 +38,8 @@ def roots_between(function: Callable, lower, upper, at_lower, at_upper, xtol: fl
         same = (f > 0.0) == (f1 > 0.0)
         (x3, x2), (f3, f2) = np.where(same, (x1, x2), (x2, x1)), np.where(same, (f1, f2), (f2, f1))
         out[alive] = np.where(np.abs(f2) < np.abs(f), x2, x)
-        least = xtol / np.abs(x2 - x)
+        # No finer than floating point.
+        least = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x)) / np.abs(x2 - x)
         going = (least < 0.5) & (f != 0.0)
         alive, x1, x2, x3, f1, f2, f3, least = (
             values[going] for values in (alive, x, x2, x3, f, f2, f3, least)
