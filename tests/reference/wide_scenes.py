@@ -32,17 +32,11 @@ def wide_scene(chance: random.Random) -> sp.Scene:
         scheme, order = pick([*LATTICE_SCHEMES, "localised", "localised", "localised"]), pick(ORDERS)
         longest = min(1.0, MARGIN * largest_step(scheme, order, ratio, gamma * dx**2))
         try:
+            profile = sp.Prestress(left, right, pick([1.0, 1.0, *WIDTHS]), 1.0, steps, bumps)
+            duration, release = pick(DURATIONS) * math.exp(uniform(-0.5, 0.5)), pick(RELEASES)
+            max_step = longest * pick([0.3, 1.0, 1.0])
             return sp.Scene(
-                boundary=boundary,
-                prestress=sp.Prestress(left, right, pick([1.0, 1.0, *WIDTHS]), 1.0, steps, bumps),
-                duration=pick(DURATIONS) * math.exp(uniform(-0.5, 0.5)),
-                dx=dx,
-                gamma=gamma,
-                beta=ratio * dx,
-                release=pick(RELEASES),
-                scheme=scheme,
-                max_step=longest * pick([0.3, 1.0, 1.0]),
-                order=order,
+                boundary, profile, duration, dx, gamma, ratio * dx, release, scheme, max_step, order
             )
         except ValueError:
             continue

@@ -122,28 +122,27 @@ def test_a_barrier_is_passed_if_and_only_if_it_is_shorter_than_the_depth(share, 
         assert time[1] - time[0] == pytest.approx(0.5 / front_speed(0.5, 0.1), abs=1e-4)
 
 
+OF_A_RUPTURE = {
+    "gamma": (-1.0,), "damping_ratio": (float("nan"), 1e9), "release": ("both",), "duration": (0.0,),
+    "prestress": (sp.Prestress(0.5, 0.5, peak=0.9), "flat"), "refinement": (0, 2.7),
+}  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("function", "values", "keys", "word"),
+    ("word", "call"),
     [
         *(
-            (Rupture, (), {"prestress": ASYMMETRIC, "gamma": 0.65, "duration": 2.0} | {name: value}, name)
-            for name, values in {
-                "gamma": (-1.0,),
-                "damping_ratio": (float("nan"), 1e9),
-                "release": ("both",),
-                "duration": (0.0,),
-                "prestress": (sp.Prestress(0.5, 0.5, peak=0.9), "flat"),
-                "refinement": (0, 2.7),
-            }.items()
+            (name, lambda keys={name: value}: Rupture(**{"prestress": ASYMMETRIC, "gamma": 0.65} | keys))
+            for name, values in OF_A_RUPTURE.items()
             for value in values
         ),
-        (barrier_depth, (0.5, 0.1, 0.65), {}, "tau_barrier"),
-        (barrier_depth, (1.0, -0.1, 0.65), {}, "tau0"),
-        (barrier_depth, (0.5, -0.1, 0.0), {}, "gamma"),
-        (barrier_depth_estimate, (0.5, 0.5, 0.65), {}, "tau_barrier"),
-        (sp.theory.uniform_transition_time, (0.0, 0.65), {}, "tau0"),
+        ("tau_barrier", lambda: barrier_depth(0.5, 0.1, 0.65)),
+        ("tau0", lambda: barrier_depth(1.0, -0.1, 0.65)),
+        ("gamma", lambda: barrier_depth(0.5, -0.1, 0.0)),
+        ("tau_barrier", lambda: barrier_depth_estimate(0.5, 0.5, 0.65)),
+        ("tau0", lambda: sp.theory.uniform_transition_time(0.0, 0.65)),
     ],
 )
-def test_what_is_outside_the_domain_is_refused_in_one_line(function, values, keys, word):
+def test_what_is_outside_the_domain_is_refused_in_one_line(word, call):
     with pytest.raises(ValueError, match=rf"^{word}: .*allowed: [^\n]+$"):
-        function(*values, **keys)
+        call()

@@ -22,20 +22,8 @@ ATTRIBUTES = TINY.attributes()
 FAR = sp.Prestress(0.5, 0.5, bumps=((1e9, 0.5, 1.0),))
 # Whatever a number may not be, of functions that take one.
 NO_NUMBERS = (
-    None,
-    "0.5",
-    True,
-    [],
-    {},
-    object(),
-    1j,
-    math.nan,
-    math.inf,
-    10**400,
-    [None],
-    [[1.0], [2.0, 3.0]],
-    b"bytes",
-)
+    None, "0.5", True, [], {}, object(), 1j, math.nan, math.inf, 10**400, [None], [[1.0], [2.0, 3.0]], b"bytes",
+)  # fmt: skip
 TAKE_A_NUMBER = {
     "Scene.dx": lambda x: sp.Scene(**GOOD | {"dx": x}),
     "Scene.duration": lambda x: sp.Scene(**GOOD | {"duration": x}),
@@ -128,10 +116,79 @@ def test_what_no_number_is_is_refused(name):
         (lambda: CRACK.far_pulse(10**7), "count: 10000000; allowed: a whole number"),
     ],
 )  # fmt: skip
-def test_arguments_that_once_went_through(call, named):
+def test_a_refusal_names_the_argument_its_value_and_what_is_allowed(call, named):
     with pytest.raises((ValueError, TypeError)) as refusal:
         call()
     assert named in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+# Changes of a scene and of a pre-stress, by how the refusal begins.
+UNDER_STRESS = {"boundary": "stress", "gamma": 0.0}
+OF_SCENES = {
+    "boundary: 'strain'; allowed: displacement, stress": {"boundary": "strain"},
+    "boundary: None; allowed: displacement, stress": {"boundary": None},
+    "gamma: 0.65; allowed: 0 or left out under boundary 'stress'": UNDER_STRESS | {"gamma": 0.65},
+    "gamma: nan; allowed: 0 or left out": UNDER_STRESS | {"gamma": math.nan},
+    "gamma: 0.0; allowed: a finite number and > 0": {"gamma": 0.0},
+    "gamma: '0.65'; allowed: a finite number": {"gamma": "0.65"},
+    "gamma: inf; allowed: a finite number": {"gamma": math.inf},
+    "beta: -0.001; allowed: a finite number and >= 0": {"beta": -1e-3},
+    "beta: '1e-3'; allowed: a finite number": {"beta": "1e-3"},
+    "dx: 0.0; allowed: a finite number and > 0": {"dx": 0.0},
+    "prestress.width: 1.0; allowed: >= dx = 1.5": {"dx": 1.5},
+    "duration: 0.0; allowed: a finite number and > 0": {"duration": 0.0},
+    "duration: inf; allowed: a finite number": {"duration": math.inf},
+    "release: 'Total'; allowed: total, elastic": {"release": "Total"},
+    "scheme: 'euler'; allowed: localised, fixed_step": {"scheme": "euler"},
+    "order: 2; allowed: 3, 4, 5, 6, 7, 8": {"order": 2},
+    "order: 9; allowed: 3, 4, 5, 6, 7, 8": {"order": 9},
+    "order: 4.0; allowed: a whole number": {"order": 4.0},
+    "max_step: 0.0; allowed: a finite number and > 0": {"max_step": 0.0},
+    "max_step: nan; allowed: a finite number": {"max_step": math.nan},
+    "max_step: 2.0; allowed: <= ": {"max_step": 2.0},
+    "friction_ratio: -0.1; allowed: a finite number and >= 0": {"friction_ratio": -0.1},
+    "resolved_blocks: 0; allowed: a finite number and >= 1": {"resolved_blocks": 0},
+    "resolved_blocks: 1.5; allowed: a whole number >= 1": {"resolved_blocks": 1.5},
+    "half_lattice: 'no'; allowed: true or false": {"half_lattice": "no"},
+    "prestress: 0.5; allowed: a Prestress": {"prestress": 0.5},
+}
+OF_PRESTRESSES = {
+    "prestress.left: nan; allowed: a finite number": {"left": math.nan},
+    "prestress.right: inf; allowed: a finite number": {"right": math.inf},
+    "prestress.right: '0.3'; allowed: a finite number": {"right": "0.3"},
+    "prestress.left: None; allowed: a finite number": {"left": None},
+    "prestress.left: True; allowed: a finite number": {"left": True},
+    "prestress.left: 1.2; allowed: a finite number and < 1": {"left": 1.2},
+    "prestress.right: 1.0; allowed: a finite number and < 1": {"right": 1.0},
+    "prestress.peak: nan; allowed: a finite number": {"peak": math.nan},
+    "prestress.width: 0.0; allowed: a finite number and > 0": {"width": 0.0},
+    "prestress.width: -1.0; allowed: a finite number and > 0": {"width": -1.0},
+    "prestress.steps: position is 0.0; allowed: any other number": {"steps": ((0.0, 0.3),)},
+    "prestress.steps: (1.0,); allowed: a list of [position, level]": {"steps": ((1.0,),)},
+    "prestress.steps: 3.0; allowed: a list of [position, level]": {"steps": 3.0},
+    "prestress.steps position: inf; allowed: a finite number": {"steps": ((math.inf, 0.1),)},
+    "prestress.steps level: 1.2; allowed: a finite number and < 1": {"steps": ((30.0, 1.2),)},
+    "prestress.bumps width: 0.0; allowed: a finite number and > 0": {"bumps": ((1.0, 0.1, 0.0),)},
+    "prestress.bumps: (1.0, '0.1', 1.0); allowed: a list of [centre,": {"bumps": ((1.0, "0.1", 1.0),)},
+    "prestress.bumps: 'abc'; allowed: a list of [centre, amplitude, width]": {"bumps": "abc"},
+}
+
+
+@pytest.mark.parametrize("begins", [*OF_SCENES, *OF_PRESTRESSES])
+def test_what_a_scene_or_a_prestress_may_not_be(begins):
+    with pytest.raises(ValueError) as refusal:
+        if begins in OF_SCENES:
+            good = {
+                "boundary": "displacement",
+                "prestress": PLAIN,
+                "duration": 5.0,
+                "dx": 0.01,
+                "gamma": 0.65,
+            }
+            sp.Scene(**good | OF_SCENES[begins])
+        else:
+            sp.Prestress(**{"left": 0.3, "right": 0.3} | OF_PRESTRESSES[begins])
+    assert str(refusal.value).startswith(begins) and "\n" not in str(refusal.value)
 
 
 def test_a_rigid_rock_is_allowed():

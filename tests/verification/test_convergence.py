@@ -130,22 +130,12 @@ def test_the_energy_balance_closes(paper_accuracy, boundary, gamma, profile, rat
     if alpha**2 >= 4.0 * gamma and alpha < 0.0:
         pytest.skip("slip runs away")
     dx = 0.02
-    values = {
-        "rate_strengthening": alpha,
-        "boundary": boundary,
-        "prestress": profile,
-        "duration": 12.0,
-        "dx": dx,
-        "gamma": gamma,
-    }
-    numbers = sp.simulate(sp.Scene(**values, beta=ratio * dx, **paper_accuracy)).attrs
+    of = (boundary, profile, 12.0, dx, gamma, ratio * dx)
+    numbers = sp.simulate(sp.Scene(*of, rate_strengthening=alpha, **paper_accuracy)).attrs
     assert numbers["energy_residual"] < tol.ENERGY
     stored = ("kinetic_energy", "elastic_energy", "leaf_spring_energy", "viscous_loss")
-    assert numbers["work_of_prestress"] == pytest.approx(
-        sum(numbers[name] for name in stored), rel=tol.ENERGY
-    )
+    held = sum(numbers[name] for name in stored)
+    assert numbers["work_of_prestress"] == pytest.approx(held, rel=tol.ENERGY)
     assert np.sign(numbers["viscous_loss"]) == np.sign(ratio + alpha)
-    finer = {"max_step": 0.1 * paper_accuracy["max_step"], "order": 8}
-    assert (
-        sp.simulate(sp.Scene(**values, beta=ratio * dx, **finer)).attrs["energy_residual"] < tol.ENERGY_FINE
-    )
+    finer = {"max_step": 0.1 * paper_accuracy["max_step"], "order": 8, "rate_strengthening": alpha}
+    assert sp.simulate(sp.Scene(*of, **finer)).attrs["energy_residual"] < tol.ENERGY_FINE
