@@ -302,7 +302,7 @@ class Rupture {
     }
     const sought = found.filter((_, k) => k % 2).map(({ y, stick }) => ({ x: y, time: stick }));
     let step = sought[1].x - sought[0].x;
-    let best = sought.reduce((least, next) => (next.time < least.time ? next : least));
+    let best = sought.reduce((least, next) => (next.time < least.time ? next : least), { x: 0, time: this.stick(0) });
     // Parabolas through three neighbours.
     for (let turn = 0; turn < 4 && Number.isFinite(best.time); turn++, step *= 0.35) {
       const [before, after] = [best.x - step, best.x + step].map((x) => this.stick(x));
