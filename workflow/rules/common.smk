@@ -13,7 +13,7 @@ from slippulse.configuration.resolve import accuracy_of, all_simulations, bound_
 from slippulse.data.alterations import changes
 from slippulse.model.checks import ConfigError
 from slippulse.steps.job import Jobs, end_with
-from slippulse.steps.reach import PACKAGE, below, declared, needs_of, sources
+from slippulse.steps.reach import below, declared, needs_of, sources
 from slippulse.steps.targets import selected
 
 
@@ -47,17 +47,12 @@ if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
     end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
 
 
-def log_of(rule, *wildcards):
-    """Where a job writes what it says."""
-    return f"results/logs/{'/'.join([rule, *wildcards])}.log"
-
-
 def run_step(rule, wildcards, input, output, params, threads):
     """Run the step of a rule on plain values, in a process of its own."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    origin, name = ORIGINS[below(output[0])], " ".join([rule, *wildcards])
-    files, log = dict(input.items()), log_of(rule, *wildcards)
-    JOBS.run(origin, name, files, dict(output.items()), settings, log)
+    name, log = (sign.join([rule, *wildcards]) for sign in " /")
+    files = (dict(input.items()), dict(output.items()))
+    JOBS.run(ORIGINS[below(output[0])], name, *files, settings, f"results/logs/{log}.log")
 
 
 # Each figure and study by name; what it is made from stands in its module: simulations by kind of file, studies, and
@@ -78,6 +73,7 @@ NEEDED = {
     # Lists of entries, by their whole path.
     "lists": "{}",
 }
+OF_SIMULATIONS = [kind for kind in NEEDED if kind not in ("studies", "lists")]
 # Sweeps that several jobs share. How many is in the name of each chunk: files left by another number are never taken.
 CHUNKS = {
     name: [f"{name}/{number}-of-{sweep.chunks}" for number in range(1, sweep.chunks + 1)]
@@ -89,12 +85,7 @@ VALUES = {
     # What one job works at: a simulation without chunks, or one chunk of another, as NAME/3-of-8.
     "simulation": [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])],
     # What is made of each simulation, by chunks or not.
-    "joined": [
-        below(path.format(name))
-        for name in CHUNKS
-        for kind, path in NEEDED.items()
-        if kind not in ("studies", "lists")
-    ],
+    "joined": [below(NEEDED[kind].format(name)) for name in CHUNKS for kind in OF_SIMULATIONS],
     "scene": [*SCENES],
 }
 
@@ -103,18 +94,11 @@ wildcard_constraints:
     **{name: "|".join(map(re.escape, values)) or "(?!)" for name, values in VALUES.items()},
 
 
-def name_of(job):
-    """The simulation that a job is of: itself, or the one that it is a chunk of."""
-    return job.partition("/")[0]
-
-
 # Snakemake asks for the parameters of every waiting job again whenever a job has ended: they are found once.
 @cache
 def sweep_of(job, coarser=1.0):
     """All that the data of a simulation, or of a chunk of it (NAME/3-of-8), depend on."""
     name, _, chunk = job.partition("/")
-    if name not in SIMULATIONS:
-        refuse(f"simulation: {name!r}; allowed: {', '.join(SIMULATIONS)}")
     found = resolve(SIMULATIONS[name], CONFIG.model, ACCURACY, coarser)
     return found | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
 
@@ -128,18 +112,19 @@ def promised_sweep(job, coarser=1.0):
 @cache
 def bound_of_job(job):
     """What a job that simulates takes at most."""
-    return bound_of_sweep(sweep_of(name_of(job)), SIMULATIONS[name_of(job)].chunks)
+    name = job.partition("/")[0]
+    return bound_of_sweep(sweep_of(name), SIMULATIONS[name].chunks)
 
 
 def measure_of(job):
     """How it is measured: a share of the way to the arrest counts under a stress boundary only."""
-    stressed = sweep_of(name_of(job))["boundary"] == "stress"
+    stressed = sweep_of(job)["boundary"] == "stress"
     return config["measure"] if stressed else {**config["measure"], "share": None}
 
 
 def step_for(step, job):
     """A step that runs scenes, by their scheme: an edit of the theory re-runs exact solutions alone."""
-    return f"{step}_exact" if sweep_of(name_of(job))["scheme"] == "continuum" else step
+    return f"{step}_exact" if sweep_of(job)["scheme"] == "continuum" else step
 
 
 def joined_path(wildcards):
@@ -177,6 +162,6 @@ def simulations_of(*needs):
     """Simulations that some figures or studies are made from, through other studies too."""
     found = set()
     for one in needs:
-        found.update(*(one.get(kind, []) for kind in (*NEEDED, "sweeps") if kind not in ("studies", "lists")))
+        found.update(*(one.get(kind, []) for kind in (*OF_SIMULATIONS, "sweeps")))
         found.update(simulations_of(*(STUDY_NEEDS[study] for study in one.get("studies", []))))
     return sorted(found)

@@ -32,11 +32,7 @@ OPTIONS = [
     *(["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []),
     *(["--config", *CALLED.config] if CALLED.config else []),
 ]
-# One a step, a figure and a study, and those that name what to make.
-STEPS = (path.stem for path in sorted((PACKAGE / "steps").glob("*.py")))
-NAMES = [*NEEDS, *SWEEP_NEEDS, *(f"study_of_{name}" for name in STUDY_NEEDS), *STEPS]
-NAMES += ["all", "everything", "scenes", *(figure.partition("_")[0] for figure in FIGURES)]
-RULES = {name: getattr(rules, name) for name in NAMES if rules.has(name)}
+RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
 
 
 def jobs_of(name, rule):
