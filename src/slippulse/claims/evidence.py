@@ -65,10 +65,9 @@ class Evidence:
 
     Parameters
     ----------
-    tables : per simulation measured and predicted numbers, and per study its table; of grid studies coarser/NAME and
-        uncertainties/NAME
-    entries : per claim, what manuscript/claims.yaml says of it
-    steady : change of the largest velocity below which a pulse is steady, from the configuration
+    tables : of each simulation, with coarser/NAME and uncertainties/NAME of its grid study, and of each study
+    entries : of claims, as in manuscript/claims.yaml
+    steady : change of the largest velocity below which a pulse is steady
     """
 
     def __init__(

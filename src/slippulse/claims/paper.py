@@ -123,13 +123,7 @@ def finite(value):
 
 
 def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]) -> list[dict]:
-    """Each finding: id, its numbers by name (none where an altered configuration left no runs), text and tables.
-
-    Parameters
-    ----------
-    damping_ratio : beta/dx of the figures
-    entries : as in manuscript/claims.yaml
-    """
+    """Each finding: id, its numbers by name (none where an altered configuration left no runs), text and tables."""
     out = []
     for id, entry in entries.items():
         rows = entry.get("numbers", [])

@@ -23,13 +23,7 @@ BAND = 1.5
 
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
-    """Claims, algebra and findings, the claims with other tolerances where the configuration has them.
-
-    Raises
-    ------
-    ValueError
-        Naming a claim of the configuration that there is not.
-    """
+    """Claims, algebra and findings, the claims with tolerances of the configuration; ValueError for an unknown one."""
     texts = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
     claims = texts["claims"]
     for id, other in tolerances.items():
@@ -61,12 +55,7 @@ def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> d
 
 
 class Ledger:
-    """Claims by id, each with its fields as attributes, and findings.
-
-    Parameters
-    ----------
-    claims, findings : as in claims.json and findings.json
-    """
+    """The claims of claims.json by id, each with its fields as attributes, and the findings of findings.json."""
 
     def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
         self.claims = {claim["id"]: SimpleNamespace(**claim) for claim in claims}

@@ -102,22 +102,18 @@ def decisive(choices: Sequence[Mapping]) -> dict[str, Sequence[Mapping]]:
 
     Each with the closest combinations of which one holds and one fails; where none decides, that one choice.
     """
-    moves: dict[str, list[tuple[float, Mapping, Mapping]]] = {}
-    largest: dict[str, tuple[bool, float]] = {}
+    moves: dict[str, list[tuple[tuple[bool, float], Mapping, Mapping]]] = {}
     for one, other in permutations(choices, 2):
         apart = [name for name in {*one, *other} - {*FOUND} if one.get(name) != other.get(name)]
-        if len(apart) != 1 or apart[0] not in NAMES or None in (one["deviation"], other["deviation"]):
-            continue
-        move = abs(one["deviation"] - other["deviation"])
-        # A lattice is a corner; the exact solution has every combination.
-        rank = one.get("solution") == "exact", move
-        largest[apart[0]] = max(rank, largest.get(apart[0], rank))
-        if one["holds"] and other["holds"] is False:
+        if len(apart) == 1 and apart[0] in NAMES and None not in (one["deviation"], other["deviation"]):
+            # A lattice is a corner; the exact solution has every combination.
+            move = one.get("solution") == "exact", abs(one["deviation"] - other["deviation"])
             moves.setdefault(apart[0], []).append((move, one, other))
-    order = sorted(largest, key=largest.__getitem__)
-    closest: dict[str, Sequence[Mapping]] = {
-        name: min(moves[name], key=lambda each: each[0])[1:] for name in order[::-1] if name in moves
-    }
+    order = sorted(moves, key=lambda name: max(move for move, *_ in moves[name]))
+    closest: dict[str, Sequence[Mapping]] = {}
+    for name in reversed(order):
+        if pairs := [each for each in moves[name] if each[1]["holds"] and each[2]["holds"] is False]:
+            closest[name] = min(pairs, key=lambda each: each[0][1])[1:]
     return closest or dict.fromkeys(order[-1:], ())
 
 
@@ -152,9 +148,7 @@ def solved(evidence: Evidence, boundary: str) -> Tables:
 def arrests(evidence: Evidence) -> Tables:
     """When the left front has covered fractions of |x_minus| by the exact solution, and its last release on lattices.
 
-    Returns
-    -------
-    tables with distance (|x_minus|), covered, time, length (between the fronts)
+    Columns are distance (|x_minus|), covered, time, length (between the fronts).
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
     return [

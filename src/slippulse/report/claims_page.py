@@ -31,13 +31,9 @@ def claims_page(
     findings: Sequence[Mapping] = (),
     tables: Iterable[str] = (),
 ) -> str:
-    """The ledger and the findings.
+    """The ledger and the findings, as in their JSON, with links to tables, files from the folder of the page on.
 
-    Parameters
-    ----------
-    claims, findings : as in their JSON
-    altered : what differs from the shipped configuration
-    tables : files that claims are judged by, from the folder of the page on
+    ``altered``: what differs from the shipped configuration.
     """
     return page(
         "claims.html",

@@ -42,13 +42,7 @@ class Comparison:
 
 
 def compare(here: Path, there: Path) -> Comparison:
-    """Compare the measured tables, the configurations and the verdicts of two trees.
-
-    Raises
-    ------
-    ValueError
-        If one has no measured tables, or a file that cannot be read.
-    """
+    """Compare measured tables, configurations and verdicts; ValueError for one without tables or a broken file."""
     found, trees = Comparison(), (here, there)
     names = [{path.name for path in (tree / "measurements").glob("*.csv")} for tree in trees]
     for tree, tables in zip(trees, names, strict=True):

@@ -69,13 +69,7 @@ def _as_webp(path: str) -> str:
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report as PDF, its figures as vectors, by their absolute paths.
-
-    Raises
-    ------
-    ValueError
-        If Typst refuses the text, with its message.
-    """
+    """Write the report as PDF, its figures as vectors; a ValueError has the message of Typst if it refuses the text."""
     options = ["--to=typst", "--default-image-extension=pdf"]
     # The documents of this kind lead to each other.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)

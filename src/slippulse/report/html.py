@@ -30,13 +30,7 @@ def page(template: str, **data: object) -> str:
 
 
 def pandoc(text: str, options: Sequence[str]) -> str:
-    """The text as pandoc converts it.
-
-    Raises
-    ------
-    ValueError
-        If pandoc refuses the text or warns of it, with its message.
-    """
+    """The text as pandoc converts it; a ValueError has its message if it refuses the text or warns of it."""
     command = [pypandoc.get_pandoc_path(), "--fail-if-warnings", *options]
     done = subprocess.run(command, input=text, capture_output=True, text=True, encoding="utf-8", check=False)
     if done.returncode != 0:
@@ -45,13 +39,7 @@ def pandoc(text: str, options: Sequence[str]) -> str:
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """Each text, one paragraph of Markdown with formulas, as HTML with MathML; raw HTML in it is shown, not obeyed.
-
-    Raises
-    ------
-    ValueError
-        If a text is more than one paragraph.
-    """
+    """Each text, one paragraph of Markdown with formulas, as HTML with MathML; raw HTML in it is shown, not obeyed."""
     texts = sorted({text for text in texts if text.strip()})
     if not texts:
         return {"": Markup()}

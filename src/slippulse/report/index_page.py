@@ -43,12 +43,10 @@ def index_page(
     galleries: Mapping[str, Sequence[str]],
     scenes: Mapping[str, str],
 ) -> str:
-    """The page.
+    """The page in the folder of the results; files that are not there get no link.
 
     Parameters
     ----------
-    results : folder that the page stands in, with claims.json, findings.json and provenance.json; files that are not
-        there get no link
     texts : files of the `captions` and of the `summary`
     galleries : names of figures by the heading that they stand under
     scenes : titles by name

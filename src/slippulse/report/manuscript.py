@@ -31,27 +31,20 @@ PAGE = 7.0
 
 @dataclass(frozen=True)
 class Inputs:
-    """What one report is written from.
+    """What one report is written from."""
 
-    Attributes
-    ----------
-    config, shipped : the configuration of the run and the shipped one, builtins
-    claims, findings : as in claims.json and findings.json
-    tables : by simulation measured and predicted numbers, one row a run, by study its table; uncertainties/NAME the
-        grid study of a simulation
-    figures : names of the figures to include, in any order
-    figures_folder, manuscript : where their files are, and the texts
-    citation : as in CITATION.cff: version, date-released
-    """
-
+    # The configuration of the run and the shipped one, claims.json and findings.json, builtins.
     config: Mapping
     shipped: Mapping
     claims: Sequence[Mapping]
     findings: Sequence[Mapping]
+    # Of simulations one row a run, measured and predicted; of studies; grid studies as uncertainties/NAME.
     tables: Mapping[str, pd.DataFrame]
+    # Names of the figures to include, and where their files and the texts are.
     figures: Sequence[str]
     figures_folder: Path
     manuscript: Path
+    # As in CITATION.cff: version, date-released.
     citation: Mapping
 
 
@@ -160,16 +153,9 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
 
 
 def execute(source: str | Path, inputs: Inputs) -> str:
-    """Its prose with every expression replaced, and the Markdown that its code shows, in order.
+    """The prose of a file with every expression replaced, and the Markdown that its code shows, in order.
 
-    Parameters
-    ----------
-    source : file in any format of jupytext; cells tagged `BY_HAND` are left out
-
-    Raises
-    ------
-    ValueError
-        If a cell fails: the error and the first line of the cell.
+    Cells tagged `BY_HAND` are left out; one that fails raises a ValueError with its first line.
     """
     source, shown = Path(source), []
     names = names_for(inputs, lambda markdown: shown.append(markdown) if markdown else None, source.stem)

@@ -20,11 +20,10 @@ NONE = "\N{EN DASH}"
 
 
 def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping) -> str:
-    """A page that stands alone.
+    """A page that stands alone, with the file of the scene's figure.
 
     Parameters
     ----------
-    name, title, png : of the scene, and its figure
     numbers : as `slippulse.figures.shared.numbers.scene_numbers`
     attributes : of the run's data, with the state of its leading pulse
     """

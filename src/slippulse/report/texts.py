@@ -27,14 +27,9 @@ EXCEPTIONS = {
 
 
 class Caption(NamedTuple):
-    """The texts of one figure.
+    """The texts of one figure, for who cannot see it too: title and alt are plain text, the others Markdown.
 
-    Attributes
-    ----------
-    title : a heading, plain text
-    alt : what is seen, one plain sentence for who cannot see it
-    finding : what the figure shows as a result, one sentence, Markdown
-    caption : what is drawn, Markdown
+    The finding is what the figure shows as a result, one sentence; the caption, what is drawn.
     """
 
     title: str
@@ -47,13 +42,7 @@ PARTS = Caption._fields
 
 
 def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[str, Caption]:
-    """The captions of all figures by name, their expressions evaluated by ``fill``.
-
-    Raises
-    ------
-    ValueError
-        If a caption is not whole, naming the figure, the key, and what is allowed.
-    """
+    """The captions of all figures by name, their expressions evaluated by ``fill``; ValueError if one is not whole."""
     return {
         name: Caption(*(" ".join(fill(parts[key]).split()) for key in PARTS))
         for name, parts in _whole(path, read_text(path), PARTS).items()
@@ -89,13 +78,7 @@ def listed(words: Sequence[str]) -> str:
 
 
 def parameters(config: Mapping, name: str) -> str:
-    """Boundary, elasticity ratio, pre-stress and damping of all runs of one of its simulations, as Markdown.
-
-    Raises
-    ------
-    ValueError
-        Naming the simulation and those that there are.
-    """
+    """Boundary, elasticity ratio, pre-stress and damping of all runs of one of its simulations, as Markdown."""
     if name not in config["simulations"]:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
@@ -132,14 +115,7 @@ def _values(values: Sequence[float]) -> str:
 
 
 class Line(NamedTuple):
-    """One thing that the paper says: manuscript/summary.yaml, judged by the ledger.
-
-    Attributes
-    ----------
-    topic, text : what it is and what was found, Markdown
-    named : the same in a sentence: of the first line a clause, of the others a noun in the singular
-    claim : the claim that has the worst verdict of those that it rests on
-    """
+    """One thing that the paper says, as in manuscript/summary.yaml, with the worst of the claims that it rests on."""
 
     topic: str
     named: str
