@@ -108,9 +108,6 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     }  # fmt: skip
     if at := out.pop("at", None):
         out["flips_at"] = rules.flips(at, out["tolerance"])
-    # A stated condition or an erratum leaves no claim simply reproduced.
-    if out["caveat"] and out["verdict"] == "reproduced":
-        out |= {"verdict": "reproduced with caveat", "why": out["why"] or out["caveat"]}
     del out["sentences"]
     out = finite(out)
     return out | {"why": why_text(SimpleNamespace(**out))}
