@@ -65,10 +65,6 @@ class Edge(NamedTuple):
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Run every edge.
 
-    Parameters
-    ----------
-    settings : measure (front_window)
-
     Returns
     -------
     one row an edge: family, value, quantity, should, tolerance, expected, measured, error, verdict, message (flags or
@@ -123,8 +119,8 @@ def edges() -> Iterator[Edge]:
         yield Edge("spacing", f"dx = {dx:g}", "T_trans", "right", *first_stick(dx))
     # A peak between two blocks cannot be seen; one block is enough for the front; 1000 layer thicknesses.
     for factor, should in ((0.5, "refused"), (1.0, "right"), (2.0, "right")):
-        of = {"dx": 0.05, "duration": 20.0, "width": factor * 0.05}
         expected = math.nan if should == "refused" else speed()
+        of = {"dx": 0.05, "duration": 20.0, "width": factor * 0.05}
         yield Edge("nucleation", f"W = {factor:g} dx", "front speed", should, expected, of)
     yield Edge("nucleation", "W = 1000", "T_trans", "right", *first_stick(1.0, 1000.0))
     # Reverse sliding from the friction ratio on. Without damping the ringing of the lattice stalls the left front; with
@@ -136,9 +132,8 @@ def edges() -> Iterator[Edge]:
     ):  # fmt: skip
         time = ArrestingCrack(Prestress(level, 0.0), ratio).share_time(FRACTION)
         of = {"level": level, "right": 0.0, "gamma": 0.0, "ratio": ratio, "dx": dx, "duration": 1.5 * time}
-        of["friction_ratio"] = friction
         value = f"tau_l = {level:g}, dx {dx:g}, b {ratio:g}, r {friction:g}"
-        yield Edge("negative level", value, "T_trans", should, time, of)
+        yield Edge("negative level", value, "T_trans", should, time, of | {"friction_ratio": friction})
     of = {"dx": 1.0, "duration": LONG, "width": 2.0, "gamma": 0.01}
     for quantity in ("speed drift", "slip drift", "energy residual"):
         yield Edge("duration", f"t = {LONG:g}", quantity, "right", 0.0, of)
@@ -150,12 +145,12 @@ def edges() -> Iterator[Edge]:
         value = f"state, gamma = {gamma:g}"
         yield Edge("float32", value, "velocity error", "not offered", 0.0, {"gamma": gamma})
     # A hair below the threshold nothing moves; a hair above it all goes as at the threshold.
-    for sign, quantity, expected in ((-1.0, "releases", 0.0), (1.0, "front speed", speed())):
+    for sign, quantity, expected in (("-", "releases", 0.0), ("+", "front speed", speed())):
         for apart in (1e-9, 1e-3):
-            of = {"peak": 1.0 + sign * apart, "dx": 0.05, "duration": 30.0}
-            yield Edge("peak", f"1 {'+' if sign > 0.0 else '-'} {apart:g}", quantity, "right", expected, of)
+            of = {"peak": 1.0 + float(f"{sign}{apart}"), "dx": 0.05, "duration": 30.0}
+            yield Edge("peak", f"1 {sign} {apart:g}", quantity, "right", expected, of)
     # The fronts of two equal peaks meet halfway, at the time that one of them takes to get there.
-    exact = float(Fronts(Prestress(LEVEL, LEVEL), RATIO, "total", APART).arrival(np.array([0.5 * APART]))[0])
+    exact = float(Fronts(Prestress(LEVEL, LEVEL), RATIO, "total", APART).arrival(0.5 * APART))
     for quantity, expected, factor in (("meeting time", exact, 1.5), ("asymmetry", 0.0, 3.0)):
         of = {"bumps": ((APART, 1.0 - LEVEL, 1.0),), "dx": 0.02, "duration": factor * exact}
         yield Edge("two nucleations", f"{APART:g} apart", quantity, "right", expected, of)
@@ -184,8 +179,8 @@ def scene(
     dx: float, duration: float, level: float = LEVEL, ratio: float = RATIO, gamma: float = GAMMA, **more: Any
 ) -> Scene:
     """A scene under the displacement boundary, or under the stress boundary when gamma is 0."""
-    shape: dict[str, Any] = {"right": level}
-    shape |= {name: more.pop(name) for name in ("width", "right", "peak", "bumps") if name in more}
+    names = ("width", "right", "peak", "bumps")
+    shape: dict[str, Any] = {"right": level} | {name: more.pop(name) for name in names if name in more}
     profile = Prestress(level, **shape)
     step = min(0.5, MARGIN * largest_step("localised", 4, ratio, gamma * dx**2))
     boundary = "displacement" if gamma > 0.0 else "stress"
@@ -195,26 +190,19 @@ def scene(
 def row(edge: Edge, window: float) -> dict[str, Any]:
     """Run an edge and judge it: a flag wins; then a number that is missing; then the number itself."""
     tolerance = TOLERANCES.get(edge.family, TOLERANCES.get(edge.quantity, 0.0))
-    value, message, updates, verdict = math.nan, "", 0, ""
+    value, message, updates, ended = math.nan, "", 0, ""
     try:
         value, message, updates = measured(edge, window)
-    except UnstableRun as error:
-        verdict, message = "stopped", str(error)
-    except ValueError as error:
-        verdict, message = "refused", str(error)
+    except (UnstableRun, ValueError) as error:
+        ended, message = "stopped" if isinstance(error, UnstableRun) else "refused", str(error)
     off = abs(value - edge.expected) / (abs(edge.expected) or 1.0)
-    if not verdict and message:
-        verdict = message if message == "not offered" else "flagged"
-    elif not verdict and math.isnan(value):
-        verdict = "no number"
-    elif not verdict:
-        # Comparisons with NaN are False: a number where theory has none is wrong unless it was flagged.
-        verdict = "right" if off <= tolerance else "WRONG WITHOUT A FLAG"
-    family, at, quantity, should, expected, _ = edge
+    # Comparisons with NaN are False: a number where theory has none is wrong unless it was flagged.
+    judged = "no number" if math.isnan(value) else "right" if off <= tolerance else "WRONG WITHOUT A FLAG"
+    flagged = message if message == "not offered" else message and "flagged"
     return {
-        "family": family, "value": at, "quantity": quantity, "should": should, "tolerance": tolerance,
-        "expected": expected, "measured": value, "error": off, "verdict": verdict, "message": message,
-        "block_updates": updates,
+        "family": edge.family, "value": edge.value, "quantity": edge.quantity, "should": edge.should,
+        "tolerance": tolerance, "expected": edge.expected, "measured": value, "error": off,
+        "verdict": ended or flagged or judged, "message": message, "block_updates": updates,
     }  # fmt: skip
 
 
@@ -234,6 +222,7 @@ def measured(edge: Edge, window: float) -> tuple[float, str, int]:
     flags = [numbers["run_flags"], numbers.get("transition_state", "")]
     if pulse is not None and edge.quantity in OF_PULSES:
         flags.append(pulse_state(run, pulse))
+    x, slip = run["x"].values, run["slip"].values
     match edge.quantity:
         case "releases":
             # That nothing is released is flagged, and right here.
@@ -241,10 +230,8 @@ def measured(edge: Edge, window: float) -> tuple[float, str, int]:
         case "speed drift" | "slip drift":
             value = drift(run, edge.quantity)
         case "meeting time":
-            between = np.abs(run["x"].values - 0.5 * APART) < 1.5 * of.dx
-            value = float(np.nanmax(run["release_time"].values[between]))
+            value = float(np.nanmax(run["release_time"].values[np.abs(x - 0.5 * APART) < 1.5 * of.dx]))
         case "asymmetry":
-            x, slip = run["x"].values, run["slip"].values
             mirrored = np.interp(APART - x, x, slip, left=0.0, right=0.0)
             value = float(np.max(np.abs(slip - mirrored)) / slip.max())
         case "passes by":
@@ -273,9 +260,8 @@ def single_precision_error(gamma: float) -> float:
     Source: symplectic Euler on slip in plain numpy, the force from second differences of slip; no damping.
     """
     dx, step, duration = 0.1, 0.4 * 0.1, 0.9 * math.pi / math.sqrt(gamma)
-    x = dx * np.arange(int(1.5 * duration / dx) + 32)
+    x, found = dx * np.arange(int(1.5 * duration / dx) + 32), []
     tau = LEVEL + (1.0 - LEVEL) * np.exp(-0.5 * (x / (8.0 * dx)) ** 2)
-    found = []
     for dtype in (np.float64, np.float32):
         # A plain number takes the type of the array that it meets.
         stress: np.ndarray = tau.astype(dtype)
