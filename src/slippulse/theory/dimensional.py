@@ -20,10 +20,8 @@ class Layer:
 
     Parameters
     ----------
-    thickness : H (m), > 0
-    density : rho (kg/m^3), > 0
-    lame : first Lame parameter lambda (Pa), > -2G/3
-    shear_modulus : G (Pa), > 0
+    thickness, density : H (m), > 0, and rho (kg/m^3), > 0
+    lame, shear_modulus : first Lame parameter lambda (Pa), > -2G/3, and G (Pa), > 0
     static_friction, kinetic_friction : mu_s > mu_k >= 0
     normal_stress : sigma_n (Pa), > 0
 
@@ -85,9 +83,8 @@ class Layer:
     def prestress(self, shear_stress: float) -> float:
         """Non-dimensional pre-stress (tau/sigma_n - mu_k)/(mu_s - mu_k) of a shear stress (Pa)."""
         check_number("shear_stress", shear_stress)
-        return (shear_stress / self.normal_stress - self.kinetic_friction) / (
-            self.static_friction - self.kinetic_friction
-        )
+        above = shear_stress / self.normal_stress - self.kinetic_friction
+        return above / (self.static_friction - self.kinetic_friction)
 
     def peak_velocity(self) -> float:
         """Peak slip velocity (m/s) of the paper's pulse, from its own scales: 2 (mu_s - mu_k) sigma_n / sqrt(2 G rho).
@@ -118,10 +115,8 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     Parameters
     ----------
     slip : delta (m), a number or an array of them, as the others; up to 1e100, as they, which are 1e-100 at least
-    shear_modulus : G of the damage zone (Pa)
-    rock_shear_modulus : G_r of the host rock (Pa); infinite for a rigid one
-    thickness : H of the damage zone (m)
-    rock_thickness : H_r of the host rock, between the zone and the imposed displacement (m), 0 too
+    shear_modulus, rock_shear_modulus : G of the damage zone, and G_r of the host rock (Pa), infinite for a rigid one
+    thickness, rock_thickness : H of the damage zone, and H_r of the rock beyond it, to the displacement (m), 0 too
 
     Returns G delta / (H + (G/G_r) H_r) in Pa, a float or an array; G delta / H when G << G_r.
 

@@ -25,8 +25,7 @@ class Fronts:
     Parameters
     ----------
     prestress : a profile with tau(0) = 1 and one nucleation point
-    damping_ratio : beta/dx, from 0 to 1e6
-    release : "total" or "elastic"
+    damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
     reach : how far from x = 0 times are wanted (units of H), >= 1e-9
     gamma : elasticity ratio, >= 0, whose waves the panels resolve, which are then no shorter than that asks for
 
@@ -111,8 +110,7 @@ def exact_transition_displacement(
     ----------
     prestress : a symmetric profile, tau(0) = 1, positive everywhere
     gamma : elasticity ratio, > 0
-    damping_ratio : beta/dx, from 0 to 1e6
-    release : "total" or "elastic"
+    damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
 
     Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front needs more than
     20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
@@ -141,10 +139,8 @@ def uniform_transition_time(
 
     Parameters
     ----------
-    tau0 : pre-stress, in (0, 1)
-    gamma : elasticity ratio, > 0
-    damping_ratio : beta/dx, from 0 to 1e100
-    release : "total" or "elastic"
+    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
+    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
 
     Raises ValueError: outside the domain.
     Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v: with q = sqrt(gamma) t/(1 + 1/v) it is

@@ -79,8 +79,7 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
 
     Parameters
     ----------
-    speed : float or array, > 1 and <= 1e100 (wave speeds)
-    damping_ratio : float or array, broadcast with speed, from 0 to 1e100
+    speed, damping_ratio : floats or arrays, broadcast, > 1 and <= 1e100 (wave speeds), and from 0 to 1e100
     release : "total" or "elastic"
 
     Raises ValueError: outside the domain.
@@ -106,11 +105,9 @@ def lattice_front_speed(
 
     Parameters
     ----------
-    tau0 : pre-stress, in (0, 1)
-    gamma : elasticity ratio, > 0
+    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
     dx : block spacing (units of H), > 0; 1 is the Burridge-Knopoff model
-    damping_ratio : beta/dx, from 0 to 1e100
-    release : "total" or "elastic"
+    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
     rate_strengthening : alpha, of a term -alpha du/dt; as dx -> 0 it no longer matters
 
     Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any front faster than
@@ -156,11 +153,7 @@ def lattice_front_speed(
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     """Front speed in the continuum, dx -> 0 at fixed beta > 0, under the rule as printed ("elastic").
 
-    Parameters
-    ----------
-    tau0 : pre-stress, in (0, 1)
-    gamma : elasticity ratio, >= 0; 0 leaves the leaf springs out
-    beta : damping, > 0
+    tau0 is in (0, 1), gamma >= 0, and 0 leaves the leaf springs out.
 
     Raises ValueError: outside these ranges, or where the front would not outrun the waves.
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y below the real axis,
@@ -186,8 +179,7 @@ def steady_pulse(
 
     Parameters
     ----------
-    tau0 : pre-stress, in (0, 1)
-    gamma : elasticity ratio, > 0
+    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
     beta : damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
     speed : front speed, > 1, or
     damping_ratio, release : of `front_speed`, where the speed is left out

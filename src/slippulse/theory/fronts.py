@@ -54,15 +54,6 @@ def analytic(prestress: Prestress, level: float, x: np.ndarray) -> np.ndarray:
     return tau
 
 
-def mirrored(prestress: Prestress) -> Prestress:
-    """The pre-stress at -x."""
-    return replace(
-        prestress, left=prestress.right, right=prestress.left,
-        steps=tuple((-position, level) for position, level in prestress.steps),
-        bumps=tuple((-centre, amplitude, width) for centre, amplitude, width in prestress.bumps),
-    )  # fmt: skip
-
-
 def pieces(prestress: Prestress) -> list[Piece]:
     """The pieces from left to right."""
     out = []
@@ -105,7 +96,9 @@ def _crossings(prestress, left: float, right: float, level: float, value: float)
     marks = []
     for k in np.flatnonzero(above[1:] != above[:-1]):
         touching = x[k : k + 2][at[k : k + 2] == 0.0]
-        marks += [float(touching[0]) if touching.size else root_between(excess, x[k], x[k + 1], xtol=1e-14)]
+        marks.append(
+            float(touching[0]) if touching.size else root_between(excess, x[k], x[k + 1], xtol=1e-14)
+        )
     return bool(above[0]), marks
 
 
@@ -151,8 +144,11 @@ class FrontLaw:
 
     def mirrored(self) -> FrontLaw:
         """The same at -x."""
-        given = self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
-        return FrontLaw(mirrored(self.prestress), *given)
+        profile = self.prestress
+        steps = tuple((-position, level) for position, level in profile.steps)
+        bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
+        turned = replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)
+        return FrontLaw(turned, self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
         """1/v of each pre-stress."""
@@ -220,11 +216,9 @@ class FrontLaw:
         return [Panel(*row) for row in zip(*columns, strict=True)]
 
     def _too_many(self, level: float, start: float, end: float) -> ValueError:
-        return ValueError(
-            f"prestress: level {level!r} over a distance of {end - start:g} at gamma = {self.gamma:g}, damping_ratio ="
-            f" {self.damping_ratio:g}; allowed: fronts that stay within {MOST_PANELS} panels, of"
-            f" {self.longest(level):.3g} at most"
-        )
+        scene = f"over a distance of {end - start:g} at gamma = {self.gamma:g}, damping_ratio = {self.damping_ratio:g}"
+        allowed = f"fronts that stay within {MOST_PANELS} panels, of {self.longest(level):.3g} at most"
+        return ValueError(f"prestress: level {level!r} {scene}; allowed: {allowed}")
 
 
 def straight_panel(left: float, right: float, slope: float, tau: float) -> Panel:

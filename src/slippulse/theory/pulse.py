@@ -73,10 +73,8 @@ def pulse_behind_front(
 
     Parameters
     ----------
-    tau0 : pre-stress, in (0, 1)
-    gamma : elasticity ratio, > 0
-    beta : damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
-    speed : front speed, > 1
+    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
+    beta, speed : damping, >= 0 (0 is the limit dx -> 0 at any damping ratio), and front speed, > 1
     rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
 
     Raises ValueError: outside the domain.
@@ -129,12 +127,7 @@ def _shape(
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
-    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): from it on no pulse is steady, and from -alpha_c slip grows.
-
-    Parameters
-    ----------
-    gamma : elasticity ratio, > 0
-    speed : front speed, > 1
+    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2), gamma > 0, speed v > 1: no pulse is steady beyond +- alpha_c.
 
     Raises ValueError: outside the domain.
     Source: where the wavenumber q of the steady pulse is 0 (beta -> 0); 2 tau_0 sqrt(gamma) without damping.
@@ -145,12 +138,7 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """The paper's pulse: no damping and v = 1/sqrt(1 - tau_0^2), so that the peak velocity is 1/sqrt(gamma).
-
-    Parameters
-    ----------
-    tau0 : pre-stress, in (0, 1)
-    gamma : elasticity ratio, > 0
+    """The paper's pulse, tau0 in (0, 1), gamma > 0: undamped, v = 1/sqrt(1 - tau_0^2), peak velocity 1/sqrt(gamma).
 
     Raises ValueError: outside the domain.
     Source: section III A and appendix C of the paper.
@@ -160,12 +148,7 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
-    """The paper's T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2), displacement boundary.
-
-    Parameters
-    ----------
-    tau0 : pre-stress on both sides, in (0, 1)
-    gamma : elasticity ratio, > 0
+    """T_trans = pi/sqrt(gamma), L_trans = 2 T_trans/sqrt(1 - tau_0^2): displacement boundary, 0 < tau0 < 1, gamma > 0.
 
     Raises ValueError: outside the domain.
     Source: section III B of the paper. It neglects the elastic coupling and the Gaussian at nucleation.

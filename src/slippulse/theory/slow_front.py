@@ -60,8 +60,7 @@ def advance(
     if entry is None:
         return None, "unknown"
     k, start = entry
-    stop = -1.0
-    corrections = 0
+    stop, corrections = -1.0, 0
     for _ in range(60):
         if start - stop < SHORTEST:
             return (None, "dead") if front.stalled() else front.straight(mark)
@@ -258,13 +257,7 @@ def barrier_depth(
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
     """The later estimate of the depth, (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
 
-    Parameters
-    ----------
-    tau0 : pre-stress before the barrier, in (0, 1)
-    tau_barrier : pre-stress of the barrier, <= -1e-100
-    gamma : elasticity ratio, >= 1e-100
-
-    Raises ValueError: outside the domain.
+    Raises ValueError: if tau0 is not in (0, 1), tau_barrier not <= -1e-100 or gamma not >= 1e-100.
     Source: the authors' public code of later work.
     """
     check_domains(tau0=tau0)
