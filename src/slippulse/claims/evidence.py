@@ -147,17 +147,18 @@ class Evidence:
                 measured=evaluated(table, measured),
                 predicted=evaluated(table, predicted),
                 ratio=lambda t: t["measured"].astype(float) / t["predicted"],
+                off=lambda t: (t["ratio"] - 1.0).abs(),
             )
             for table in tables
         ]
         finest = tables[0]
-        each = (finest["ratio"] - 1.0).abs()
-        each = each[np.isfinite(each)]
+        each = finest["off"][np.isfinite(finest["off"])]
         claim: Claim = {"runs": each.size, "left_out": len(finest) - each.size}
         if not each.size:
             return claim | {"verdict": "not testable"}
-        median = self.studied(tables, lambda t: (t["ratio"] - 1.0).abs().median())
+        median = self.studied(tables, lambda t: t["off"].median())
         ratio = self.studied(tables, lambda t: t["ratio"].median())
+        middle = median.value, median.uncertainty
         slope, allowed = None, self.entries[id].get("tolerance_exponent")
         if allowed is not None:
             found = self.studied(tables, exponent)
@@ -169,7 +170,7 @@ class Evidence:
             claim |= {"exponent": slope[0], "exponent_uncertainty": slope[1]}
 
         def at(tolerance: float) -> str:
-            return rules.approximate(median[::3], tolerance, slope, float(allowed or 0.0))
+            return rules.approximate(middle, tolerance, slope, float(allowed or 0.0))
 
         return claim | {
             "verdict": at(self.tolerance(id)), "at": at, "predicted": 1.0, "measured": ratio.value,
@@ -207,10 +208,7 @@ class Evidence:
 
     def compared(self, simulation: str, quantity: str) -> dict[str, float]:
         """Median and largest deviation of runs at spacing 0 from the exact theory."""
-        off = (
-            ratios(self.lattices(simulation)[0], f"extrapolated_{quantity}", f"exact_{quantity}")
-            .sub(1.0)
-            .abs()
-        )
+        table = self.lattices(simulation)[0]
+        off = (ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}") - 1.0).abs()
         off = off[np.isfinite(off)]
         return {"exact_median": float(off.median()), "exact_largest": float(off.max())} if off.size else {}
