@@ -14,8 +14,9 @@ from .style import BLACK, BLUE, GREY, HALO, ORDER_COLOURS, PAGE, Look, entry, ne
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
-PANELS = {"front_speed": "front speed", "peak_velocity": "peak slip velocity"}
-PANELS["transition_time"] = r"$T_\mathrm{trans}$"
+PANELS = {
+    "front_speed": "front speed", "peak_velocity": "peak slip velocity", "transition_time": r"$T_\mathrm{trans}$"
+}  # fmt: skip
 MARKERS = dict(zip(ORDER_COLOURS, "osD^P>", strict=True))
 # Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
 SIZES = {1.0: 4.0, 0.5: 2.8, 0.25: 1.8}
@@ -87,14 +88,12 @@ def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
         label = r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$" if n == 1 else None
         axes.plot(steps, shown, color="0.75", linewidth=0.8, gid="locked", label=label)
     axes.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
-    look: Look = {"gid": "fixed_step", "label": "textbook scheme"}
-    axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, **look)
-    look = {"gid": "localised", "label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
+    axes.plot(
+        fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme", gid="fixed_step"
+    )
+    look: Look = {"gid": "localised", "label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
     axes.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
     # The legend stands above the marks.
-    axes.set(
-        ylim=(low, low + 1.32 * (high - low)),
-        xlabel=r"time step $\Delta t\,/\,\Delta x$",
-        ylabel="front speed",
-    )
+    axes.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
+    axes.set_ylabel("front speed")
     axes.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)

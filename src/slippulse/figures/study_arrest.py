@@ -30,10 +30,8 @@ OPEN: Look = {"markerfacecolor": "white"}
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The left front's path, its last release, and when it has covered the fraction of the way that counts as arrest.
 
-    Returns
-    -------
-    DataFrame in units of |x_minus|: role path (simulated at the finest spacing) and exact_path (time, to_go), and run
-    (dx, last_release, fraction_time, exact_fraction_time)
+    In units of |x_minus|: roles path (simulated at the finest spacing) and exact_path (time, to_go), and run (dx,
+    last_release, fraction_time, exact_fraction_time).
     """
     runs = tables["arrest"]
     # The paper estimates the time of the transition by |x_minus|.
@@ -73,16 +71,20 @@ def plot(table: pd.DataFrame) -> Figure:
         fraction = OPEN | look | {"gid": f"fraction {ratio:g}"}
         spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **fraction)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
-    handles.append(entry("simulation", color=GREY, **PALE))
-    handles.append(entry("exact", color=GREY, linewidth=0.9))
-    handles.append(entry("last release", color=GREY, marker="o"))
     fraction_label = f"{100.0 * table['fraction'].max():g} % of the way"
-    handles.append(entry(fraction_label, color=GREY, marker="o", **OPEN))
-    handles.append(entry("the same, exact", color=GREY, marker="<"))
+    looks: dict[str, Look] = {
+        "simulation": PALE,
+        "exact": {"linewidth": 0.9},
+        "last release": {"marker": "o"},
+    }
+    looks |= {fraction_label: {"marker": "o"} | OPEN, "the same, exact": {"marker": "<"}}
+    handles += [entry(label, color=GREY, **look) for label, look in looks.items()]
     legend_below(figure, handles, 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     path_axes.set_ylabel(r"still to go, $1-|x|/|x_{-}|$")
-    path_axes.set_title(_conditions(table[table["role"] == "run"]), loc="right")
+    left, right, width = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
+    levels = rf"$\tau_{{0,l}} = {left:g}$, $\tau_{{0,r}} = {right:g}$"
+    path_axes.set_title(rf"$\Gamma = 0$, {levels}, $W = {width:g}$", loc="right")
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
     low, high = spacing_axes.get_ylim()
     spacing_axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
@@ -91,8 +93,3 @@ def plot(table: pd.DataFrame) -> Figure:
         spacing_axes.text(0.98, height, word, transform=spacing_axes.transAxes, ha="right", va=va)
     few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure
-
-
-def _conditions(runs: pd.DataFrame) -> str:
-    levels = rf"$\tau_{{0,l}} = {runs['left'].iloc[0]:g}$, $\tau_{{0,r}} = {runs['right'].iloc[0]:g}$"
-    return rf"$\Gamma = 0$, {levels}, $W = {runs['width'].iloc[0]:g}$"

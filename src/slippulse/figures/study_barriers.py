@@ -30,10 +30,8 @@ LEVELS = (0.2, 0.5, 0.8)
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The lattices of the study, with interpolated maps and curves of exact depths and of the estimate.
 
-    Returns
-    -------
-    rows of part "depth" as in the study; of part "fine" exact at gamma = 1 on a fine grid; of part "curve" exact and
-    paper (the later estimate) over the barrier's level at gamma = GAMMA
+    Part "depth" as in the study; part "fine" exact at gamma = 1 on a fine grid; part "curve" exact and paper (the later
+    estimate) over the barrier's level at gamma = GAMMA.
     """
     study = tables["barriers"]
     parts = [study[study["part"] == "depth"]]
@@ -128,8 +126,7 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
 
 
 def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
-    styles = ("o-", "s--")
-    for style, (ratio, chosen) in zip(styles, runs.groupby("damping_ratio"), strict=True):
+    for style, (ratio, chosen) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
         look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio), "markersize": 2.4}
         look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
         for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
@@ -138,7 +135,6 @@ def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
             axes.plot(line["dx"], over, style, gid=f"lattice {ratio:g}", label=label, **look)
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
-    axes.set_title(
-        rf"$\Gamma = 1$, {runs.groupby(['tau0', 'barrier', 'gamma']).ngroups} scenes a ratio", loc="right"
-    )
+    scenes = runs.groupby(["tau0", "barrier", "gamma"]).ngroups
+    axes.set_title(rf"$\Gamma = 1$, {scenes} scenes a ratio", loc="right")
     axes.legend(loc="upper left")

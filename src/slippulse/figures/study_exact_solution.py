@@ -18,9 +18,7 @@ __all__ = ["NEEDS", "plot", "table"]
 NEEDS = {"studies": ["exact_rupture"]}
 
 SCENES = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress": GREEN}
-# Their names and markers.
-QUANTITIES = {"release": ("release", "o"), "stick": ("stick", "s"), "slip": ("slip", "^")}
-QUANTITIES["velocity"] = ("slip velocity", "D")
+MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -30,9 +28,8 @@ def plot(table: pd.DataFrame) -> Figure:
     names = {row["scene"]: _name(row) for _, row in table[table["role"] == "scene"].iterrows()}
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
-        for axes, quantities in ((edge_axes, ("release", "stick")), (slip_axes, ("slip",))):
-            for quantity in quantities:
-                _draw_edge(axes, rows, quantity, colour)
+        for axes, quantity in ((edge_axes, "release"), (edge_axes, "stick"), (slip_axes, "slip")):
+            _draw_edge(axes, rows, quantity, colour)
         _draw_differences(difference_axes, rows[rows["role"] == "difference"], colour)
     dx = table.loc[table["role"] == "scene", "dx"].iloc[0]
     drawn = table.loc[table["role"] == "exact", "scene"].unique()
@@ -89,20 +86,21 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, colour: str) -> None:
     finest = rows[rows["dx"] == rows["dx"].min()].sort_values("difference")
     for quantity in finest["quantity"].iloc[[0, -1]]:
         line = rows[rows["quantity"] == quantity].sort_values("dx")
-        look: Look = {"marker": QUANTITIES[str(quantity)][1], "color": colour, "linewidth": 0.7}
+        look: Look = {"marker": MARKERS[str(quantity)], "color": colour, "linewidth": 0.7}
         axes.plot(line["dx"], line["difference"], gid=str(quantity), **look)
 
 
 def _finish_differences(axes: Axes, rows: pd.DataFrame, others: Mapping[str, str]) -> None:
     for quantity in dict.fromkeys(line.get_gid() for line in axes.lines):
-        label, marker = QUANTITIES[str(quantity)]
-        axes.plot([], [], marker, color=GREY, label=label)
+        label = "slip velocity" if quantity == "velocity" else str(quantity)
+        axes.plot([], [], MARKERS[str(quantity)], color=GREY, label=label)
     for label, colour in others.items():
         axes.plot([], [], color=colour, label=label)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
     axes.plot(ends, 1.5 * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
-    axes.set_ylabel("mean |lattice $-$ exact| / mean")
+    axes.set(
+        xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="mean |lattice $-$ exact| / mean"
+    )
     few_ticks(axes.xaxis, np.unique(rows["dx"]))
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)
     axes.legend(loc="lower right", ncols=2, columnspacing=0.8)

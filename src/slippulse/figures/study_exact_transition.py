@@ -23,13 +23,7 @@ QUANTITIES = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Each run's T_trans and L_trans with the paper's prediction and the exact value.
-
-    Returns
-    -------
-    DataFrame of role sweep and refinement (transition_*, paper_transition_*, exact_transition_*) and gaussian (the
-    study gaussian_transition)
-    """
+    """T_trans and L_trans of runs, predicted and exact (roles sweep, refinement), and the study (role gaussian)."""
     sources = ("transition", "paper_transition", "exact_transition")
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     kept += [f"{source}_{quantity}" for source in sources for quantity in QUANTITIES]
@@ -57,18 +51,16 @@ def _draw_ratios(axes: Axes, sweep: pd.DataFrame, quantity: str) -> None:
             runs = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
             exact, measured = runs[f"exact_transition_{quantity}"], runs[f"transition_{quantity}"]
             ratio = measured / runs[f"{reference}_transition_{quantity}"]
-            face, name = ("white", "the paper's value") if reference == "paper" else (colour, "the exact one")
-            size, order = (2.5, 2.0) if reference == "paper" else (1.7, 3.0)
-            look: Look = {
-                "markersize": size,
-                "zorder": order,
-                "markerfacecolor": face,
-                "markeredgewidth": 0.5,
-            }
-            look["color"] = colour
-            axes.plot(
-                exact, ratio, marker, **look, label=f"{label}, over {name}", gid=f"{reference} {boundary}"
-            )
+            look: Look = {"color": colour, "markeredgewidth": 0.5, "gid": f"{reference} {boundary}"}
+            if reference == "paper":
+                look |= {
+                    "markersize": 2.5,
+                    "markerfacecolor": "white",
+                    "label": f"{label}, over the paper's value",
+                }
+            else:
+                look |= {"markersize": 1.7, "zorder": 3.0, "label": f"{label}, over the exact one"}
+            axes.plot(exact, ratio, marker, **look)
     symbol = SYMBOLS[quantity]
     axes.set(xscale="log", xlabel=f"exact ${symbol}$", ylabel=f"measured / predicted ${symbol}$")
 
@@ -80,8 +72,7 @@ def _draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
         look: Look = {"color": colour, "markersize": 2.5, "markerfacecolor": "none", "markeredgewidth": 0.5}
         axes.plot(spacing, error, marker, **look)
-        largest = error.groupby(spacing).max()
-        label = f"${SYMBOLS[quantity]}$, largest"
+        largest, label = error.groupby(spacing).max(), f"${SYMBOLS[quantity]}$, largest"
         axes.plot(largest.index, largest, marker=marker, color=colour, label=label, gid=f"refined {quantity}")
     ends = spacing.agg(["min", "max"]).to_numpy()
     axes.plot(ends, 0.4 * ends, color=BLACK, linewidth=0.8, linestyle=":", label="first order")

@@ -33,13 +33,11 @@ COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx", "
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Simulated speeds with theory joined to each, and lines of theory.
 
-    Returns
-    -------
-    DataFrame of role theory (as the study front_law has it) and simulation (speed; theory, but for refined; undamped:
-    the paper's formula; sound: whether theory should hold), each of panel prestress, springs or refined
+    Role theory is the study front_law; role simulation has speed, theory (but for refined), undamped (the paper's
+    formula) and sound (whether theory should hold); each of panel prestress, springs or refined.
     """
     lines = tables["front_law"].assign(role="theory")
-    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
+    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]]).assign(panel="prestress")
     springs = tables["front_speed_springs"]
     springs = springs[springs["release"] == lines.loc[lines["panel"] == "springs", "release"].iloc[0]]
     ratio = tables["continuum_fixed_ratio"].assign(held="b", fixed=lambda runs: runs["damping_ratio"])
@@ -48,7 +46,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
     springs = springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2)
     refined = refined.merge(drawn.drop_duplicates()).assign(panel="refined")
-    runs = pd.concat([uniform.assign(panel="prestress"), springs, refined])
+    runs = pd.concat([uniform, springs, refined])
     wide = (runs["pulse_state"] == "steady") & (runs["pulse_width"] >= FEWEST_BLOCKS * runs["dx"])
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     runs = runs[COLUMNS].assign(
@@ -65,23 +63,20 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 def plot(table: pd.DataFrame) -> Figure:
     """(a, b) both rules against tau_0, over the undamped speed; (c) leaf springs; (d) refined lattices."""
     figure, grid = new_panels(PAGE, 5.2, 2, 2)
+    panels = dict(list(table.groupby("panel")))
     for axes, rule in zip(grid, RULES, strict=False):
-        _draw_prestress(axes, _part(table, "prestress", rule))
+        _draw_prestress(axes, panels["prestress"][panels["prestress"]["release"] == rule])
         axes.set_title(rf"$\Gamma = 0$, release by {rule} stress", loc="right")
-    grid[0].set(yscale="log", ylim=(0.93, 30.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
+    grid[0].set(yscale="log", ylim=(0.93, 30.0))
     few_ticks(grid[0].yaxis, (1, 2, 5, 10, 20))
-    grid[1].set(ylim=(0.98, 1.45), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
+    grid[1].set_ylim(0.98, 1.45)
     left, label = np.linspace(0.0, 1.0, 101), r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
     limit = grid[1].plot(left, np.sqrt(1.0 + left), ":", color=BLACK, label=label)
     grid[1].legend(handles=limit, loc="upper left")
-    _draw_springs(grid[2], _part(table, "springs"))
-    _draw_refined(grid[3], table[table["panel"].isin(["refined", "limit"])])
+    _draw_springs(grid[2], panels["springs"])
+    _draw_refined(grid[3], panels["refined"], float(panels["limit"]["speed"].max()))
     legend_above(figure, grid[0], title="damping ratio $b$")
     return figure
-
-
-def _part(table: pd.DataFrame, panel: str, rule: str | None = None) -> pd.DataFrame:
-    return table[(table["panel"] == panel) & (table["release"] == (rule or table["release"]))]
 
 
 def _colour(ratio: float):
@@ -94,15 +89,14 @@ def _draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
         line = group[group["role"] == "theory"]
         axes.plot(line["left"], line["over"], color=_colour(ratio), gid=f"theory {ratio:g}")
         _points(axes, group, "left", "over", marker, f"{ratio:g}")
-    axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0))
+    axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
 
 
 def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     looks = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
     for (left, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
-        style, marker = looks[left]
-        gid = f"springs {left:g} {ratio:g}"
+        (style, marker), gid = looks[left], f"springs {left:g} {ratio:g}"
         axes.plot(line["springs"], line["speed"], style, color=_colour(ratio), gid=gid)
         known = line.dropna(subset="speed")
         if len(known) < len(line):
@@ -112,33 +106,28 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
     axes.plot([], [], "x", color=GREY, label="no front beyond")
     axes.plot([], [], "s", color=GREY, markerfacecolor="white", label="too narrow for the theory")
-    axes.set(xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$")
-    axes.set_ylabel("front speed $v$")
+    axes.set(
+        xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$", ylabel="front speed $v$"
+    )
     axes.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
     few_ticks(axes.yaxis, (1, 1.5, 2, 3, 4, 5))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
 
 
-def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
+def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
     names = {"b": "b", "beta": r"\beta"}
-    lines = rows[rows["panel"] == "refined"].groupby(["held", "fixed", "release"])
+    lines = rows.groupby(["held", "fixed", "release"])
     for ((held, fixed, rule), group), marker in zip(lines, MARKERS, strict=False):
         line = group[group["role"] == "theory"].sort_values("dx")
         gid, name = f"refined {held} {fixed:g} {rule}", rf"fixed ${names[held]} = {fixed:g}$, {rule}"
         axes.plot(line["dx"], line["speed"], color=GREY, linewidth=0.8, gid=gid)
         _points(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, color=GREY, linewidth=0.8, label=name)
-    limit = rows.loc[rows["panel"] == "limit", "speed"].max()
     undamped = rows["undamped"].max()
     for value, style, name, side in ((limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")):
         axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=style)
-        place: Look = {
-            "transform": axes.get_yaxis_transform(),
-            "ha": "right",
-            "va": side,
-            "fontsize": 8.0,
-        }
-        axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **place)
+        look: Look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
+        axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     axes.set_ylim(0.88 * undamped, None)
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
@@ -150,7 +139,6 @@ def _points(axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: 
     """Simulated speeds in the colour of their damping ratio; open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
-        colour = _colour(ratio)
-        look: Look = {"color": colour, "markerfacecolor": colour if sound else "white", "markersize": 3.5}
+        look: Look = {"color": _colour(ratio)} | ({} if sound else {"markerfacecolor": "white"})
         label = label if sound else None
-        axes.plot(group[x], group[y], marker, linestyle="none", gid="simulation", label=label, **look)
+        axes.plot(group[x], group[y], marker, gid="simulation", label=label, **look)

@@ -34,10 +34,7 @@ APART = {"elastic": -0.17, "total": 0.17}
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """A row of each claim at each combination, or at the one that there is.
 
-    Returns
-    -------
-    DataFrame of id, label, verdict, tolerance, deviation, over (deviation over tolerance), choice (that matters most),
-    release (rule) and solution (exact or lattice)
+    Over is deviation over tolerance, choice what matters most, release the rule, solution exact or lattice.
     """
     rows = []
     for claim in tables["claims"].to_dict("records"):

@@ -30,15 +30,8 @@ NAMES = {
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The study with interpolated curves of the best trials.
 
-    Parameters
-    ----------
-    settings : simulations (space_time_displacement) and model (damping_ratio): the scene of our space-time figure
-
-    Returns
-    -------
-    DataFrame of the study's rows and, by release rule, part "curve" (damping_ratio, dx, tau0, gamma, their errors,
-    chi2) and part "best" (one row a reading: pull, with the parameters that fit best); part "ours" (the scene of our
-    figure: damping_ratio, tau0, gamma)
+    By release rule part "curve" (damping_ratio, dx, tau0, gamma, their errors, chi2) and part "best" (one row a
+    reading: pull, with the parameters that fit best); part "ours": the scene of our space-time figure, of the settings.
     """
     study = tables["published_figure"]
     parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
@@ -112,10 +105,8 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
             inside = line[room >= 0.0]
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
-            ends, gid = (inside[name] - half, inside[name] + half), f"{release} {level:g}"
-            axes.fill_between(
-                inside["damping_ratio"], *ends, color=colour, alpha=alpha, linewidth=0.0, gid=gid
-            )
+            ends = inside["damping_ratio"], inside[name] - half, inside[name] + half
+            axes.fill_between(*ends, color=colour, alpha=alpha, linewidth=0.0, gid=f"{release} {level:g}")
         look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
         axes.plot(best["damping_ratio"], best[name], marker, **look)
     ours = table[table["part"] == "ours"].iloc[0]
@@ -125,16 +116,14 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
         axes.legend(loc="upper left")
     _ratio_axis(axes)
-    axes.set_xlim(0.045, 0.3)
-    axes.set_ylabel(label)
+    axes.set(xlim=(0.045, 0.3), ylabel=label)
 
 
 def _draw_pulls(axes: Axes, best: pd.DataFrame) -> None:
     """What the best fits leave of each reading, in units of its error."""
     axes.axhspan(-1.0, 1.0, color="0.92")
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
-    for release, shift in zip(LOOKS, (-0.12, 0.12), strict=True):
-        colour, marker, label = LOOKS[release]
+    for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
         rows = best[best["release"] == release]
         axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label, gid=release)
     labels = [NAMES.get(name, rf"edge, $t = {name.rpartition('_')[2]}$") for name in rows["reading"]]

@@ -26,17 +26,15 @@ MARKERS = ("o", "s", "^", "D")
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Peak velocity, width and slip of each simulated pulse with theory, and theory over the damping ratio.
 
-    Returns
-    -------
-    DataFrame of quantity, left (the level), damping_ratio: role simulation (value, theory, paper), theory (over_paper)
-    and refined (value over dx, theory: the limit)
+    Role simulation has value, theory and paper, theory over_paper, refined value over dx, and theory: the limit.
     """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     lines = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
     parts = [lines.assign(role="theory")]
     for quantity in QUANTITIES:
-        values = {"value": runs[f"pulse_{quantity}"], "theory": runs[f"exact_pulse_{quantity}"]}
-        values |= {"paper": runs[f"paper_pulse_{quantity}"], "role": "simulation", "quantity": quantity}
+        sources = {"value": "", "theory": "exact_", "paper": "paper_"}
+        values = {name: runs[f"{source}pulse_{quantity}"] for name, source in sources.items()}
+        values |= {"role": "simulation", "quantity": quantity}
         parts.append(runs[["left", "gamma", "damping_ratio", "run_flags"]].assign(**values))
     runs = tables["continuum_fixed_ratio"]
     limits = study[study["role"] == "limit"].set_index("quantity")["value"]
@@ -79,7 +77,6 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     axes.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
-    name = rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$"
-    axes.set_title(name, loc="right")
+    axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right")
     axes.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
     axes.set_ylim(1e-6, None)

@@ -17,79 +17,63 @@ NEEDS = {"studies": ["rate_dependence"]}
 
 REGIMES = {"pulse": (BLUE, "o"), "crack": (ORANGE, "s")}
 LINES: Look = {"color": BLACK, "linewidth": 1.0}
+SMALL: Look = {"markersize": 4.0}
+OPEN: Look = SMALL | {"markerfacecolor": "white"}
+RATE = r"$\alpha/\sqrt{\gamma}$"
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a) regimes, (b) width and slip of pulses, (c) maps on both sides of the line, (d) the stress held."""
     figure, (plane, pulses, maps, arrest) = new_panels(PAGE, 5.4, 2, 2)
+    table = table.assign(over=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     parts = dict(list(table.groupby("role")))
-    scale = float(np.sqrt(table["gamma"].iloc[0]))
-    _draw_plane(plane, parts["lattice"], parts["limit"], scale)
+    _draw_plane(plane, parts["lattice"], parts["limit"])
     shown = parts["lattice"]["level"] == parts["map"]["level"].iloc[0]
-    _draw_pulses(pulses, parts["lattice"][shown], parts["steady"], scale)
-    _draw_maps(figure, maps, parts["map"], scale)
+    _draw_pulses(pulses, parts["lattice"][shown], parts["steady"])
+    _draw_maps(figure, maps, parts["map"])
     _draw_arrest(arrest, parts["arrest"], parts["asymptote"])
     return figure
 
 
-def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame, scale: float) -> None:
-    critical = limit["rate_strengthening"] / scale
-    axes.fill_betweenx(limit["level"], -critical, critical, color=BLUE, alpha=0.12, linewidth=0.0)
+def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
+    axes.fill_betweenx(limit["level"], -limit["over"], limit["over"], color=BLUE, alpha=0.12, linewidth=0.0)
     for sign, label in ((1.0, "exact"), (-1.0, None)):
-        axes.plot(sign * critical, limit["level"], label=label, gid=f"limit {sign:g}", **LINES)
-    for (regime, flagged), rows in runs.groupby(["regime", runs["run_flags"].fillna("") != ""]):
+        axes.plot(sign * limit["over"], limit["level"], label=label, gid=f"limit {sign:g}", **LINES)
+    flags = runs["run_flags"].fillna("") != ""
+    for (regime, flagged), rows in runs.groupby(["regime", flags]):
         colour, marker = REGIMES[str(regime)]
-        look: Look = {
-            "color": colour,
-            "markersize": 4.0,
-            "gid": f"{regime} {'flagged' if flagged else ''}".strip(),
-        }
-        look |= {"markerfacecolor": "white" if flagged else colour, "linestyle": "none", "marker": marker}
-        axes.plot(rows["rate_strengthening"] / scale, rows["level"], **look)
+        look = SMALL | {"markerfacecolor": "white" if flagged else colour}
+        gid = f"{regime} {'flagged' if flagged else ''}".strip()
+        axes.plot(rows["over"], rows["level"], marker, color=colour, gid=gid, **look)
     for regime, (colour, marker) in REGIMES.items():
-        axes.plot([], [], marker, color=colour, markersize=4.0, label=f"{regime}, lattice")
-    if (runs["run_flags"].fillna("") != "").any():
-        look = {"color": GREY, "markersize": 4.0, "markerfacecolor": "white"}
-        axes.plot([], [], "o", label="open: flagged or undecided", **look)
+        axes.plot([], [], marker, color=colour, label=f"{regime}, lattice", **SMALL)
+    if flags.any():
+        axes.plot([], [], "o", color=GREY, label="open: flagged or undecided", **OPEN)
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    axes.set(
-        xlabel=r"$\alpha/\sqrt{\gamma}$", ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7)
-    )
+    axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$", loc="right")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2, columnspacing=0.8, handletextpad=0.4)
 
 
-def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame, scale: float) -> None:
+def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame) -> None:
     for column, colour, marker, label in (
         ("pulse_width", BLACK, "o", r"width $W_\mathrm{p}$"),
         ("pulse_slip", GREY, "s", r"slip $u$"),
     ):
-        axes.plot(
-            steady["rate_strengthening"] / scale,
-            steady[column],
-            color=colour,
-            label=label,
-            gid=f"exact {column}",
-        )
-        look: Look = {
-            "color": colour,
-            "markersize": 4.0,
-            "markerfacecolor": "white",
-            "gid": f"lattice {column}",
-        }
-        axes.plot(runs["rate_strengthening"] / scale, runs[column], marker, **look)
-    axes.set(xlabel=r"$\alpha/\sqrt{\gamma}$", ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
+        axes.plot(steady["over"], steady[column], color=colour, label=label, gid=f"exact {column}")
+        axes.plot(runs["over"], runs[column], marker, color=colour, gid=f"lattice {column}", **OPEN)
+    axes.set(xlabel=RATE, ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
     axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {runs['level'].iloc[0]:g}$; points: lattice", loc="right")
     axes.legend(loc="upper center")
 
 
-def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame, scale: float) -> None:
+def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": rows["slip_velocity"].max()}
     for regime, half in rows.groupby("regime"):
-        grid = half.pivot(index="time", columns="position", values="slip_velocity")
+        grid = half.pivot(index="position", columns="time", values="slip_velocity")
         grid = grid.where(grid > 0.0)
-        image = axes.pcolormesh(grid.index, grid.columns, grid.T, shading="nearest", rasterized=True, **look)
-        name = rf"{regime}, $\alpha/\sqrt{{\gamma}} = {half['rate_strengthening'].iloc[0] / scale:.2f}$"
+        image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
+        name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
         axes.text(0.04, 0.92 if regime == "crack" else 0.04, name, transform=axes.transAxes)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
@@ -102,10 +86,12 @@ def _draw_arrest(axes: Axes, rows: pd.DataFrame, theory: pd.DataFrame) -> None:
     groups = rows.groupby("rate_strengthening")
     colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
     for colour, marker, (alpha, line) in zip(colours, "os^Dv", groups, strict=False):
-        look: Look = {"markersize": 3.0, "markerfacecolor": "white", "label": rf"$\alpha = {alpha:g}$"}
-        axes.plot(
-            line["time"], line["largest_velocity"], marker, color=colour, gid=f"velocity {alpha:g}", **look
-        )
+        look: Look = OPEN | {
+            "markersize": 3.0,
+            "label": rf"$\alpha = {alpha:g}$",
+            "gid": f"velocity {alpha:g}",
+        }
+        axes.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
     line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
     axes.plot(line["time"], line["largest_velocity"], "--", label="diffusion", gid="diffusion", **LINES)
     axes.set(xscale="log", yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity")

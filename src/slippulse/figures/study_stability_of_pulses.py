@@ -7,26 +7,14 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from ..data.points import point
 from ..model.prestress import prestress_from
-from .style import (
-    BLACK,
-    GREEN,
-    GREY,
-    PAGE,
-    PURPLE,
-    YELLOW,
-    Look,
-    colour_scale,
-    entry,
-    legend_below,
-    new_panels,
-)
+from . import style
+from .style import BLACK, GREY, PAGE, Look, colour_scale, entry, legend_below, new_panels
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
@@ -39,35 +27,31 @@ LEAST = 0.03
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Slip left behind over the distance from the step (Gamma = 1), largest velocity over time (Gamma = 0).
 
-    Returns
-    -------
-    DataFrame of level (beyond the step): role exact (as the study has it) and lattice (x: distance beyond the step,
-    slip), and velocity (time, largest_velocity ahead of the nucleation point, step: its position)
+    Of each level beyond the step role exact (as the study has it) and lattice (x: distance beyond the step, slip), and
+    velocity (time, largest_velocity ahead of the nucleation point, step: its position).
     """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
-    for run in _runs(data["pulses_across_a_step"]):
+    across, beyond = (
+        [point(data[name], i) for i in range(data[name].sizes["point"])] for name in NEEDS["data"]
+    )
+    for run in across:
         position, level = prestress_from(run.attrs).steps[-1]
         x = run["x"].values - position
         drawn = exact.loc[np.isclose(exact["level"], level), "x"]
         inside = np.flatnonzero(np.isfinite(run["stick_time"]) & (x > drawn.min()) & (x < drawn.max()))
         kept = inside[:: max(1, inside.size // POINTS)]
-        lines = {"x": x[kept], "slip": run["slip"].values[kept]}
-        parts.append(pd.DataFrame(lines).assign(role="lattice", level=level, dx=run.attrs["dx"]))
+        lines = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
+        parts.append(lines.assign(role="lattice", level=level, dx=run.attrs["dx"]))
     # The runs with the lowest level on the left, which sends the narrowest pulse.
     lowest = float(data["regimes_beyond"]["left"].min())
-    for run in _runs(data["regimes_beyond"]):
+    for run in beyond:
         if run.attrs["left"] == lowest:
             largest = run["sample_velocity"].sel(sample_position=slice(1e-9, None)).max("sample_position")
-            lines = {"time": run["sample_time"].values, "largest_velocity": largest.values}
+            lines = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest.values})
             position, level = prestress_from(run.attrs).steps[-1]
-            values = {"level": level, "before": run.attrs["right"], "step": position}
-            parts.append(pd.DataFrame(lines).assign(role="velocity", **values))
+            parts.append(lines.assign(role="velocity", level=level, before=run.attrs["right"], step=position))
     return pd.concat(parts, ignore_index=True)
-
-
-def _runs(sweep: xr.Dataset) -> list[xr.Dataset]:
-    return [point(sweep, index) for index in range(sweep.sizes["point"])]
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -102,37 +86,27 @@ def plot(table: pd.DataFrame) -> Figure:
 def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str) -> None:
     exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    slip_axes.plot(
-        exact["x"],
-        exact["slip"],
-        color=colour,
-        label=rf"$\tau_0 = {level}$ beyond",
-        gid=f"exact {level}",
-    )
+    look: Look = {"label": rf"$\tau_0 = {level}$ beyond", "gid": f"exact {level}"}
+    slip_axes.plot(exact["x"], exact["slip"], color=colour, **look)
     marks = lattice.iloc[::MARKED]
-    look: Look = {
-        "markersize": 1.8,
-        "markerfacecolor": "white",
-        "markeredgewidth": 0.5,
-        "gid": f"slip {level}",
-    }
+    look = {"markersize": 1.8, "markerfacecolor": "white", "markeredgewidth": 0.5, "gid": f"slip {level}"}
     slip_axes.plot(marks["x"], marks["slip"], "o", color=colour, **look)
     look = {"markersize": 9.0, "markeredgewidth": 1.2, "gid": f"memory {level}"}
     slip_axes.plot(memory, steady, "|", color=colour, **look)
     # From the memory on the exact rest is 0.
     exact = exact[(exact["x"] > 0.0) & ((exact["x"] <= memory) | (exact["x"].shift() <= memory))]
     marks = marks[marks["x"] > 0.0]
-    for part, style, name in ((exact, "-", "rest"), (marks, "o", "lattice rest")):
+    for part, line, name in ((exact, "-", "rest"), (marks, "o", "lattice rest")):
         rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)
         look = {"linewidth": 1.0, "markersize": 2.2, "markerfacecolor": "white", "markeredgewidth": 0.6}
-        rest_axes.plot(part["x"] / memory, rest, style, color=colour, gid=f"{name} {level}", **look)
+        rest_axes.plot(part["x"] / memory, rest, line, color=colour, gid=f"{name} {level}", **look)
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """One line a level, in the colour of what the pulse does, with the level at its end."""
     rows = rows[rows["largest_velocity"] > 0.0]
     for level, line in rows.groupby("level"):
-        colour = GREEN if level < 0.0 else PURPLE if level > 0.0 else YELLOW
+        colour = style.GREEN if level < 0.0 else style.PURPLE if level > 0.0 else style.YELLOW
         look: Look = {"markersize": 2.0, "linewidth": 0.8, "gid": f"velocity {level:g}"}
         axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, **look)
         # Where the line ends or leaves the panel; velocities fall with time there.
