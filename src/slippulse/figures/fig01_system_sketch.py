@@ -26,18 +26,10 @@ HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "lin
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """Displacement over the height since the start, as each condition is reduced with, and the strip.
+    """Displacement over the height since the start, as each condition is reduced with, and the strip's width.
 
-    Parameters
-    ----------
-    settings : thickness H, and strip_width in units of it
-
-    Returns
-    -------
-    panel ("stress" or "displacement"), y, displacement, strip_width. Under an imposed stress the mean over the height
-    stands for the interface; with the top held the displacement falls linearly to 0, so that its mean is half the slip.
-
-    Source: section II and appendix A of the paper.
+    Under an imposed stress the mean over the height stands for the interface; with the top held the displacement falls
+    linearly to 0, so that its mean is half the slip. Source: section II and appendix A of the paper.
     """
     panels = ["stress", "stress", "displacement", "displacement"]
     found = pd.DataFrame({"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]})

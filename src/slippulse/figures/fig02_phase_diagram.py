@@ -8,7 +8,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure, SubFigure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from ..data.numerals import setting
@@ -34,26 +33,22 @@ LOOKS = {
     "pulse, one-way, decaying": (style.GREEN, "decaying pulse"),
 }
 NUMBERS = "①②③④"
+MARK: Look = {"color": BLACK, "markersize": 4.0, "markeredgewidth": 0.6}
 # Levels drawn of each side of a sweep.
 DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regimes_stress": 5}
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The study of the planes, and some runs of the sweeps, those with leaf springs at the largest gamma.
+    """The study of the planes, and some runs of the sweeps (role run), those with leaf springs at the largest gamma.
 
-    Returns
-    -------
-    boundary, series, left, right, regime; roles area, line and profile as the study has them, and run (run_flags;
-    regime: at the end of the run, exact_regime: the one that it ends in by exact theory)
+    Regime is the one at the end of the run, exact_regime the one that it ends in by exact theory.
     """
     parts = [tables["regime_plane"]]
     for name, count in DRAWN.items():
         runs = tables[name][tables[name]["gamma"] == tables[name]["gamma"].max()]
-        drawn = runs["left"].isin(chosen(runs["left"], count)) & runs["right"].isin(
-            chosen(runs["right"], count)
-        )
-        kept = runs.loc[drawn, ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]]
-        parts.append(kept.assign(role="run"))
+        left, right = (runs[side].isin(chosen(runs[side], count)) for side in ("left", "right"))
+        kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
+        parts.append(runs.loc[left & right, kept].assign(role="run"))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -66,17 +61,20 @@ def plot(table: pd.DataFrame) -> Figure:
     numbers = {tuple(rows[["boundary", "regime"]].iloc[0]): NUMBERS[i] for i, rows in enumerate(profiles)}
     for axes, letter, boundary in zip(planes.subplots(1, 2), "ab", BOUNDARIES, strict=True):
         rows = table[table["boundary"] == boundary]
-        names = {
-            name: f"{numbers.get((boundary, name), '')} {label}".strip() for name, (_, label) in LOOKS.items()
-        }
+        regimes = LOOKS.items()
+        names = {name: f"{numbers.get((boundary, name), '')} {label}".strip() for name, (_, label) in regimes}
         draw_plane(axes, rows[rows["role"].isin(["area", "line"])], names)
         draw_runs(axes, rows[rows["role"] == "run"])
         axes.set_title(BOUNDARIES[boundary], fontsize=9)
         panel_letter(axes, letter)
     draw_profiles(strips, profiles)
-    runs = table[table["role"] == "run"]
-    # What is flagged is in the legend where there is any.
-    legend_below(figure, run_handles()[: 3 if runs["run_flags"].notna().any() else 2], 3)
+    looks: dict[str, Look] = {
+        "simulation, in the colour of its regime": {"marker": "o", "markerfacecolor": GREY},
+        "not settled by its end": {"marker": "o", "markerfacecolor": "white"},
+    }
+    if table.loc[table["role"] == "run", "run_flags"].notna().any():
+        looks["flagged"] = {"marker": "x"}
+    legend_below(figure, [entry(label, **MARK | look) for label, look in looks.items()], 3)
     return figure
 
 
@@ -109,24 +107,10 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, names: Mapping[str, str]) -> None
 def draw_runs(axes: Axes, runs: pd.DataFrame) -> None:
     """Runs in the colour of their regime, open where it is not the one of the area, crossed out where flagged."""
     for run in runs.itertuples():
-        colour = LOOKS[run.regime][0]
-        look: Look = {"color": BLACK, "markerfacecolor": colour, "markersize": 4.0, "markeredgewidth": 0.6}
-        marker = "o"
-        if isinstance(run.run_flags, str):
-            marker = "x"
-        elif run.exact_regime in LOOKS and run.exact_regime != run.regime:
-            look["markerfacecolor"] = "white"
+        early = run.exact_regime in LOOKS and run.exact_regime != run.regime
+        look = MARK | {"markerfacecolor": "white" if early else LOOKS[run.regime][0]}
+        marker = "x" if isinstance(run.run_flags, str) else "o"
         axes.plot(run.left, run.right, marker, gid="run", zorder=3.0, **look)
-
-
-def run_handles() -> list[Line2D]:
-    """Legend of the runs."""
-    look: Look = {"color": BLACK, "markersize": 4.0, "markeredgewidth": 0.6}
-    return [
-        entry("simulation, in the colour of its regime", marker="o", **look | {"markerfacecolor": GREY}),
-        entry("not settled by its end", marker="o", **look | {"markerfacecolor": "white"}),
-        entry("flagged", marker="x", **look),
-    ]
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
@@ -135,10 +119,8 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
     panel_letter(strips[0], "c")
     strips[0].set_title(rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$", fontsize=9)
     for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):
-        (colour, _), levels = (
-            LOOKS[rows["regime"].iloc[0]],
-            [setting(rows[side].iloc[0]) for side in ("left", "right")],
-        )
+        colour = LOOKS[rows["regime"].iloc[0]][0]
+        levels = [setting(rows[side].iloc[0]) for side in ("left", "right")]
         shape = rows["slip_velocity"] / rows["slip_velocity"].max()
         axes.fill_between(rows["x"], shape, color=tint(colour), linewidth=0.0)
         axes.plot(rows["x"], shape, color=colour, gid="profile")

@@ -28,20 +28,16 @@ PANELS = {"displacement": "a", "stress": "b"}
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The first run of both sweeps.
+    """The first run of both sweeps (panel: the boundary), as `run_rows` has it, and further roles.
 
-    Returns
-    -------
-    panel ("displacement" or "stress"), role, series, time, position, value: as `run_rows` has them, and the roles
-    exact_front and exact_trailing, and measured, paper and last_release (the transition: its time, positions of the
-    left and right front then; value: the length), and fraction (value: of |x_minus| that the left front has covered at
-    T_trans under a stress boundary)
+    Exact_front and exact_trailing; measured, paper and last_release (the transition: its time, positions of the left
+    and right front then; value: the length); fraction (value: of |x_minus| that the left front has covered at T_trans
+    under a stress boundary).
     """
     parts = []
     for panel in PANELS:
         name = f"space_time_{panel}"
-        run, exact = point(data[name], 0), tables["exact_space_time"]
-        exact = exact[exact["simulation"] == name]
+        run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
         edges = [
             pd.DataFrame({"role": role, "position": exact["position"], "time": exact[column]}).dropna()
             for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time"))
@@ -132,20 +128,17 @@ def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
     left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.04 * (high - low), high)
-    level = low
     arrow = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9, "mutation_scale": 8.0}
-    axes.plot([time, time], [level, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
+    axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
     for name, value, height, start, stop in (
-        ("T", time, level, (0.0, level), (time, level)),
+        ("T", time, low, (0.0, low), (time, low)),
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
         text = rf"${name}_\mathrm{{trans}} = {value:#.3g}$"
         end = axes.get_xlim()[1]
-        # On a long arrow, away from what is marked beyond it.
-        look: Look = (
-            {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
-            if name == "T" and time > 0.45 * end
-            else {"x": time + 0.025 * end}
-        )
+        look: Look = {"x": time + 0.025 * end}
+        if name == "T" and time > 0.45 * end:
+            # On a long arrow, away from what is marked beyond it.
+            look = {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
         axes.text(y=height, s=text, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0, **look)

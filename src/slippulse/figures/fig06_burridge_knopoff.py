@@ -41,15 +41,10 @@ TITLES = {
 
 
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """State of the blocks at a few instants of the first run of each sweep.
+    """State of the blocks at a few instants of the first run of each sweep, one row a panel, instant and block.
 
-    Returns
-    -------
-    one row a panel, instant and block: panel, row, instant (its name), time, x (at rest), slip, slip_velocity,
-    prestress, state, arresting_block (the first one that the left front never releases), scale (drawn displacement
-    over slip) and the parameters gamma, left, right, width
-
-    Source: the paper's discussion of the Burridge-Knopoff model.
+    X is the position at rest, arresting_block the first one that the left front never releases, scale the drawn
+    displacement over slip. Source: the paper's discussion of the Burridge-Knopoff model.
     """
     parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PITCH]
     return pd.concat(parts, ignore_index=True)
@@ -76,8 +71,7 @@ def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
 
 def arresting_block(run: xr.Dataset) -> float:
     """Position of the first block on the left that was never released."""
-    released = run["x"].values[np.isfinite(run["release_time"].values)]
-    return float(released.min() - run.attrs["dx"])
+    return float(run["x"].values[np.isfinite(run["release_time"].values)].min() - run.attrs["dx"])
 
 
 def window(run: xr.Dataset) -> tuple[float, float]:
@@ -132,8 +126,8 @@ def draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.bar(rows["x"], rows["prestress"], width=BLOCK, color=GREY)
     axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    axes.set_ylim(min(0.0, float(rows["prestress"].min())) - 0.15, 1.12)
-    axes.set_yticks(sorted({0.0, 1.0, float(rows["left"].iloc[0])}))
+    lowest, ticks = min(0.0, float(rows["prestress"].min())), {0.0, 1.0, float(rows["left"].iloc[0])}
+    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
     axes.tick_params(axis="x", length=0, labelbottom=False)
     axes.tick_params(axis="y", labelsize=7)
     axes.spines[["right", "top", "bottom"]].set_visible(False)
@@ -173,9 +167,8 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
 def coil(start: float, end: float, y: float, turns: int = 4, size: float = 0.1) -> np.ndarray:
     """A coil spring from ``start`` to ``end`` at height ``y``, as a zigzag."""
     x = np.linspace(start, end, 2 * turns + 3)
-    offset = np.zeros(x.size)
-    offset[1:-1] = size * (-1.0) ** np.arange(x.size - 2)
-    return np.column_stack([x, y + offset])
+    offset = size * (-1.0) ** np.arange(x.size - 2)
+    return np.column_stack([x, y + np.pad(offset, 1)])
 
 
 def bow(x_top: float, y_top: float, x_bottom: float, y_bottom: float) -> np.ndarray:

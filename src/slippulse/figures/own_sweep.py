@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.numbers import main_numbers, with_symbols
-from .style import CYCLE, GREY, PAGE, Look, entry, legend_below, new_panels
+from .style import CYCLE, GREY, PAGE, entry, legend_below, new_panels
 
 # What may vary in a sweep, with its symbol.
 AXES = {
@@ -26,15 +27,9 @@ PANELS, ROWS = 6, 2
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Every main number of every run.
 
-    Parameters
-    ----------
-    tables : of one sweep, measured and predicted numbers, one row a run
-
-    Returns
-    -------
-    `main_numbers` of each run with its flags, the axis that takes most values (tau_0 for a level on both sides), x (its
-    value) and the series by all others that vary, empty where none does; a number that equals another one in every run
-    is left out
+    Tables hold one sweep, measured and predicted. The numbers are `main_numbers` of each run with its flags, the axis
+    that takes most values (tau_0 for a level on both sides), x (its value) and the series by all others that vary,
+    empty where none does; a number that equals another one in every run is left out.
     """
     (runs,) = tables.values()
     varying: list[str] = []
@@ -50,14 +45,13 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for _, run in runs.iterrows():
         values = {name: run[name] if isinstance(run[name], str) else f"{run[name]:g}" for name in others}
         series = ", ".join(f"{AXES[name]} = {value}" for name, value in values.items())
-        found = main_numbers(run)
-        parts.append(found.assign(run_flags=run["run_flags"], axis=axis, x=run[axis], series=series))
-    found = pd.concat(parts, ignore_index=True)
-    groups = [group.reset_index(drop=True) for _, group in found.groupby("quantity", sort=False)]
-    new = [
-        group for k, group in enumerate(groups)
-        if not any(group["value"].equals(other["value"]) for other in groups[:k])
-    ]  # fmt: skip
+        parts.append(
+            main_numbers(run).assign(run_flags=run["run_flags"], axis=axis, x=run[axis], series=series)
+        )
+    new: list[pd.DataFrame] = []
+    for _, group in pd.concat(parts).groupby("quantity", sort=False):
+        if not any(np.array_equal(group["value"], other["value"]) for other in new):
+            new.append(group)
     return pd.concat(new, ignore_index=True)
 
 
@@ -74,12 +68,9 @@ def plot(table: pd.DataFrame) -> Figure:
             group = group.sort_values("x")
             flagged = group["run_flags"].notna()
             axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-            for some, face, label in (
-                (group[~flagged], colour, series or None),
-                (group[flagged], "none", None),
-            ):
-                look: Look = {"color": colour, "markerfacecolor": face, "label": label}
-                axes.plot(some["x"], some["value"], "o", **look)
+            sound, hollow = group[~flagged], group[flagged]
+            axes.plot(sound["x"], sound["value"], "o", color=colour, label=series or None)
+            axes.plot(hollow["x"], hollow["value"], "o", color=colour, markerfacecolor="none")
         axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in grid[len(quantities) :]:
         axes.set_visible(False)

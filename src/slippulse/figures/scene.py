@@ -34,8 +34,7 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
 
     Returns
     -------
-    role, series, time, position, value, uncertainty, theory: `run_rows`; profile (series slip or slip_velocity, at the
-    end); number (series: its quantity, and label); title (series: the text)
+    roles of `run_rows`; profile (series: field at the end); number (series: its quantity); title (series: the text)
     """
     lower, upper = limits(run)
     x = run["x"].values

@@ -16,13 +16,7 @@ FRAMES, PER_SECOND, DOTS_PER_INCH = 61, 12, 90
 
 
 def animate(run: xr.Dataset, title: str) -> FuncAnimation:
-    """Frames evenly over the samples of a run.
-
-    Parameters
-    ----------
-    run : one run with samples
-    title : what stands above
-    """
+    """Frames evenly over the samples of a run, under a title."""
     lower, upper = limits(run)
     x, times = run["sample_position"].values, run["sample_time"].values
     inside = (x >= lower) & (x <= upper)
@@ -37,8 +31,7 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
         (line,) = axes.plot(x[inside], values[0], color=colour)
         axes.set(ylabel=label, ylim=(-0.04 * np.nanmax(values), 1.05 * np.nanmax(values)))
         lines.append((line, values))
-    panels[0].set_xlim(lower, upper)
-    panels[1].set_xlabel(r"position $x$")
+    panels[1].set(xlim=(lower, upper), xlabel=r"position $x$")
     clock = figure.suptitle("", fontsize=9.0)
     plain = title.replace("$", r"\$")
 

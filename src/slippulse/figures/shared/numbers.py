@@ -32,16 +32,7 @@ def with_symbols(label: str) -> str:
 
 
 def main_numbers(run: pd.Series) -> pd.DataFrame:
-    """The main numbers that a run has.
-
-    Parameters
-    ----------
-    run : a row of measured and predicted numbers
-
-    Returns
-    -------
-    one row a number: quantity, label, value, theory (NaN where there is none)
-    """
+    """The main numbers that a run, a row of measured and predicted ones, has: quantity, label, value, theory or NaN."""
     found = pd.Series(LABELS[run["boundary"]], name="label").rename_axis("quantity").reset_index()
     found["value"] = [run.get(name, np.nan) for name in found["quantity"]]
     found["theory"] = [run.get(f"exact_{name}", np.nan) for name in found["quantity"]]

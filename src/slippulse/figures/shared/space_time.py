@@ -25,17 +25,11 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
-    """Everything that a map of a run shows.
+    """Everything that a map of a run with fronts and samples shows: role, series, time, position, value.
 
-    Parameters
-    ----------
-    run : with fronts and samples
-
-    Returns
-    -------
-    role, series, time, position, value. Roles: parameter (series: its name), flag (series: the flags), map (value: slip
-    velocity where it is not 0) and largest (value: the largest of them), prestress, front and trailing (time of first
-    release and of last stick, NaN where never)
+    Roles: parameter (series: its name), flag (series: the flags), map (value: slip velocity where it is not 0) and
+    largest (value: the largest of them), prestress, front and trailing (time of first release and of last stick, NaN
+    where never).
     """
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     if run.attrs["run_flags"]:
