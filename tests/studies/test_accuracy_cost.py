@@ -18,18 +18,8 @@ EQUAL, NEGLIGIBLE = 1.1, 1e-5
 
 
 @pytest.fixture(scope="module")
-def table(study) -> pd.DataFrame:
-    return study("accuracy_cost")
-
-
-@pytest.fixture(scope="module")
-def trade(table) -> pd.DataFrame:
-    return table[table["part"] == "trade"]
-
-
-@pytest.fixture(scope="module")
-def locking(table) -> pd.DataFrame:
-    return table[table["part"] == "locking"].set_index("scheme")
+def trade(study) -> pd.DataFrame:
+    return study("accuracy_cost").query("part == 'trade'")
 
 
 @pytest.mark.parametrize("preset", ["draft", "paper", "reference"])
@@ -37,9 +27,8 @@ def test_no_setting_is_cheaper_and_better_than_a_preset(trade, preset):
     """Nowhere less accurate and somewhere more."""
     (own,) = trade[trade["preset"] == preset].index
     cheaper = trade[(trade["scheme"] != "continuum") & (EQUAL * trade["work"] <= trade["work"][own])]
-    errors = cheaper[JUDGED].clip(lower=NEGLIGIBLE) / trade.loc[own, JUDGED].astype(float).clip(
-        lower=NEGLIGIBLE
-    )
+    errors = trade[JUDGED].clip(lower=NEGLIGIBLE)
+    errors = errors.loc[cheaper.index] / errors.loc[own]
     better = (errors <= EQUAL).all(axis=1) & (EQUAL * errors < 1.0).any(axis=1)
     assert len(cheaper) >= 10 and not better.any(), cheaper[better].to_string()
 
@@ -73,7 +62,8 @@ def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):
     assert rows["front_speed"].min() > 5e-4
 
 
-def test_the_textbook_front_locks_on_whole_steps_a_block_and_the_localised_does_not(locking):
+def test_the_textbook_front_locks_on_whole_steps_a_block_and_the_localised_does_not(study):
+    locking = study("accuracy_cost").query("part == 'locking'").set_index("scheme")
     fixed = locking.loc["fixed_step"]
     rows = fixed[fixed["step"] > 0.72]
     assert len(rows) > 10

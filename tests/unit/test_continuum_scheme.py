@@ -43,16 +43,13 @@ def test_it_is_the_same_dataset():
     missing = set(lattice.attrs) - set(exact.attrs)
     assert missing <= {name for name in lattice.attrs if name.endswith(("energy", "loss", "of_prestress"))}
     assert exact.attrs["scheme"] == "continuum" and exact.attrs["run_flags"] == ""
-    difference = np.abs(exact.sample_slip - lattice.sample_slip).max()
-    assert float(difference) < 0.1 * float(lattice.sample_slip.max())
+    assert np.abs(exact.sample_slip - lattice.sample_slip).max() < 0.1 * lattice.sample_slip.max()
 
 
 def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
     """A second nucleation whose waves hold a position that is about to stick."""
-    profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))
-    found = sp.simulate(
-        sp.Scene(**HELD, prestress=profile, duration=16.0, dx=0.1, beta=0.01, scheme="continuum")
-    )
+    scene = HELD | {"prestress": sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),)), "duration": 16.0}
+    found = sp.simulate(sp.Scene(dx=0.1, beta=0.01, scheme="continuum", **scene))
     assert found.attrs["run_flags"] == "construction_ended" and found.attrs["limit_reason"]
     assert found.attrs["limit_time"] <= found.attrs["duration"]
     assert np.isnan(found.slip.values).any()
@@ -67,9 +64,7 @@ def test_a_sweep_may_be_exact():
 def test_a_scene_that_releases_nothing_is_an_empty_run():
     scene = {"dx": 0.1, "beta": 0.01, **SCENES["displacement"], "prestress": sp.Prestress(0.5, 0.5, peak=0.9)}
     samples = sp.Samples([0.0, 1.0], [0.0, 1.0])
-    lattice, exact = (
-        sp.simulate(sp.Scene(scheme=name, **scene), samples) for name in ("localised", "continuum")
-    )
+    lattice, exact = (sp.simulate(sp.Scene(scheme=s, **scene), samples) for s in ("localised", "continuum"))
     assert exact.equals(lattice) and lattice.attrs["run_flags"] == "nothing_released"
     for name in ("releases", "sticks", "stopped_because", "run_flags", "pulse_blocks"):
         assert exact.attrs[name] == lattice.attrs[name]

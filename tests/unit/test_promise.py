@@ -15,7 +15,6 @@ from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.predict.measured import measured_table
 from slippulse.report.scene_page import scene_page
-from slippulse.simulation.simulate import run_sweep
 
 SHARE = 0.95
 PULSE = {
@@ -87,10 +86,9 @@ def tables(project):
             sp.Scene("displacement", sp.Prestress(0.5, 0.5), 30.0, dx, gamma=0.3, beta=0.1 * dx),
             sp.Scene("stress", sp.Prestress(-1.0, 0.0), 9.0, dx, beta=0.1 * dx),
         ]
-        samples = [
-            sp.Samples(np.linspace(0.0, scene.duration, 10), np.linspace(-20.0, 20.0, 81)) for scene in scenes
-        ]
-        out.append(measured_table(run_sweep(scenes, samples, ("fronts", "fields", "samples")), settings))
+        x = np.linspace(-20.0, 20.0, 81)
+        samples = [sp.Samples(np.linspace(0.0, scene.duration, 10), x) for scene in scenes]
+        out.append(measured_table(sp.run_sweep(scenes, samples, ("fronts", "fields", "samples")), settings))
     return out
 
 
@@ -135,10 +133,8 @@ def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):
 
 
 def test_the_numbers_of_a_scene_carry_the_verdict(tables, study):
-    plain, with_promise = (
-        scene_numbers(tables[0].iloc[0], part[part["point"] == 0])
-        for part in (study, judged(study, tables[0], 10.0, SHARE))
-    )
+    parts = (study, judged(study, tables[0], 10.0, SHARE))
+    plain, with_promise = (scene_numbers(tables[0].iloc[0], part[part["point"] == 0]) for part in parts)
     assert set(with_promise.columns) - set(plain.columns) == {"promised", "kept"}
     assert set(with_promise["kept"]) == {"true"} and set(with_promise["promised"]) == {10.0}
     pd.testing.assert_frame_equal(with_promise[plain.columns], plain)

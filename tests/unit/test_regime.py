@@ -25,22 +25,15 @@ def made_up(
     release = np.full(x.shape, np.nan)
     release[np.abs(x) < 1e-9] = 0.0
     for speed, sign in zip(speeds, (-1.0, 1.0), strict=True):
-        if speed > 0.0:
-            side = (sign * x > 0.0) & (np.abs(x) <= speed * last_release)
-            release[side] = np.abs(x[side]) / speed
-        else:
-            # A front that stops early, at one position.
-            release[(sign * x > 0.0) & (np.abs(x) <= 2.0)] = 0.1 * last_release
-    times, at = np.linspace(0.0, DURATION, 10), np.array([-10.0, 0.0, 10.0])
+        # One without a speed stops early, at one position.
+        side = (sign * x > 0.0) & (np.abs(x) <= (speed * last_release or 2.0))
+        release[side] = np.abs(x[side]) / speed if speed else 0.1 * last_release
     velocity = np.zeros((10, 3))
-    velocity[2, 1] = ever
-    velocity[6, 2] = before
-    velocity[-1] = (left, centre, right)
-    return xr.Dataset(
-        {"release_time": ("x", release), "sample_velocity": (("sample_time", "sample_position"), velocity)},
-        coords={"x": x, "sample_time": times, "sample_position": at},
-        attrs={"duration": DURATION, "end_time": DURATION},
-    )
+    velocity[2, 1], velocity[6, 2], velocity[-1] = ever, before, (left, centre, right)
+    sampled = {"sample_velocity": (("sample_time", "sample_position"), velocity)}
+    axes = {"sample_time": np.linspace(0.0, DURATION, 10), "sample_position": [-10.0, 0.0, 10.0]}
+    attributes = {"duration": DURATION, "end_time": DURATION}
+    return xr.Dataset({"release_time": ("x", release)} | sampled, {"x": x} | axes, attributes)
 
 
 @pytest.mark.parametrize(

@@ -16,11 +16,9 @@ PULSE = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0)
 
 def fields(velocity: np.ndarray) -> xr.Dataset:
     """A run with slip velocity at the end, at a spacing of 0.01."""
-    x = 0.01 * np.arange(velocity.size)
-    zero = np.zeros(velocity.size)
-    return xr.Dataset(
-        {"slip_velocity": ("x", velocity), "slip": ("x", zero), "slip_acceleration": ("x", zero)}, {"x": x}
-    )
+    zero = ("x", np.zeros(velocity.size))
+    named = {"slip_velocity": ("x", velocity), "slip": zero, "slip_acceleration": zero}
+    return xr.Dataset(named, {"x": 0.01 * np.arange(velocity.size)})
 
 
 def test_the_half_width_of_a_gaussian():
@@ -37,10 +35,8 @@ def test_waves_of_the_lattice_count_and_an_even_pulse_has_none():
     # Waves of two blocks pass wholly, waves of four to a sixteenth of their power.
     for period, gain in ((2, 1.0), (4, 1.0 / 16.0)):
         wave = np.where(even > 0.0, 1e-2 * np.cos(2.0 * np.pi * np.arange(x.size) / period), 0.0)
-        power = np.sum(wave**2) / np.sum(even**2)
-        assert lattice_noise(fields(even + np.abs(even > 0.05) * wave)) == pytest.approx(
-            gain * power, rel=0.1
-        )
+        expected = gain * np.sum(wave**2) / np.sum(even**2)
+        assert lattice_noise(fields(even + (even > 0.05) * wave)) == pytest.approx(expected, rel=0.1)
     assert np.isnan(lattice_noise(fields(np.zeros(100))))
 
 
@@ -49,10 +45,8 @@ def test_blocks_that_slide_at_once():
     release = np.abs(x)
     # Each slides for 1.5; the last three to the right are still sliding.
     stick = np.where(x > 3.0, np.nan, release + 1.5)
-    run = xr.Dataset(
-        {"release_time": ("x", release), "stick_time": ("x", stick)}, {"x": x}, {"end_time": 6.5}
-    )
-    assert sliding_at_once(run) == 3.0
+    times = {"release_time": ("x", release), "stick_time": ("x", stick)}
+    assert sliding_at_once(xr.Dataset(times, {"x": x}, {"end_time": 6.5})) == 3.0
 
 
 def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
@@ -62,15 +56,11 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
     size = 1.0 + growth * times[:, None]
     velocity = size * np.exp(-0.5 * ((x - centre) / 0.8) ** 2)
     velocity[velocity < 1e-5] = 0.0
-    slip = np.cumsum(velocity[:, ::-1], axis=1)[:, ::-1] * (x[1] - x[0]) - left * np.where(
-        x < centre, x, centre
-    )
-    return xr.Dataset(
-        {"sample_velocity": (("sample_time", "sample_position"), velocity),
-         "sample_slip": (("sample_time", "sample_position"), slip)},
-        {"sample_time": times, "sample_position": x},
-        Scene("stress", Prestress(-0.5, 0.0), duration=30.0, dx=0.01).attributes(),
-    )  # fmt: skip
+    slip = np.cumsum(velocity[:, ::-1], axis=1)[:, ::-1] * (x[1] - x[0]) - left * np.minimum(x, centre)
+    axes = ("sample_time", "sample_position")
+    scene = Scene("stress", Prestress(-0.5, 0.0), duration=30.0, dx=0.01).attributes()
+    sampled = {"sample_velocity": (axes, velocity), "sample_slip": (axes, slip)}
+    return xr.Dataset(sampled, {"sample_time": times, "sample_position": x}, scene)
 
 
 @pytest.mark.parametrize(
@@ -78,10 +68,7 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
     [
         # One that keeps its shape changes nothing.
         (moving(1.0), {"profile_change": 0.0, "energy_change": 0.0, "strain_left": 0.0}),
-        (
-            moving(1.0, growth=0.01),
-            {"energy_change": (1.3 / 1.2) ** 2 - 1.0, "profile_change": 0.1 / 1.2},
-        ),
+        (moving(1.0, 0.01), {"energy_change": (1.3 / 1.2) ** 2 - 1.0, "profile_change": 0.1 / 1.2}),
         (moving(1.0, left=0.1), {"strain_left": 0.1 / 1.1}),
         # Nothing is said of a pulse that never comes far.
         (moving(0.0), {"profile_change": np.nan}),
