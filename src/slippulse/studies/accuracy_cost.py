@@ -51,10 +51,8 @@ QUANTITIES = (
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Run the scenes at every setting, and both schemes against their step.
 
-    Returns
-    -------
-    rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
-    passes over one block), block_updates and one error a quantity; rows of part "locking": scheme, step,
+    Returns rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work
+    (stencil passes over one block), block_updates and one error a quantity; rows of part "locking": scheme, step,
     front_speed, exact
 
     Source: exact speed, pulse and transitions of `slippulse.theory`, all in the continuum limit at fixed beta/dx.

@@ -18,10 +18,8 @@ ROCK, SLIP, IMPOSED, STIFFNESS_RATIO = 1.6, 1.1, 1.9, 0.2
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Curves of the stress drop, and one example of the displacement over the height.
 
-    Returns
-    -------
-    role curve: thickness_ratio (H_r/H), stiffness_ratio (G/G_r), stress_drop (over G delta/H); roles before and after
-    (slip): y, displacement, in thicknesses of the zone
+    Returns role curve: thickness_ratio (H_r/H), stiffness_ratio (G/G_r), stress_drop (over G delta/H); roles before and
+    after (slip): y, displacement, in thicknesses of the zone
 
     Source: section IV C 2 of the paper.
     """

@@ -39,9 +39,8 @@ FOLLOWED = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Evaluate the theory.
 
-    Returns
-    -------
-    quantity, x (position, for the three that are tabulated over positions), value (NaN where theory has no answer)
+    Returns quantity, x (position, for the three that are tabulated over positions), value (NaN where theory has no
+    answer)
     """
     scenes = {name: expand(sweep)[0] for name, sweep in settings["sweeps"].items()}
     published, step = scenes["space_time_displacement"][0], scenes["pulses_across_a_step"][0]

@@ -19,9 +19,7 @@ FRACTIONS = 1.0 - np.linspace(1.0, 0.0, 121)[:-1] ** 3
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """When each position is released, and when it sticks, in the continuum limit.
 
-    Returns
-    -------
-    simulation, position, release_time, stick_time (NaN where it slides on)
+    Returns simulation, position, release_time, stick_time (NaN where it slides on)
 
     Source: `Rupture`.
     """

@@ -20,9 +20,7 @@ SCALE, LARGEST_RATIO, RATIOS = 0.005, 5.0, 33
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """The pre-stress at which a front has a speed.
 
-    Returns
-    -------
-    one row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)),
+    Returns one row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)),
     logit (ln(tau/(1 - tau)), to 6 decimals)
     """
     positions = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)

@@ -65,10 +65,8 @@ class Edge(NamedTuple):
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Run every edge.
 
-    Returns
-    -------
-    one row an edge: family, value, quantity, should, tolerance, expected, measured, error, verdict, message (flags or
-    the refusal), block_updates
+    Returns one row an edge: family, value, quantity, should, tolerance, expected, measured, error, verdict, message
+    (flags or the refusal), block_updates
     """
     return pd.DataFrame([row(edge, settings["measure"]["front_window"]) for edge in edges()])
 

@@ -32,11 +32,9 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Speeds of theory alone.
 
-    Returns
-    -------
-    DataFrame of panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over
-    springs = gamma dx^2; NaN where no front outruns the waves), refined (over dx; held: b or beta, at the value fixed),
-    and limit (dx -> 0 under the elastic rule at fixed beta)
+    Returns panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over springs =
+    gamma dx^2; NaN where no front outruns the waves), refined (over dx; held: b or beta, at the value fixed), and limit
+    (dx -> 0 under the elastic rule at fixed beta)
     """
     swept, springs, fixed_ratio, *fixed_beta = (
         pd.DataFrame([scene.attributes() for scene in expand(settings["sweeps"][name])[0]])

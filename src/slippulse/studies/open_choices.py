@@ -30,10 +30,8 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """T_trans and L_trans of each run of figure 5, with the paper's estimates, by the exact theory.
 
-    Returns
-    -------
-    DataFrame of boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends), fraction (of the
-    path that counts as arrest, under a stress boundary), left, width, gamma, transition_time and transition_length, and
+    Returns boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends), fraction (of the path
+    that counts as arrest, under a stress boundary), left, width, gamma, transition_time and transition_length, and
     paper_transition_time and paper_transition_length
     """
     springs, cracks = (

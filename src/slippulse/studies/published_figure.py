@@ -52,13 +52,11 @@ DIFFERENCE, FIRST = 0.01, 2
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Best fits of every reading of the left panel over the damping ratio, and what the right panel says.
 
-    Returns
-    -------
-    rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact), pull and weight (0
-    where it is not fitted). "profile": release, damping_ratio, dx = beta/damping_ratio, and tau0 and gamma that
-    fit all but the drawn arrows best, with their errors; "arrows": the same of all readings; "notebook": as "profile"
-    at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels and width
-    read off it
+    Returns rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact), pull and
+    weight (0 where it is not fitted). "profile": release, damping_ratio, dx = beta/damping_ratio, and tau0 and gamma
+    that fit all but the drawn arrows best, with their errors; "arrows": the same of all readings; "notebook": as
+    "profile" at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels
+    and width read off it
 
     Source: `claims.inference`.
     """

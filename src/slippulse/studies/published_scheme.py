@@ -25,9 +25,7 @@ BLOCKS, SPACING, STEP, BETA = 1000, 0.05005, 1e-3, 0.01
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Numbers of one scene by the published scheme, by the localised one on the same lattice, and exactly.
 
-    Returns
-    -------
-    DataFrame of quantity (front_speed, first_stick_time, pulse_slip), published, localised and exact
+    Returns quantity (front_speed, first_stick_time, pulse_slip), published, localised and exact
     """
     speed = float(front_speed(PROFILE.left, BETA / SPACING))
     run = simulate(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))

@@ -23,11 +23,9 @@ BEYOND = np.concatenate([np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Final slip around the step of each scene.
 
-    Returns
-    -------
-    DataFrame of level (beyond the step), x (distance beyond it) and slip; and the same in every row of a level: before
-    (the level there), steady and steady_before (exact slip of both steady pulses), memory (the distance W_p/(v - 1)
-    beyond which the past of the trailing edge does not reach)
+    Returns level (beyond the step), x (distance beyond it) and slip; and the same in every row of a level: before (the
+    level there), steady and steady_before (exact slip of both steady pulses), memory (the distance W_p/(v - 1) beyond
+    which the past of the trailing edge does not reach)
     """
     parts = []
     for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:

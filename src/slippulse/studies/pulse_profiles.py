@@ -26,9 +26,7 @@ FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Profiles of each run.
 
-    Returns
-    -------
-    simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration
+    Returns simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration
 
     Source: `pulse_behind_front` under a displacement boundary, `ArrestingCrack.far_pulse` under a stress boundary.
     """

@@ -40,10 +40,8 @@ TIMES = np.geomspace(2.0, 100.0, 21)
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Lattices of both boundaries, and the exact theory.
 
-    Returns
-    -------
-    DataFrame of role: lattice (level, rate_strengthening, over_critical: over the critical one, regime, run_flags, and
-    of pulses pulse_width, pulse_slip), limit (level, rate_strengthening: the critical one), steady (rate_strengthening,
+    Returns role: lattice (level, rate_strengthening, over_critical: over the critical one, regime, run_flags, and of
+    pulses pulse_width, pulse_slip), limit (level, rate_strengthening: the critical one), steady (rate_strengthening,
     pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx, rate_strengthening, time,
     largest_velocity, gap: distance of the left front from the balance of the pre-stress) and asymptote (the same)
     """

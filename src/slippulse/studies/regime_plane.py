@@ -30,10 +30,9 @@ POINTS = 241
 def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     """Outlines of the regimes, and slip velocity over position in some of them.
 
-    Returns
-    -------
-    boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends of a
-    line on which one level is 0 and the other negative) and profile (time, x, slip_velocity: of one pre-stress, W = 1)
+    Returns boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends
+    of a line on which one level is 0 and the other negative) and profile (time, x, slip_velocity: of one pre-stress, W
+    = 1)
 
     Source: `final_regime`, `Rupture`.
     """
