@@ -25,7 +25,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Files first that run no kernel, while the kernels are compiled; then those that take longest, so that the workers end
 # together.
-WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_dependencies")
+WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_refusals", "test_dependencies")
 FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults", "test_pipeline")
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
@@ -111,15 +111,19 @@ def paper_accuracy(shipped: dict) -> dict:
 
 
 @pytest.fixture(scope="session")
-def study(project, shipped, tmp_path_factory):
-    """A function that runs a study with the shipped settings and returns its table, through the CSV."""
-    # Of all workers: what one has made the other reads.
-    folder = (
-        Path(os.environ[UNTOUCHED]).parent if UNTOUCHED in os.environ else tmp_path_factory.mktemp("studies")
+def shared(tmp_path_factory) -> Path:
+    """A folder of all workers: what one has made the other reads."""
+    return (
+        Path(os.environ[UNTOUCHED]).parent if UNTOUCHED in os.environ else tmp_path_factory.mktemp("shared")
     )
 
+
+@pytest.fixture(scope="session")
+def study(project, shipped, shared):
+    """A function that runs a study with the shipped settings and returns its table, through the CSV."""
+
     def run(name: str, data: dict | None = None, tables: dict | None = None):
-        path = folder / f"{name}.csv"
+        path = shared / f"studies/{name}.csv"
         if not path.exists():
             needs = declared(f"studies.{name}", "NEEDS")
             settings = selected(shipped, needs.get("settings", ()), {})

@@ -10,7 +10,7 @@ import pytest
 from selection import small_sweep
 
 from slippulse.configuration.expand import expand
-from slippulse.data.store import load_table, save_table
+from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
 from slippulse.predict.measured import measured_table
 from slippulse.predict.table import predictions
 from slippulse.simulation.simulate import run_sweep
@@ -32,18 +32,22 @@ CLAIMS = [
 
 
 @pytest.fixture(scope="session")
-def draw(shipped, tmp_path_factory, study):
+def draw(shipped, shared, tmp_path_factory, study):
     """A function that draws a figure by name and returns its table, its Figure and what it was drawn from."""
     folder = tmp_path_factory.mktemp("tables")
     simulated, drawn = {}, {}
 
     def simulate(name: str):
         if name not in simulated:
-            block = small_sweep(shipped, name)
+            block, files = (
+                small_sweep(shipped, name),
+                [shared / f"sweeps/{name}.{end}" for end in ("nc", "csv")],
+            )
             scenes, samples = expand(block)
-            sweep = run_sweep(scenes, samples, block["record"], threads=2)
-            save_table(measured_table(sweep, shipped["measure"]), folder / f"{name}.csv")
-            simulated[name] = (sweep, load_table(folder / f"{name}.csv"), scenes)
+            if not files[1].exists():
+                save_dataset(run_sweep(scenes, samples, block["record"], threads=2), files[0])
+                save_table(measured_table(load_dataset(files[0]), shipped["measure"]), files[1])
+            simulated[name] = (load_dataset(files[0]), load_table(files[1]), scenes)
         return simulated[name]
 
     def inputs(needs: dict) -> tuple[dict, dict]:
@@ -51,7 +55,7 @@ def draw(shipped, tmp_path_factory, study):
         data = {source: simulate(source)[0] for source in needs.get("data", [])}
         tables = {source: simulate(source)[1] for source in needs.get("measured", [])}
         for source in needs.get("predicted", []):
-            path, measure = folder / f"{source}.predicted.csv", shipped["measure"]
+            path, measure = shared / f"sweeps/{source}.predicted.csv", shipped["measure"]
             if not path.exists():
                 save_table(predictions(simulate(source)[2], measure["share"], measure["still"]), path)
             predicted = load_table(path)
