@@ -51,11 +51,8 @@ def test_costs_that_repeat_are_spread_whatever_their_period(inner):
 
 
 def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
-    block = resolve(
-        config["simulations"]["transition_convergence"] | {"chunks": 5},
-        config["model"],
-        paper_accuracy | {"dx": 0.01},
-    )
+    sweep = config["simulations"]["transition_convergence"] | {"chunks": 5}
+    block = resolve(sweep, config["model"], paper_accuracy | {"dx": 0.01})
     assert "chunks" not in block
     scenes, _ = expand(block)
     chunks = [expand(block | {"chunk": [number, 5]}) for number in range(1, 6)]
@@ -74,10 +71,8 @@ def made(shipped, tmp_path_factory):
             factor: resolve(SWEEPS[name], shipped["model"], COARSE, factor) | part
             for factor in (1.0, 1.5, 2.0)
         }
-        files = [
-            folder / f"{name}{chunk or ''}{ending}"
-            for ending in (".nc", ".csv", "_study.csv", "_coarser.csv")
-        ]
+        endings = (".nc", ".csv", "_study.csv", "_coarser.csv")
+        files = [folder / f"{name}{chunk or ''}{ending}" for ending in endings]
         if not files[0].exists():
             data, measured, study, coarser = files
             settings = {"simulation": name, "measure": shipped["measure"], "threads": 1}
@@ -95,14 +90,6 @@ def made(shipped, tmp_path_factory):
 KINDS = ("data", "measurements", "uncertainties", "uncertainties/coarser")
 
 
-def join_all(joined, *chunks_and_record) -> None:
-    """Files of each kind, as the rule makes them."""
-    *chunks, record = chunks_and_record
-    for kind, of_chunks, path in zip(KINDS, chunks, joined, strict=True):
-        files = {"chunks": of_chunks, "finest": [joined[1]]}
-        join.run(files, {"joined": path}, {"kind": kind, "record": record})
-
-
 @pytest.mark.parametrize(
     ("name", "chunks"),
     [
@@ -114,12 +101,12 @@ def join_all(joined, *chunks_and_record) -> None:
 )
 def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
     whole = made(name)
-    data, measured, studies, coarser = zip(
-        *(made(name, [number, chunks]) for number in range(1, chunks + 1)), strict=True
-    )
+    of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]
     joined = [tmp_path / file.name for file in whole]
     monkeypatch.setenv(VARIABLE, CONFIGURATION)
-    join_all(joined, data, measured, studies, coarser, SWEEPS[name]["record"])
+    for kind, *files, path in zip(KINDS, *of_chunks, joined, strict=True):
+        settings = {"kind": kind, "record": SWEEPS[name]["record"]}
+        join.run({"chunks": files, "finest": [joined[1]]}, {"joined": path}, settings)
     for one, other in zip(whole, joined, strict=True):
         assert one.read_bytes() == other.read_bytes(), one.name
 

@@ -27,11 +27,9 @@ def tree(
     for name in ("measurements", "uncertainties"):
         (folder / name).mkdir(parents=True)
     lattice = {"scheme": "localised", "dx": 0.01, "order": 8, "max_step": 1.0}
-    pd.DataFrame([run | lattice | {"speed": speed} | more]).to_csv(
-        folder / "measurements/sweep.csv", index=False
-    )
+    pd.DataFrame([run | lattice | {"speed": speed} | more]).to_csv(folder / TABLE, index=False)
     study = {"quantity": "speed", "value": speed if studied is None else studied, "uncertainty": uncertainty}
-    pd.DataFrame([{"point": 0} | run | study]).to_csv(folder / "uncertainties/sweep.csv", index=False)
+    pd.DataFrame([{"point": 0} | run | study]).to_csv(folder / STUDY, index=False)
     (folder / "claims.json").write_text(json.dumps([{"id": "speed", "verdict": verdict}]))
     (folder / "provenance.json").write_text(json.dumps({"config": config or CONFIG}))
     return folder

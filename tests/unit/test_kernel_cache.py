@@ -16,10 +16,7 @@ COMPILE_ALL = "from slippulse.solver.compilation import compile_all; compile_all
 def run_with(folder, program: str, **more: str) -> str:
     """What a program prints with its kernels in a folder of its own."""
     environment = os.environ | {"SLIPPULSE_CACHE": str(folder)} | more
-    command = [sys.executable, "-c", program]
-    return subprocess.run(
-        command, env=environment, check=True, stdout=subprocess.PIPE, text=True
-    ).stdout.strip()
+    return subprocess.check_output([sys.executable, "-c", program], env=environment, text=True).strip()
 
 
 def test_any_edit_a_new_source_and_a_new_name_change_the_digest(tmp_path):
@@ -51,10 +48,8 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
     package.mkdir()
     shutil.copy2(jit.__file__, package / "jit.py")
     (package / "__init__.py").write_text("")
-    caller = (
-        "from .helper import helper\nfrom .jit import entry\n@entry\ndef caller(x): return 10 * helper(x)\n"
-    )
-    (package / "caller.py").write_text(caller)
+    caller = "@entry\ndef caller(x): return 10 * helper(x)\n"
+    (package / "caller.py").write_text(f"from .helper import helper\nfrom .jit import entry\n{caller}")
     for added, result in ((1, "20"), (2, "30")):
         helper = f"from .jit import inner\n@inner()\ndef helper(x): return x + {added}\n"
         (package / "helper.py").write_text(helper)

@@ -7,13 +7,7 @@ import socket
 import yaml
 
 from slippulse.data.alterations import changes
-from slippulse.data.provenance import (
-    job_times,
-    machine_class,
-    manifest,
-    provenance,
-    source_files,
-)
+from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
 from slippulse.data.records import Origin, write_record
 
 

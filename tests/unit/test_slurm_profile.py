@@ -32,14 +32,10 @@ def profile(project) -> dict:
     return yaml.safe_load(text)
 
 
-def test_the_rules_are_found(rules, drawn):
+def test_it_names_only_rules_that_exist(profile, rules, drawn):
     assert {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"} <= set(rules)
     assert {"fig01_system_sketch", "study_barriers"} <= drawn
-
-
-def test_it_names_only_rules_that_exist(profile, rules, drawn):
-    named = {*profile["set-resources"], *profile["groups"]}
-    assert named <= set(rules) | drawn
+    assert {*profile["set-resources"], *profile["groups"]} <= set(rules) | drawn
 
 
 def test_every_job_asks_for_time_memory_and_cores(profile, rules, drawn):
@@ -71,8 +67,6 @@ def test_the_plugin_is_in_its_own_lock_alone(project):
         return dict(re.findall(r"^([\w.-]+)==([\w.]+)", (project / name).read_text(encoding="utf-8"), re.M))
 
     everybody, cluster = packages("requirements.lock"), packages("requirements-slurm.lock")
-    group = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"][
-        "slurm"
-    ]
-    assert set(group) <= set(cluster)
+    groups = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"]
+    assert set(groups["slurm"]) <= set(cluster)
     assert not set(cluster) & set(everybody)

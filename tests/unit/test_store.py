@@ -27,11 +27,8 @@ def test_equal_data_give_equal_bytes_and_others_do_not(tmp_path):
     other["slip"][3] += 1e-12
     for name, data in {"one": sweep(), "two": sweep(), "other": other}.items():
         save_dataset(data, tmp_path / name)
-    assert (
-        (tmp_path / "one").read_bytes()
-        == (tmp_path / "two").read_bytes()
-        != (tmp_path / "other").read_bytes()
-    )
+    one, two, other = ((tmp_path / name).read_bytes() for name in ("one", "two", "other"))
+    assert one == two != other
 
 
 def test_a_dataset_comes_back_as_it_was_and_opens_without_this_project(tmp_path):
@@ -46,10 +43,8 @@ def test_every_variable_has_units_and_a_name():
     one = sp.simulate(SCENES[0], SAMPLES[0])
     for data in (one, sweep()):
         for name in data.variables:
-            assert data[name].attrs["units"], name
-            assert data[name].attrs["long_name"], name
-            assert data[name].attrs["long_name"] != name.replace("_", " "), name
-            assert name in VARIABLES
+            assert data[name].attrs["units"] and name in VARIABLES, name
+            assert data[name].attrs["long_name"] not in ("", name.replace("_", " ")), name
 
 
 def test_the_table_of_columns_has_the_units_and_the_meaning_that_files_have(project):

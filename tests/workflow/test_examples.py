@@ -35,9 +35,8 @@ def run(project, tmp_path_factory):
     folder = copy_project(project, tmp_path_factory.mktemp("examples"), link=True)
 
     def make(name: str) -> tuple[pd.DataFrame, Path]:
-        result = snakemake(
-            folder, "--config", "preset=draft", "--", TARGETS[name], overlay=f"config/examples/{name}.yaml"
-        )
+        overlay = f"config/examples/{name}.yaml"
+        result = snakemake(folder, "--config", "preset=draft", "--", TARGETS[name], overlay=overlay)
         assert result.returncode == 0, result.stderr
         path = folder / TARGETS[name]
         table = path if path.suffix == ".csv" else folder / f"results/measurements/{path.stem}.csv"
@@ -70,9 +69,8 @@ def test_another_gamma_changes_the_size_and_not_the_speed(run):
 def test_asymmetric_levels_have_each_sides_speed(run):
     table, _ = run("asymmetric_levels")
     for side, level in (("left", 0.3), ("right", 0.7)):
-        assert table[f"front_speed_{side}"][0] == pytest.approx(
-            theory.front_speed(level, 0.1), rel=tol.DRAFT_SPEED
-        )
+        expected = pytest.approx(theory.front_speed(level, 0.1), rel=tol.DRAFT_SPEED)
+        assert table[f"front_speed_{side}"][0] == expected
 
 
 @pytest.mark.slow
@@ -168,11 +166,9 @@ def test_without_a_target_error_a_grid_study_says_nothing_of_it(run):
     _, path = run("own_sweep")
     folder = path.parents[2]
     target = "results/uncertainties/own_sweep.csv"
-    result = snakemake(
-        folder, "--config", "preset=draft", "--", target, overlay="config/examples/own_sweep.yaml"
-    )
+    overlay = "config/examples/own_sweep.yaml"
+    result = snakemake(folder, "--config", "preset=draft", "--", target, overlay=overlay)
     assert result.returncode == 0, result.stderr
-    assert list(pd.read_csv(folder / target).columns[-5:]) == [
-        "quantity", "value", "extrapolated", "observed_order", "uncertainty",
-    ]  # fmt: skip
+    last = ["quantity", "value", "extrapolated", "observed_order", "uncertainty"]
+    assert list(pd.read_csv(folder / target).columns[-5:]) == last
     assert "accuracy" not in (folder / "results/logs/study_grid/own_sweep.log").read_text(encoding="utf-8")

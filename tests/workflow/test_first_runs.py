@@ -1,7 +1,5 @@
 """Two first runs at once in a fresh clone."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

@@ -111,13 +111,9 @@ def test_an_edited_figure_redraws_that_figure_alone():
 
 # The whole configuration stands in the report and in the provenance, what differs from the shipped one on the pages.
 # And a study draws the claims.
-ALWAYS = {
-    "write_claims": 1,
-    "study_open_choices": 1,
-    "write_report": 1,
-    "write_provenance": 1,
-    "write_index": 1,
-}
+ALWAYS = dict.fromkeys(
+    ("write_claims", "study_open_choices", "write_report", "write_provenance", "write_index"), 1
+)
 CHAIN = {"simulate": 1, "measure": 1, "predict": 1, "study_grid": 1}
 JOINED = {"join": 4}
 CONFIGURATIONS = {
