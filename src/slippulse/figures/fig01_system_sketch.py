@@ -46,7 +46,17 @@ def plot(table: pd.DataFrame) -> Figure:
     table = table.assign(**(table[LENGTHS] / table["y"].max()))
     for axes, panel in zip(panels, TITLES, strict=True):
         draw_layer(axes, table["strip_width"].iloc[0])
-        (draw_stress if panel == "stress" else draw_held_top)(axes)
+        if panel == "stress":
+            for x in np.linspace(0.03, 0.85, 6) * LENGTH:
+                arrow(axes, (x, 1.1), (x + 0.12 * LENGTH, 1.1), ORANGE, gid="imposed stress")
+            label(axes, 0.5 * LENGTH, 1.19, r"$\tau$", ORANGE, va="bottom")
+            # The mean stands for the interface.
+            label(axes, REST + DISPLACEMENT + 0.06, 0.5, r"$\langle u_x\rangle_y$", BLUE, ha="left")
+        else:
+            axes.add_patch(Rectangle((0.0, 1.0), LENGTH, RIGID, gid="held top", **HATCHED))
+            held = r"$\partial u_x/\partial t = 0$"
+            label(axes, 0.5 * LENGTH, 1.03 + RIGID, held, ORANGE, va="bottom")
+            label(axes, REST + 0.5 * DISPLACEMENT + 0.14, 0.5, "$u_x(y)$", BLUE, ha="left")
         rows = table[table["panel"] == panel]
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
         axes.plot(REST + rows["displacement"], rows["y"], color=BLUE, linewidth=1.5, gid="displacement")
@@ -77,18 +87,3 @@ def draw_layer(axes: Axes, strip: float) -> None:
     arrow(axes, (-0.42, 0.0), (-0.42, 0.35), MUTED)
     label(axes, -0.24, -0.13, "$x$", MUTED)
     label(axes, -0.55, 0.25, "$y$", MUTED)
-
-
-def draw_stress(axes: Axes) -> None:
-    """The imposed stress, and the mean displacement that stands for the interface."""
-    for x in np.linspace(0.03, 0.85, 6) * LENGTH:
-        arrow(axes, (x, 1.1), (x + 0.12 * LENGTH, 1.1), ORANGE, gid="imposed stress")
-    label(axes, 0.5 * LENGTH, 1.19, r"$\tau$", ORANGE, va="bottom")
-    label(axes, REST + DISPLACEMENT + 0.06, 0.5, r"$\langle u_x\rangle_y$", BLUE, ha="left")
-
-
-def draw_held_top(axes: Axes) -> None:
-    """The held top, and the displacement that is linear over the height."""
-    axes.add_patch(Rectangle((0.0, 1.0), LENGTH, RIGID, gid="held top", **HATCHED))
-    label(axes, 0.5 * LENGTH, 1.03 + RIGID, r"$\partial u_x/\partial t = 0$", ORANGE, va="bottom")
-    label(axes, REST + 0.5 * DISPLACEMENT + 0.14, 0.5, "$u_x(y)$", BLUE, ha="left")

@@ -64,7 +64,12 @@ def plot(table: pd.DataFrame) -> Figure:
         regimes = LOOKS.items()
         names = {name: f"{numbers.get((boundary, name), '')} {label}".strip() for name, (_, label) in regimes}
         draw_plane(axes, rows[rows["role"].isin(["area", "line"])], names)
-        draw_runs(axes, rows[rows["role"] == "run"])
+        for run in rows[rows["role"] == "run"].itertuples():
+            # Open where it is not the regime of the area, crossed out where flagged.
+            early = run.exact_regime in LOOKS and run.exact_regime != run.regime
+            look = MARK | {"markerfacecolor": "white" if early else LOOKS[run.regime][0]}
+            marker = "x" if isinstance(run.run_flags, str) else "o"
+            axes.plot(run.left, run.right, marker, gid="run", zorder=3.0, **look)
         axes.set_title(BOUNDARIES[boundary], fontsize=9)
         panel_letter(axes, letter)
     draw_profiles(strips, profiles)
@@ -102,15 +107,6 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, names: Mapping[str, str]) -> None
             axes.annotate(names[regime], (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **text)
     axes.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), aspect="equal", xticks=(-1, 0, 1), yticks=(-1, 0, 1))
     axes.set(xlabel=r"pre-stress on the left $\tau_{0,l}$", ylabel=r"on the right $\tau_{0,r}$")
-
-
-def draw_runs(axes: Axes, runs: pd.DataFrame) -> None:
-    """Runs in the colour of their regime, open where it is not the one of the area, crossed out where flagged."""
-    for run in runs.itertuples():
-        early = run.exact_regime in LOOKS and run.exact_regime != run.regime
-        look = MARK | {"markerfacecolor": "white" if early else LOOKS[run.regime][0]}
-        marker = "x" if isinstance(run.run_flags, str) else "o"
-        axes.plot(run.left, run.right, marker, gid="run", zorder=3.0, **look)
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:

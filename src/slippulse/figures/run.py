@@ -48,7 +48,9 @@ def plot(run: xr.Dataset) -> Picture:
         figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
         profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
         parts.draw_profile(profile, roles["prestress"])
-        if _has_map(run):
+        several = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+        # Else the fronts alone are drawn.
+        if several and (run["sample_velocity"] > 0.0).any():
             roles |= {str(role): rows for role, rows in parts.velocity_map(run).groupby("role")}
             image = parts.draw_map(times, roles)
             figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
@@ -63,12 +65,6 @@ def plot(run: xr.Dataset) -> Picture:
         slip.plot(run["slip"], run["x"], color=BLUE)
         slip.set_xlabel(r"slip $u$")
     return figure
-
-
-def _has_map(run: xr.Dataset) -> bool:
-    """Whether slip was sampled at several times and positions; else the fronts alone are drawn."""
-    several = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
-    return several and bool((run["sample_velocity"] > 0.0).any())
 
 
 def _is_run(data: xr.Dataset) -> bool:

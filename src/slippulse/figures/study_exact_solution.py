@@ -30,7 +30,6 @@ def plot(table: pd.DataFrame) -> Figure:
         rows = table[table["scene"] == scene]
         for axes, quantity in ((edge_axes, "release"), (edge_axes, "stick"), (slip_axes, "slip")):
             _draw_edge(axes, rows, quantity, colour)
-        _draw_differences(difference_axes, rows[rows["role"] == "difference"], colour)
     dx = table.loc[table["role"] == "scene", "dx"].iloc[0]
     drawn = table.loc[table["role"] == "exact", "scene"].unique()
     looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"front, lattice, $\Delta x = {dx:g}$"}
@@ -40,7 +39,7 @@ def plot(table: pd.DataFrame) -> Figure:
     edge_axes.legend(loc="upper left", fontsize=7.0)
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
     others = {names[scene]: SCENES[scene] for scene in SCENES.keys() - set(drawn)}
-    _finish_differences(difference_axes, table[table["role"] == "difference"], others)
+    _draw_differences(difference_axes, table[table["role"] == "difference"], others)
     lines = [entry(names[scene], color=colour) for scene, colour in SCENES.items() if scene in drawn]
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     return figure
@@ -81,19 +80,19 @@ def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> No
         axes.plot(line[across[0]], line[across[1]], style, color=colour, gid=gid, **look)
 
 
-def _draw_differences(axes: Axes, rows: pd.DataFrame, colour: str) -> None:
-    """The largest and the smallest difference of a scene; its others lie between them."""
-    finest = rows[rows["dx"] == rows["dx"].min()].sort_values("difference")
-    for quantity in finest["quantity"].iloc[[0, -1]]:
-        line = rows[rows["quantity"] == quantity].sort_values("dx")
-        look: Look = {"marker": MARKERS[str(quantity)], "color": colour, "linewidth": 0.7}
-        axes.plot(line["dx"], line["difference"], gid=str(quantity), **look)
-
-
-def _finish_differences(axes: Axes, rows: pd.DataFrame, others: Mapping[str, str]) -> None:
-    for quantity in dict.fromkeys(line.get_gid() for line in axes.lines):
-        label = "slip velocity" if quantity == "velocity" else str(quantity)
-        axes.plot([], [], MARKERS[str(quantity)], color=GREY, label=label)
+def _draw_differences(axes: Axes, rows: pd.DataFrame, others: Mapping[str, str]) -> None:
+    """The largest and the smallest difference of each scene; its others lie between them."""
+    drawn = []
+    for scene, colour in SCENES.items():
+        lines = rows[rows["scene"] == scene].sort_values("dx")
+        finest = lines[lines["dx"] == lines["dx"].min()].sort_values("difference")
+        for quantity in finest["quantity"].iloc[[0, -1]]:
+            line, look = lines[lines["quantity"] == quantity], {"color": colour, "linewidth": 0.7}
+            axes.plot(line["dx"], line["difference"], marker=MARKERS[quantity], gid=quantity, **look)
+            drawn.append(quantity)
+    for quantity in dict.fromkeys(drawn):
+        label = "slip velocity" if quantity == "velocity" else quantity
+        axes.plot([], [], MARKERS[quantity], color=GREY, label=label)
     for label, colour in others.items():
         axes.plot([], [], color=colour, label=label)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()

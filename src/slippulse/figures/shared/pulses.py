@@ -18,19 +18,17 @@ from ...model.prestress import Prestress
 from ..style import BLACK, PAGE, Look, colour_scale, entry, legend_below, new_panels
 from .scaling import chosen
 
-FIELDS = ("slip", "slip_velocity", "slip_acceleration")
-# What is drawn of each boundary: labels of the fields in their units and of the distance.
-LABELS = {
-    "displacement": (
-        r"slip $u\,\gamma/2\tau_0$",
-        r"slip velocity $\dot u\,\sqrt{\gamma}$",
-        r"acceleration $\ddot u\,\tau_0$",
-    ),
-    "stress": (
-        r"slip $u/u_\mathrm{max}$",
-        r"slip velocity $\dot u/\dot u_\mathrm{max}$",
-        r"acceleration $\ddot u\,W/\dot u_\mathrm{max}$",
-    ),
+# Their labels in the units of each boundary.
+FIELDS = {
+    "slip": {"displacement": r"slip $u\,\gamma/2\tau_0$", "stress": r"slip $u/u_\mathrm{max}$"},
+    "slip_velocity": {
+        "displacement": r"slip velocity $\dot u\,\sqrt{\gamma}$",
+        "stress": r"slip velocity $\dot u/\dot u_\mathrm{max}$",
+    },
+    "slip_acceleration": {
+        "displacement": r"acceleration $\ddot u\,\tau_0$",
+        "stress": r"acceleration $\ddot u\,W/\dot u_\mathrm{max}$",
+    },
 }
 DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
 # The quantity of the colours, the column of the line styles, and their symbols; and how many levels are drawn.
@@ -107,7 +105,7 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
         axes.plot(simulated["x"], simulated[field], color=shade, gid=f"simulation {run}", **PALE)
         axes.plot(exact["x"], exact[field], style, color=colour, linewidth=0.8, gid=f"exact {run}")
     boundary = table["panel"].iloc[0]
-    axes.set(xlabel=DISTANCE[boundary], ylabel=LABELS[boundary][FIELDS.index(field)])
+    axes.set(xlabel=DISTANCE[boundary], ylabel=FIELDS[field][boundary])
 
 
 def plot_fields(table: pd.DataFrame) -> Figure:
