@@ -34,9 +34,8 @@ def promise_of(simulation: Mapping) -> float | None:
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
-    """Scenes of a resolved simulation, in the order of its lists, and what each records.
+    """Scenes of a resolved simulation or of a chunk of it, in the order of its lists, and what each records.
 
-    With ``chunk``, its number and how many there are, only of that chunk.
     Raises ValueError: if a scene is refused, naming the key, the value and what is allowed.
     """
     scenes, accuracy, order = [], simulation["accuracy"], simulation["accuracy"]["order"]

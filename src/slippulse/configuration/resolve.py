@@ -96,10 +96,7 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
 
 @np.errstate(all="ignore")
 def simulation_problems(config: Configuration) -> list[str]:
-    """What is wrong with the scenes of each simulation, on its own lattice and on the coarsest of its grid study.
-
-    A rule of `Scene` that holds at the smallest and the largest entries of all lists holds between them too.
-    """
+    """What is wrong with the scenes of each simulation, on its own lattice and on the coarsest of its grid study."""
     accuracy, problems = accuracy_of(config), []
     coarsest = max(accuracy["coarser"])
     for name, simulation in all_simulations(config).items():
@@ -201,17 +198,14 @@ def bound_of(scene: Scene, samples: Samples | None = None) -> Bound:
 
 
 def bound_of_sweep(simulation: Mapping, chunks: int = 1) -> Bound:
-    """At most so much for one of the jobs that share a resolved simulation.
-
-    The run that takes the most is at the end of each list, the smallest entry or the largest.
-    """
+    """At most so much for one of the jobs that share a simulation; a run at the ends of its lists takes the most."""
     found = [bound_of(*run) for run in zip(*expand(promised(corners(simulation))), strict=True)]
     runs = run_count(simulation) / chunks
     return Bound(*(runs * max(column) for column in zip(*found, strict=True)))
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:
-    """A resolved simulation of the runs at the ends of the lists of numbers."""
+    """A resolved simulation of the runs at the ends of its lists: what `Scene` allows there it allows between."""
     found = {key: value for key, value in simulation.items() if key != "chunk"}
     if "beyond" in found:
         found["beyond"] = corners(found["beyond"])
