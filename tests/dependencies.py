@@ -8,6 +8,7 @@ import grimp
 from jinja2 import meta
 
 from slippulse.report.html import PAGES
+from slippulse.steps.predict import TOPICS
 
 PROJECT = Path(__file__).resolve().parents[1]
 PACKAGE = PROJECT / "src/slippulse"
@@ -127,6 +128,8 @@ def modules_of_rule(rule: str) -> tuple[str, ...]:
         return ("steps.draw_figure", "figures.own_sweep")
     if rule in STUDIED:
         return ("steps.run_study", f"studies.{STUDIED[rule]}")
+    if rule == "predict":
+        return ("steps.predict", *(f"predict.{topic}" for topic in TOPICS))
     return (f"steps.{rule}",)
 
 

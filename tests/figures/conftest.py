@@ -12,8 +12,8 @@ from selection import small_sweep
 from slippulse.configuration.expand import expand
 from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
 from slippulse.predict.measured import measured_table
-from slippulse.predict.table import predictions
 from slippulse.simulation.simulate import run_sweep
+from slippulse.steps.predict import predictions
 from slippulse.steps.reach import declared
 from slippulse.steps.targets import selected
 
@@ -54,10 +54,10 @@ def draw(shipped, shared, tmp_path_factory, study):
         """Data and tables, as the workflow joins them."""
         data = {source: simulate(source)[0] for source in needs.get("data", [])}
         tables = {source: simulate(source)[1] for source in needs.get("measured", [])}
-        for source in needs.get("predicted", []):
-            path, measure = shared / f"sweeps/{source}.predicted.csv", shipped["measure"]
+        for source, topics in needs.get("predicted", {}).items():
+            path = shared / f"sweeps/{source}.{'_'.join(topics)}.csv"
             if not path.exists():
-                save_table(predictions(simulate(source)[2], measure["share"], measure["still"]), path)
+                save_table(predictions(topics, simulate(source)[2], shipped["measure"]), path)
             predicted = load_table(path)
             tables[source] = tables[source].join(predicted) if source in tables else predicted
         for source in needs.get("studies", []):

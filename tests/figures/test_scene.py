@@ -25,9 +25,9 @@ from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.model.scene import Scene
 from slippulse.predict.measured import measured_table
-from slippulse.predict.table import predictions
 from slippulse.report.scene_page import scene_page
 from slippulse.simulation.simulate import run_sweep
+from slippulse.steps.predict import TOPICS, predictions
 
 TITLE = "A <scene> & its $title"
 SCENES = {
@@ -64,9 +64,7 @@ def drawn(shipped, tmp_path_factory):
         tables = tuple(measured_table(run, shipped["measure"]) for run in runs)
         study = grid_tables(tables, tuple(accuracy["coarser"]), PARAMETERS)
         run = point(runs[0], 0)
-        predicted = predictions(
-            [Scene.from_attributes(run.attrs)], *(shipped["measure"][k] for k in ("share", "still"))
-        )
+        predicted = predictions(TOPICS, [Scene.from_attributes(run.attrs)], shipped["measure"])
         numbers = scene_numbers(tables[0].join(predicted).iloc[0], study)
         save_table(figure.table(run, numbers, TITLE), folder / f"{name}.csv")
         table = load_table(folder / f"{name}.csv")
@@ -168,7 +166,7 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     sweep = varied | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
     measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
-    predicted = predictions(scenes, config["measure"]["share"], config["measure"]["still"])
+    predicted = predictions(TOPICS, scenes, config["measure"])
     save_table(own_sweep.table({}, {name: measured.join(predicted)}, {}), tmp_path / "sweep.csv")
     drawn = own_sweep.plot(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]

@@ -61,7 +61,11 @@ NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
 FIGURES = [name for name in NEEDS if name.startswith("fig")]
 if unknown := {*(CONFIG.studies or ())} - {*STUDY_NEEDS}:
     refuse(f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(STUDY_NEEDS)}")
-SWEEP_NEEDS = {f"sweep_{name}": {"measured": [name], "predicted": [name]} for name in CONFIG.simulations}
+TOPICS = declared("steps.predict", "TOPICS")
+SWEEP_NEEDS = {f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS}
+# What is read of predictions: topics by simulation.
+CLAIM_PREDICTED, REPORT_NEEDS = declared("claims.paper", "PREDICTED"), declared("steps.write_report", "NEEDS")
+READ = [CLAIM_PREDICTED, *(needs.get("predicted", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
 # Where the files of each kind of need are.
 NEEDED = {
     "data": "results/data/{}.nc",
@@ -125,6 +129,12 @@ def measure_of(job):
 def step_for(step, job):
     """A step that runs scenes, by their scheme: an edit of the theory re-runs exact solutions alone."""
     return f"{step}_exact" if sweep_of(job)["scheme"] == "continuum" else step
+
+
+@cache
+def topics_of(simulation):
+    """What is predicted of it: as far as it is read; all of what an overlay adds."""
+    return sorted({topic for read in READ for topic in read.get(simulation, ())} or TOPICS)
 
 
 def joined_path(wildcards):

@@ -48,7 +48,7 @@ rule write_claims:
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
-        predicted=made("predicted", declared("claims.paper", "PREDICTED")),
+        predicted=made("predicted", CLAIM_PREDICTED),
         studies=made(
             "studies",
             ["derivations", "open_choices", "published_figure", "published_scheme", "rate_dependence"],
@@ -88,7 +88,7 @@ rule write_report:
     input:
         "manuscript/references.bib",
         expand("manuscript/{text}.yaml", text=TEXTS),
-        **inputs_of(declared("steps.write_report", "NEEDS")),
+        **inputs_of(REPORT_NEEDS),
         sources=expand("manuscript/{document}.md", document=DOCUMENTS),
         claims="results/claims.json",
         findings="results/findings.json",

@@ -59,6 +59,7 @@ rule predict:
     priority: 1
     params:
         sweep=lambda wildcards: promised_sweep(wildcards.simulation),
+        topics=lambda wildcards: topics_of(wildcards.simulation.partition("/")[0]),
         share=lambda wildcards: measure_of(wildcards.simulation)["share"],
         still=config["measure"]["still"],
     message:

@@ -17,7 +17,11 @@ from .style import BLACK, GREY, PAGE, Look, entry, legend_below, new_figure, pan
 
 NEEDS = {
     "measured": ["regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress"],
-    "predicted": ["regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress"],
+    "predicted": {
+        "regimes_displacement": ["final_regime"],
+        "regimes_displacement_asymmetric": ["final_regime"],
+        "regimes_stress": ["final_regime"],
+    },
     "studies": ["regime_plane"],
 }
 

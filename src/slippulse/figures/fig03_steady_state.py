@@ -13,7 +13,7 @@ from .style import COLUMN, new_panels
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
     "measured": ["steady_displacement", "steady_stress"],
-    "predicted": ["steady_displacement", "steady_stress"],
+    "predicted": {"steady_displacement": ["pulse"], "steady_stress": ["transition"]},
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }

@@ -15,7 +15,7 @@ __all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
-    "predicted": ["scaling_displacement", "scaling_stress"],
+    "predicted": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]},
 }
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 

@@ -8,7 +8,7 @@ __all__ = ["NEEDS", "plot", "table"]
 NEEDS = {
     "data": ["steady_displacement"],
     "measured": ["steady_displacement"],
-    "predicted": ["steady_displacement"],
+    "predicted": {"steady_displacement": ["pulse"]},
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }

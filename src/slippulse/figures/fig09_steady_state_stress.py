@@ -8,7 +8,7 @@ __all__ = ["NEEDS", "plot", "table"]
 NEEDS = {
     "data": ["steady_stress"],
     "measured": ["steady_stress"],
-    "predicted": ["steady_stress"],
+    "predicted": {"steady_stress": ["transition"]},
     "studies": ["pulse_profiles"],
     "settings": ["measure.front_window"],
 }

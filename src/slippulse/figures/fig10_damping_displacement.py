@@ -5,4 +5,4 @@ from .shared.scaling import transition_table as table
 
 __all__ = ["NEEDS", "plot", "table"]
 
-NEEDS = {"measured": ["damping_displacement"], "predicted": ["damping_displacement"]}
+NEEDS = {"measured": ["damping_displacement"], "predicted": {"damping_displacement": ["transition"]}}

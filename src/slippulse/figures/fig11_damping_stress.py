@@ -5,4 +5,4 @@ from .shared.scaling import transition_table as table
 
 __all__ = ["NEEDS", "plot", "table"]
 
-NEEDS = {"measured": ["damping_stress"], "predicted": ["damping_stress"]}
+NEEDS = {"measured": ["damping_stress"], "predicted": {"damping_stress": ["transition"]}}

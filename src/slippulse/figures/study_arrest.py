@@ -16,7 +16,7 @@ from .style import GREY, ORANGE, PAGE, Look, colour_scale, entry, few_ticks, leg
 NEEDS = {
     "data": ["arrest"],
     "measured": ["arrest"],
-    "predicted": ["arrest"],
+    "predicted": {"arrest": ["transition"]},
     "studies": ["arrest_path"],
     "settings": ["measure.share"],
 }

@@ -14,7 +14,11 @@ from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, colour_scale, few_tick
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress", "transition_convergence"],
-    "predicted": ["scaling_displacement", "scaling_stress", "transition_convergence"],
+    "predicted": {
+        "scaling_displacement": ["transition"],
+        "scaling_stress": ["transition"],
+        "transition_convergence": ["transition"],
+    },
     "studies": ["gaussian_transition"],
 }
 

@@ -16,10 +16,10 @@ NEEDS = {
         "front_speed", "front_speed_slow", "front_speed_springs", "continuum_fixed_ratio", "continuum_fixed_beta",
         "front_speed_fixed_beta",
     ],
-    "predicted": [
-        "front_speed", "front_speed_slow", "front_speed_springs", "continuum_fixed_ratio", "continuum_fixed_beta",
-        "front_speed_fixed_beta",
-    ],
+    "predicted": {
+        "front_speed": ["front"], "front_speed_slow": ["front"], "front_speed_springs": ["front"],
+        "continuum_fixed_ratio": ["front"], "continuum_fixed_beta": ["front"], "front_speed_fixed_beta": ["front"],
+    },
     "studies": ["front_law"],
 }  # fmt: skip
 

@@ -13,7 +13,7 @@ from .style import CYCLE, GREY, PAGE, Look, colour_scale, legend_above, new_pane
 
 NEEDS = {
     "measured": ["pulse_damping", "continuum_fixed_ratio"],
-    "predicted": ["pulse_damping"],
+    "predicted": {"pulse_damping": ["pulse"]},
     "studies": ["damped_pulse"],
 }
 

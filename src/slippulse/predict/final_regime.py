@@ -2,11 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
+import pandas as pd
 
 from ..measure.regime import UNDECIDED
 from ..model.checks import check_number
+from ..model.scene import Scene
 from ..theory.front_law import front_speed
+from .numbers import level, ratio
+
+
+def predictions(scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
+    """exact_regime of each run. Settings: still, as `final_regime` takes it."""
+    return pd.DataFrame({"exact_regime": [_regime(scene, settings["still"]) for scene in scenes]})
+
+
+def _regime(scene: Scene, still: float) -> str:
+    profile = scene.prestress
+    if profile.bumps:
+        return UNDECIDED
+    if profile.steps:
+        # A pulse that formed where the pre-stress is 0 meets another level.
+        formed = scene.boundary == "stress" and profile.left < 0.0 == profile.right
+        ahead = all(position > 0.0 for position, _ in profile.steps)
+        return growth_beyond(level(scene, "right")) if formed and ahead else UNDECIDED
+    return final_regime(profile.left, profile.right, scene.gamma, ratio(scene), scene.release, still)
 
 
 def final_regime(
@@ -37,8 +59,8 @@ def final_regime(
 
     Source: sections 5 and 6 of the theory of this project (`theory.rupture`), which the tests follow to these ends.
     """
-    for name, level in (("left", left), ("right", right)):
-        check_number(name, level, below=1.0)
+    for name, side in (("left", left), ("right", right)):
+        check_number(name, side, below=1.0)
     low, high = sorted((left, right))
     if high < 0.0:
         return "arrested"

@@ -66,9 +66,10 @@ def below(path: str) -> str:
 
 
 def modules_of(step: str, settings: Mapping) -> list[str]:
-    """Modules that a step runs: its own, and the figure or study that its settings name."""
+    """Modules that a step runs: its own, and the figure, the study or the topics of theory that its settings name."""
     rooms = {"figure": "figures", "study": "studies"}
-    return [f"steps.{step}", *(f"{rooms[key]}.{settings[key]}" for key in rooms if key in settings)]
+    named = [f"{rooms[key]}.{settings[key]}" for key in rooms if key in settings]
+    return [f"steps.{step}", *named, *(f"predict.{topic}" for topic in settings.get("topics", ()))]
 
 
 def declared(module: str, name: str, default=None):

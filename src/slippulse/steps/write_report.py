@@ -17,7 +17,11 @@ FILES = ("report/templates/report.html", "report/templates/report.css", "report/
 # What the report quotes.
 NEEDS = {
     "measured": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
-    "predicted": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
+    "predicted": {
+        "scaling_displacement": ["transition"],
+        "space_time_displacement": ["front"],
+        "space_time_stress": ["transition"],
+    },
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["arrest_path", "derivations", "extremes"],
 }

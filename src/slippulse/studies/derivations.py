@@ -13,7 +13,7 @@ from ..configuration.expand import expand
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES
 from ..predict.exact_rupture import exact_rupture
-from ..predict.table import or_nan
+from ..predict.numbers import or_nan
 from ..theory.front_law import front_speed
 from ..theory.front_motion import admissibility_table
 from ..theory.pulse import SteadyPulse, pulse_behind_front

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..predict.table import or_nan
+from ..predict.numbers import or_nan
 from ..theory.front_law import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
 # Simulations whose parameters the curves have.
