@@ -11,7 +11,7 @@ for study, needs in STUDY_NEEDS.items():
             **kernels_for(study),
         output:
             table=f"results/studies/{study}.csv",
-        priority: 1
+        priority: 2
         resources:
             runtime=20,
         params:
@@ -42,6 +42,8 @@ for figure, needs in (NEEDS | SWEEP_NEEDS).items():
             ),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
+        # Before scenes and the explorer, which run beside the report: that waits for the figures alone.
+        priority: 1
         params:
             step="draw_figure",
             figure=figure if figure in NEEDS else "own_sweep",

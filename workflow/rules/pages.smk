@@ -59,7 +59,7 @@ rule write_claims:
         json="results/claims.json",
         findings="results/findings.json",
         html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
-    priority: 1
+    priority: 2
     params:
         claims=config["claims"],
         published=config["published"],

@@ -13,7 +13,7 @@ rule compile_kernels:
     output:
         kernels="results/kernels.txt",
     # Everything waits for it.
-    priority: 2
+    priority: 3
     message:
         "Compiling the lattice kernels (once)"
     run:
@@ -26,7 +26,7 @@ rule simulate:
     output:
         data="results/data/{simulation}.nc",
     # Before what only draws, as all that the claims wait for: the report waits for them.
-    priority: 1
+    priority: 2
     threads: lambda wildcards: bound_of_job(wildcards.simulation).threads
     resources:
         **BOUNDS,
@@ -44,7 +44,7 @@ rule measure:
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
-    priority: 1
+    priority: 2
     params:
         measure=lambda wildcards: measure_of(wildcards.simulation),
     message:
@@ -56,7 +56,7 @@ rule measure:
 rule predict:
     output:
         predicted="results/predictions/{simulation}.csv",
-    priority: 1
+    priority: 2
     params:
         sweep=lambda wildcards: promised_sweep(wildcards.simulation),
         topics=lambda wildcards: topics_of(wildcards.simulation.partition("/")[0]),
@@ -75,7 +75,7 @@ rule study_grid:
     output:
         uncertainties="results/uncertainties/{simulation}.csv",
         coarser="results/uncertainties/coarser/{simulation}.csv",
-    priority: 1
+    priority: 2
     resources:
         **BOUNDS,
     params:
@@ -106,7 +106,7 @@ rule join:
         ),
     output:
         joined="results/{joined}",
-    priority: 1
+    priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
         # Measured over a million runs: 1.2 kB a run, and as much again for other sweeps.
