@@ -10,14 +10,7 @@ from collections.abc import Iterator
 
 
 def runs_of(number: int, chunks: int, runs: int) -> Iterator[int]:
-    """The runs of one chunk, from 0 and in the order of the sweep.
-
-    Parameters
-    ----------
-    number : of the chunk, from 1
-    chunks : how many there are
-    runs : how many runs the sweep has
-    """
+    """The runs of one chunk, from 0 and in the order of the sweep, by its number from 1 and how many there are."""
     for turn, start in enumerate(range(0, runs, chunks)):
         run = start + (number - 1 - _first(turn, chunks)) % chunks
         if run < runs:

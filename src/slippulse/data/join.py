@@ -26,13 +26,7 @@ class ChunksDiffer(ValueError):
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
-    """All runs in the order of the sweep.
-
-    Parameters
-    ----------
-    paths : the data of each chunk, in the order of their numbers
-    record : what the sweep keeps, as for `run_sweep`
-    """
+    """All runs in the order of the sweep, from the data of its chunks in the order of their numbers."""
     chunks = [load_dataset(path) for path in paths]
     runs = _runs(paths, [chunk.sizes["point"] for chunk in chunks])
     of_chunks = zip(chunks, runs, strict=True)
@@ -48,7 +42,6 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
     Parameters
     ----------
     paths : the table of each chunk, in the order of their numbers
-    joined : where to write
     last : columns that stand behind all others; by these, several tables are told from each other
     """
     chunks = _texts(paths)
@@ -85,7 +78,6 @@ def join_grid_studies(
     keys : columns that name a run
     quantities : names, of a measured table, what its grid study has a row for; a chunk may have more, and lack what
         none of its runs has
-    joined : where to write
     """
     (named,) = _texts([finest])
     chunks = _texts(paths)

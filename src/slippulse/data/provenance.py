@@ -77,10 +77,9 @@ def provenance(
 
     Parameters
     ----------
-    root : folder of the project
+    root, results : folders of the project, and of the results with the records of their jobs
     sources : digest of `source_files`
     config, shipped : the configuration with and without overlays
-    results : folder of the results, with the records of their jobs
     """
     return {
         "paper": PAPER,

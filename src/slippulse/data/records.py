@@ -65,14 +65,7 @@ def file_digest(path: str | Path) -> str:
 
 
 def write_record(origin: Origin, outputs: Mapping, used: Mapping) -> None:
-    """Note what a job has made.
-
-    Parameters
-    ----------
-    origin : what it was made by
-    outputs : paths, or lists of paths, by name
-    used : seconds, processor_seconds, memory_MB
-    """
+    """Note what a job has made: paths, or lists of paths, by name; and what it used."""
     made = [
         Path(path) for value in outputs.values() for path in ([value] if isinstance(value, str) else value)
     ]
@@ -112,13 +105,7 @@ def read_records(results: str | Path) -> list[Record]:
 
 
 class Tree:
-    """A folder of results as it is, against what its results would be made by here and now.
-
-    Parameters
-    ----------
-    results : the folder
-    origins : what each result is made by, by path below the folder
-    """
+    """A folder of results as it is, against what its results, by path below it, would be made by here and now."""
 
     def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
         self.results, self.origins = Path(results), origins
@@ -173,10 +160,7 @@ class Tree:
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
         """One line for each file that is not as a complete run would make it, and how many files were compared.
 
-        Parameters
-        ----------
-        complete : what a complete run makes, and all that this is made from; other results are compared where they are
-            there
+        ``complete`` is what such a run makes with all that this is made from; others are compared where they are there.
         """
         paths = (path.relative_to(self.results) for path in self.results.rglob("*") if path.is_file())
         there = {path.as_posix() for path in paths if path.parts[0] not in BESIDE and path.name[0] != "."}

@@ -18,8 +18,7 @@ def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame
 
     Parameters
     ----------
-    files : data, measured, predicted, studies, coarser, uncertainties, and lists of entries (YAML or JSON): lists of
-        paths; what is missing is none
+    files : lists of paths by kind: data, measured, predicted, studies, coarser, uncertainties, lists (YAML or JSON)
     """
     tables: dict[str, pd.DataFrame] = {}
     for kind in ("measured", "studies", "predicted", "uncertainties", "coarser"):

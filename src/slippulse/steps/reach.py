@@ -29,12 +29,7 @@ class Job(NamedTuple):
 
 
 def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
-    """What each result is made by, by path below results/; the configuration is that of all that it is made from.
-
-    Parameters
-    ----------
-    jobs : all of a configuration; what one reads below results/ another writes
-    """
+    """What each result is made by, by path below results/; the configuration is that of all that it is made from."""
     makers = {below(output): job for job in jobs for output in job.outputs}
     found: dict[str, Origin] = {}
 
