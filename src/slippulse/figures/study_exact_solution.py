@@ -87,8 +87,8 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, others: Mapping[str, str])
         lines = rows[rows["scene"] == scene].sort_values("dx")
         finest = lines[lines["dx"] == lines["dx"].min()].sort_values("difference")
         for quantity in finest["quantity"].iloc[[0, -1]]:
-            line, look = lines[lines["quantity"] == quantity], {"color": colour, "linewidth": 0.7}
-            axes.plot(line["dx"], line["difference"], marker=MARKERS[quantity], gid=quantity, **look)
+            line, marker = lines[lines["quantity"] == quantity], MARKERS[quantity] + "-"
+            axes.plot(line["dx"], line["difference"], marker, gid=quantity, color=colour, linewidth=0.7)
             drawn.append(quantity)
     for quantity in dict.fromkeys(drawn):
         label = "slip velocity" if quantity == "velocity" else quantity
