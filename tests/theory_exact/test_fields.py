@@ -215,3 +215,19 @@ def test_the_width_of_a_pulse_is_known_until_the_very_end(duration):
     rupture = Rupture(sp.Prestress(0.63, 0.416, 1.352), 0.215, 1.703, duration=duration)
     assert rupture.pulse_width(duration) == pytest.approx(rupture.pulse_width(0.999999 * duration), rel=1e-4)
     assert rupture.pulse_width(duration) > 1.0
+
+
+@pytest.mark.parametrize("duration", [16.77, 17.0])
+def test_the_first_stick_does_not_depend_on_when_its_neighbours_stick(duration):
+    """A front 48 times as fast as waves: points beside the first one stick after the end."""
+    scene = (sp.Prestress(0.5, 0.91), 0.033, 4.5321, "total")
+    assert Rupture(*scene, duration).first_stick == pytest.approx(Rupture(*scene, 20.0).first_stick, rel=1e-9)
+
+
+@pytest.mark.parametrize("levels", [(0.25, 0.25), (-0.5, 0.5)])
+def test_nothing_slips_faster_than_the_largest_velocity(levels):
+    """The largest value lies on a ridge, here searched along its whole length."""
+    rupture = Rupture(sp.Prestress(*levels), 0.55, 0.1, "total", 10.8)
+    times, positions = np.linspace(0.5, 10.8, 500), np.linspace(-12.0, 14.0, 800)
+    found = np.nanmax(rupture.map(times, positions, ("slip_velocity",))["slip_velocity"])
+    assert found * (1.0 - 1e-12) <= rupture.largest_velocity < 1.002 * found

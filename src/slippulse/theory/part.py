@@ -249,14 +249,25 @@ class Part:
         first = np.flatnonzero(edge.stick <= np.nanmin(edge.stick) + 1e-10)
         k = int(first[np.argmin(np.abs(edge.x[first]))])
         time, x = float(edge.stick[k]), float(edge.x[k])
-        around = edge.pace[max(k - 1, 0) : k + 2]
-        if around.size == 3 and around[0] < 0.0 < around[2]:
 
-            def pace(position: float) -> float:
-                at = np.array([position])
-                return float(self._edge_at(at, self.stick_time(at)).pace[0])
+        def pace(position: float) -> float:
+            at = np.array([position])
+            return float(self._edge_at(at, self.stick_time(at)).pace[0])
 
-            lowest = root_between(pace, edge.x[k - 1], edge.x[k + 1], xtol=STEP)
+        def beyond(j: int, sign: float) -> float:
+            """Towards a neighbour, where the edge runs away from x; the neighbour may stick after the end."""
+            inner, outer, away = x, float(edge.x[j]), sign * float(edge.pace[j])
+            at = outer
+            for _ in range(30):
+                if away > 0.0 or (away <= 0.0 and at == outer):
+                    break
+                inner, outer = (at, outer) if away <= 0.0 else (inner, at)
+                at = 0.5 * (inner + outer)
+                away = sign * pace(at)
+            return at if away > 0.0 else x
+
+        if 0 < k < edge.x.size - 1 and (low := beyond(k - 1, -1.0)) < x < (high := beyond(k + 1, 1.0)):
+            lowest = root_between(pace, low, high, xtol=STEP)
             found = float(self.stick_time(np.array([lowest]))[0])
             # Not for a kink, nor for what is the same.
             if found < time - TIME:
@@ -278,11 +289,13 @@ class Part:
             keep = np.nonzero(time > self.curve.arrival(grid_x))
             values = self.velocity(grid_x[keep], time[keep])
             n = int(np.argmax(values))
+            # The largest value may lie on a ridge across the grid: the search narrows where it no longer rises.
+            narrower = 1.0 if values[n] > best * (1.0 + 1e-10) else 0.4
             if values[n] > best:
                 best, centre, at = float(values[n]), grid_x[keep][n], fraction[keep][n]
             near = np.clip(centre + reach_x * around, x[0], x[-1])
             grid_x, fraction = np.meshgrid(
                 near, np.clip(at + reach_fraction * around, 0.0, 1.0), indexing="ij"
             )
-            reach_x, reach_fraction = 0.4 * reach_x, 0.4 * reach_fraction
+            reach_x, reach_fraction = narrower * reach_x, narrower * reach_fraction
         return best
