@@ -59,8 +59,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 def plot(table: pd.DataFrame) -> Figure:
     """A plane for each boundary, and velocity profiles of the ruptures that are numbered in them."""
     figure = new_figure(PAGE, 2.75)
-    grid = figure.add_gridspec(1, 2, width_ratios=(2.05, 1.0))
-    planes, strips = figure.add_subfigure(grid[0]), figure.add_subfigure(grid[1])
+    planes, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.05, 1.0)).flat
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
     numbers = {tuple(rows[["boundary", "regime"]].iloc[0]): NUMBERS[i] for i, rows in enumerate(profiles)}
     for axes, letter, boundary in zip(planes.subplots(1, 2), "ab", BOUNDARIES, strict=True):

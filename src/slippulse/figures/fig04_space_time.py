@@ -15,7 +15,7 @@ from matplotlib.patches import Patch
 from ..data.points import point
 from ..measure.fronts import position_at
 from .shared.space_time import STUCK, description, draw_map, draw_profile, run_rows
-from .style import BLACK, COLUMN, HALO, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter, stacked
+from .style import BLACK, COLUMN, HALO, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
@@ -75,7 +75,9 @@ def plot(table: pd.DataFrame) -> Figure:
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
     panels: dict[str, str] = {}
-    for side, (panel, letter) in zip(stacked(figure, (1.0, 1.0)), PANELS.items(), strict=True):
+    for side, (panel, letter) in zip(
+        figure.subfigures(2, 1, squeeze=False).flat, PANELS.items(), strict=True
+    ):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.3, 1.0))
         roles = {str(role): rows for role, rows in table[table["panel"] == panel].groupby("role")}
         draw_profile(profile, roles["prestress"])

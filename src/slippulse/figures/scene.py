@@ -14,7 +14,7 @@ from matplotlib.figure import Figure, SubFigure
 from ..data.numerals import MOST, number, with_uncertainty
 from .shared.numbers import with_symbols
 from .shared.space_time import description, draw_map, draw_profile, limits, run_rows, thin
-from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter, stacked
+from .style import BLUE, GREY, ORANGE, PAGE, new_figure, panel_letter
 
 # Blocks drawn of a profile.
 PROFILE_POINTS = 400
@@ -62,7 +62,9 @@ def plot(table: pd.DataFrame) -> Figure:
     numbers = roles.get("number", table.iloc[:0])
     rows = math.ceil(len(numbers) / 2)
     figure = new_figure(PAGE, 4.9 + 0.16 * rows)
-    upper, lower, text = stacked(figure, (3.1, 1.6, 0.2 + 0.16 * rows))
+    upper, lower, text = figure.subfigures(
+        3, 1, squeeze=False, height_ratios=(3.1, 1.6, 0.2 + 0.16 * rows)
+    ).flat
     draw_space_time(upper, roles)
     for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
         draw_end(axes, roles["profile"], numbers, field)

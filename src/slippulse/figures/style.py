@@ -17,7 +17,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm, Normalize, PowerNorm, to_hex
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullFormatter
@@ -56,7 +56,6 @@ SCALES: dict[str, tuple[str, tuple[float, float], tuple[float, float], Callable[
 FAMILY = "STIXGeneral"
 RC: dict[Any, Any] = {
     "font.size": 9.0,
-    "axes.labelsize": 9.0,
     "axes.titlesize": 9.0,
     "xtick.labelsize": 8.0,
     "ytick.labelsize": 8.0,
@@ -110,12 +109,6 @@ def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
     """These ticks alone with numbers, on a logarithmic axis too."""
     axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
     axis.set_minor_formatter(NullFormatter())
-
-
-def stacked(figure: Figure, heights: Sequence[float]) -> list[SubFigure]:
-    """Parts of a figure one above the other, with the ratios of their heights."""
-    grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
-    return [figure.add_subfigure(grid[row]) for row in range(len(heights))]
 
 
 def colour_scale(quantity: str) -> ScalarMappable:
