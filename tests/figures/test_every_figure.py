@@ -59,10 +59,8 @@ def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
     with Image.open(tmp_path / "first.png") as picture:
         assert len(picture.convert("L").getcolors()) > 20
     assert not np.isinf(drawn.table.select_dtypes("number").to_numpy()).any()
-    sizes = {
-        text.get_text(): text.get_fontsize() for text in drawn.figure.findobj(Text) if text.get_visible()
-    }
-    assert not {text for text, size in sizes.items() if text.strip() and size < SMALLEST - 1e-9}
+    texts = [text for text in drawn.figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    assert min(text.get_fontsize() for text in texts) > SMALLEST - 1e-9
     page = drawn.figure.bbox.padded(1.0)
     for legend in drawn.figure.findobj(Legend):
         assert page.count_contains(legend.get_window_extent().get_points()) == 2, "cut off"
@@ -87,37 +85,30 @@ def curves(axes, kind: str) -> dict[str, np.ndarray]:
     return {line.get_gid().removeprefix(f"{kind} "): np.column_stack(line.get_data()) for line in named}
 
 
-@pytest.mark.parametrize(
-    ("name", "panels", "apart"),
-    [
-        ("fig03_steady_state", (0, 1), 0.03),
-        ("fig08_steady_state_displacement", (0, 1), 0.03),
-        ("fig09_steady_state_stress", (0, 1), 0.03),
-    ],
-)
-def test_simulated_pulses_lie_on_the_exact_ones(draw, name, panels, apart):
-    figure = draw(name).figure
-    for panel in panels:
-        simulated, exact = (curves(figure.axes[panel], kind) for kind in ("simulation", "exact"))
+PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady_state_stress")
+
+
+@pytest.mark.parametrize("name", PULSES)
+def test_simulated_pulses_lie_on_the_exact_ones(draw, name):
+    for axes in draw(name).figure.axes[:2]:
+        simulated, exact = (curves(axes, kind) for kind in ("simulation", "exact"))
         assert simulated.keys() == exact.keys() and len(simulated) >= 4
         for run, curve in simulated.items():
             # The front's layer, a few blocks wide at this coarse lattice, is the difference.
             off = np.abs(curve[:, 1] - np.interp(curve[:, 0], *exact[run].T))
-            assert np.median(off) < apart * exact[run][:, 1].max()
+            assert np.median(off) < 0.03 * exact[run][:, 1].max()
             assert len(curve) <= 400 and len(exact[run]) <= 801
 
 
 def test_undamped_pulses_are_the_papers_and_damping_lowers_them(draw):
     table = draw("fig08_steady_state_displacement").table
     runs = table[table["role"] == "run"].set_index("run")
-    peaks = (
-        table[table["role"] == "exact"].groupby("run")[["slip", "slip_velocity", "slip_acceleration"]].max()
-    )
+    fields = ["slip", "slip_velocity", "slip_acceleration"]
+    peaks = table[table["role"] == "exact"].groupby("run")[fields].max()
     undamped = runs.index[runs["damping_ratio"] == 0.0]
     assert peaks.loc[undamped].to_numpy() == pytest.approx(1.0, rel=1e-3)
-    by_damping = runs.assign(peak=peaks["slip_velocity"]).pivot(
-        index="left", columns="damping_ratio", values="peak"
-    )
+    runs["peak"] = peaks["slip_velocity"]
+    by_damping = runs.pivot(index="left", columns="damping_ratio", values="peak")
     assert (np.diff(by_damping.to_numpy(), axis=1) < 0.0).all()
 
 

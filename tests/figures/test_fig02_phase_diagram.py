@@ -45,9 +45,7 @@ def test_runs_are_filled_where_they_end_as_theory_says_and_crossed_out_where_fla
     assert len(marks) == len(runs)
     assert [mark.get_marker() for mark in marks].count("x") == runs["run_flags"].notna().sum() > 0
     sound = runs[runs["run_flags"].isna()]
-    faces = {
-        tuple(np.ravel(mark.get_xydata())) + tuple(to_rgba(mark.get_markerfacecolor())) for mark in marks
-    }
+    faces = {(*np.ravel(mark.get_xydata()), *to_rgba(mark.get_markerfacecolor())) for mark in marks}
     for run in sound.itertuples():
         early = run.exact_regime in REGIMES and run.exact_regime != run.regime
         colour = "white" if early else figure.LOOKS[run.regime][0]

@@ -67,10 +67,8 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(rows, panels, name):
         assert leaves == []
     first = part[part["row"] == 0]
     assert [bar.get_height() for bar in strip.patches] == pytest.approx(first["prestress"].to_list())
-    assert (
-        f"{first['scale'].iloc[0]:.2g}" in axes.get_xlabel()
-        and f"{first['left'].iloc[0]:g}" in strip.get_title()
-    )
+    assert f"{first['scale'].iloc[0]:.2g}" in axes.get_xlabel()
+    assert f"{first['left'].iloc[0]:g}" in strip.get_title()
 
 
 @pytest.mark.parametrize("name", figure.PITCH)
@@ -91,14 +89,13 @@ def test_instants_are_the_start_a_crack_the_first_stick_and_later(data, rows, na
 def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_released(rows, panels):
     last = rows[(rows["panel"] == "displacement") & (rows["instant"] == "two pulses")]
     assert np.array_equal(last["slip"], last["slip"].to_numpy()[::-1])
-    sliding, stuck = (
-        last.loc[last["state"] == state, "x"].abs() for state in ("sliding", "stuck after sliding")
-    )
+    states = ("sliding", "stuck after sliding")
+    sliding, stuck = (last.loc[last["state"] == state, "x"].abs() for state in states)
     assert stuck.size and sliding.min() > stuck.max()
     assert not rows.loc[rows["panel"] == "displacement", "arresting_block"].any()
     part = rows[rows["panel"] == "stress"]
     last, framed = part[part["instant"] == "pulse"], part[part["arresting_block"]]
-    sliding, stuck = (last.loc[last["state"] == state, "x"] for state in ("sliding", "stuck after sliding"))
+    sliding, stuck = (last.loc[last["state"] == state, "x"] for state in states)
     assert stuck.size and stuck.max() < sliding.min() and sliding.min() > 0.0
     assert framed["x"].nunique() == 1 and (framed["slip"] == 0.0).all() and (framed["prestress"] < 0.0).all()
     assert stuck.min() == framed["x"].iloc[0] + 1.0

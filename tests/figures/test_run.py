@@ -24,9 +24,8 @@ def test_fronts_trailing_edge_and_slip_are_drawn(samples):
     lines = {line.get_label(): line for line in times.lines}
     released = np.isfinite(run["release_time"].values)
     assert lines["front"].get_xdata() == pytest.approx(run["release_time"].values[released], abs=0.1)
-    assert np.nanmin(lines["trailing edge"].get_xdata()) == pytest.approx(
-        run.attrs["first_stick_time"], abs=0.01
-    )
+    stick = run.attrs["first_stick_time"]
+    assert np.nanmin(lines["trailing edge"].get_xdata()) == pytest.approx(stick, abs=0.01)
     assert np.max(slip.lines[0].get_xdata()) == pytest.approx(float(run["slip"].max()))
     assert bool(times.images) is (samples is not None)
     assert figure._repr_png_().startswith(b"\x89PNG")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 import tolerances as tol
@@ -35,11 +37,8 @@ def test_front_speeds_lie_on_their_lines(draw):
 def test_leaf_springs_slow_fronts_under_both_rules_down_to_one_block_a_layer(draw):
     drawn = draw("study_front_speed")
     runs = drawn.measured["front_speed_springs"]
-    wide = runs[
-        runs["run_flags"].isna()
-        & (runs["pulse_state"] == "steady")
-        & (runs["pulse_width"] >= 4.0 * runs["dx"])
-    ]
+    steady = runs["run_flags"].isna() & (runs["pulse_state"] == "steady")
+    wide = runs[steady & (runs["pulse_width"] >= 4.0 * runs["dx"])]
     assert len(wide) >= 20 and (wide["dx"] == 1.0).sum() >= 10 and wide["release"].nunique() == 2
     assert off(wide, "front_speed_right", "lattice_front_speed_right").max() < 3e-4
     lines = drawn.table[(drawn.table["panel"] == "springs") & (drawn.table["role"] == "theory")]
@@ -81,10 +80,8 @@ def test_exact_theory_collapses_what_the_paper_scatters_and_is_the_limit(draw):
     refined = table[table["role"] == "refinement"]
     for number in ("transition_time", "transition_length"):
         for _, rows in sound.dropna(subset=number).groupby("boundary"):
-            assert (
-                off(rows, number, f"exact_{number}").median()
-                < 0.25 * off(rows, number, f"paper_{number}").median()
-            )
+            exact, paper = (off(rows, number, f"{source}_{number}").median() for source in ("exact", "paper"))
+            assert exact < 0.25 * paper
         largest = off(refined, number, f"exact_{number}").groupby(refined["dx"]).max()
         assert (np.diff(largest) > 0.0).all() and largest.iloc[-1] < 0.03
 
@@ -182,9 +179,7 @@ def test_marks_lie_on_the_exact_curves_and_the_trailing_edge_follows_the_front(d
     table = draw("study_exact_solution").table
     for _, rows in table[table["role"].isin(["exact", "lattice"])].groupby("scene"):
         exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
-        assert (exact["release"].notna() & (exact["slip"] >= 0.0)).all(), (
-            "the construction does not end early"
-        )
+        assert (exact["release"].notna() & (exact["slip"] >= 0.0)).all(), "no construction ends early"
         known = exact.dropna(subset="stick")
         assert len(known) > 100 and (known["stick"] > known["release"]).all()
         for quantity in ("release", "stick", "slip"):
@@ -195,14 +190,13 @@ def test_marks_lie_on_the_exact_curves_and_the_trailing_edge_follows_the_front(d
 
 
 def test_both_halves_of_the_map_agree(draw):
-    table = draw("study_exact_solution").table
+    table = draw("study_exact_solution").table.copy()
+    table["position"] = table["position"].abs().round(6)
+    axes = {"index": "time", "columns": "position", "values": "slip_velocity"}
     halves = [
-        table[table["role"] == f"map_{source}"]
-        .assign(position=lambda rows: rows["position"].abs().round(6))
-        .pivot(index="time", columns="position", values="slip_velocity")
-        for source in ("exact", "lattice")
+        table[table["role"] == f"map_{source}"].pivot(**axes).fillna(0.0) for source in ("exact", "lattice")
     ]
-    exact, lattice = halves[0].fillna(0.0).align(halves[1].fillna(0.0), fill_value=0.0)
+    exact, lattice = halves[0].align(halves[1], fill_value=0.0)
     assert (exact - lattice).abs().to_numpy().mean() < 0.02 * exact.to_numpy().max()
 
 
@@ -212,25 +206,18 @@ def test_uniform_prestress_leaves_the_papers_estimate_from_above(study):
     assert uniform[[0.1, 0.4, 0.9]].to_numpy() == pytest.approx([1.219, 1.206, 1.112], abs=1e-3)
     assert (np.diff(uniform) < 0.0).all()
     peaks = rows.dropna(subset="gamma")
-    assert (peaks["over_paper"].to_numpy() < uniform[peaks["left"]].to_numpy()).all(), (
-        "the peak brings the transition forward"
-    )
+    # The peak brings the transition forward.
+    assert (peaks["over_paper"].to_numpy() < uniform[peaks["left"]].to_numpy()).all()
 
 
 def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
-    found = np.array(
-        [
-            [
-                (-end.x, rupture.transition_time, rupture.transition_length)
-                for right in (0.1, 0.5, 0.9)
-                for rupture in [Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)]
-                for end in [rupture.front_ends[0][0]]
-                if end.reason == "stops" and not rupture.limit
-            ]
-            for left in (-1.0, -0.3, -0.1)
-        ]
-    )
-    assert found.shape == (3, 3, 3) and np.isfinite(found).all()
+    found = np.empty((3, 3, 3))
+    for (row, left), (column, right) in product(enumerate((-1.0, -0.3, -0.1)), enumerate((0.1, 0.5, 0.9))):
+        rupture = Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)
+        end = rupture.front_ends[0][0]
+        assert end.reason == "stops" and not rupture.limit
+        found[row, column] = -end.x, rupture.transition_time, rupture.transition_length
+    assert np.isfinite(found).all()
     assert (np.diff(found, axis=0) > 0.0).all()
     assert (np.diff(found[:, :, 1:], axis=1) > 0.0).all()
 
@@ -254,9 +241,8 @@ def test_numbers_are_the_same_from_the_figures_own_table(draw):
     for release in ("total", "elastic"):
         rows = drawn.table[(drawn.table["part"] == "best") & (drawn.table["release"] == release)]
         assert (rows["pull"] ** 2).sum() == pytest.approx(study[release]["chi2"])
-        assert rows["pull"].to_list() == pytest.approx(
-            [study[release]["pulls"][name] for name in rows["reading"]]
-        )
+        pulls = [study[release]["pulls"][name] for name in rows["reading"]]
+        assert rows["pull"].to_list() == pytest.approx(pulls)
 
 
 def test_regions_are_drawn_around_the_best_fits_and_curves_as_far_as_accepted(draw):
@@ -289,7 +275,6 @@ def test_lattices_a_tenth_away_from_the_line_where_pulses_end_are_on_its_exact_s
     # Without leaf springs: the late height is that of diffusion. The right front, its leading edge gone, goes on in
     # jerks, which stand above it for 15 % of t = 20 to 100 at dx = 0.05, for 1 % at 0.025 and never at 0.0125.
     arrest = table[(table["role"] == "arrest") & (table["dx"] == 0.025) & (table["time"] > 20.0)]
-    late = arrest[arrest["rate_strengthening"] == 0.5].merge(
-        table[table["role"] == "asymptote"], on=["rate_strengthening", "time"], suffixes=("", "_limit")
-    )
+    limit, at = table[table["role"] == "asymptote"], ["rate_strengthening", "time"]
+    late = arrest[arrest["rate_strengthening"] == 0.5].merge(limit, on=at, suffixes=("", "_limit"))
     assert (late["largest_velocity"] / late["largest_velocity_limit"]).between(0.8, 1.1).all()
