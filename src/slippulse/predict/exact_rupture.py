@@ -1,7 +1,5 @@
 """The exact solution of a scene or of a finished run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import xarray as xr

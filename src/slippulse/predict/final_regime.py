@@ -1,7 +1,5 @@
 """The regime that a rupture ends in, however long it takes: from the exact solution, for the class of a finite run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The speed of both fronts of each run: the paper's, the exact one, and that of a lattice with leaf springs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Every number of every run of a sweep, one row a run, with what takes theory to say of its pulse and transition."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

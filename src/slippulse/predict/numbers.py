@@ -1,7 +1,5 @@
 """What every prediction starts from, and numbers that theory may not have."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """The right pulse of each run under a displacement boundary, by the paper's formulas and with damping."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

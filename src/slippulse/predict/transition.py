@@ -1,7 +1,5 @@
 """When and where the rupture of each run turns into pulses: the first stick, or the arrest of the left front."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import cache, partial
 
