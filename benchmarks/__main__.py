@@ -1,7 +1,5 @@
 """`python -m benchmarks config/config.yaml results/benchmarks`: measure, and write benchmark.json there."""
 
-from __future__ import annotations
-
 import json
 import sys
 import time

@@ -6,8 +6,6 @@ A record is written when its job ends and says how long that took. Before it beg
 inputs, and then for a core.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from itertools import pairwise

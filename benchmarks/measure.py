@@ -1,7 +1,5 @@
 """The measurements of `make benchmark`: each a function that returns builtins, all in one run on one core."""
 
-from __future__ import annotations
-
 import platform
 import time
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """What the kernels are compared with: branch-free stencils over a whole array, the textbook scheme in numpy."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from slippulse.solver.jit import entry, inner

@@ -3,8 +3,6 @@
 python docs/describe.py      in the folder of the project, or with its path
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """The reference of the Python interface, from its docstrings: `make reference`."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 python docs/run_tutorial.py results/tutorial
 """
 
-from __future__ import annotations
-
 import ast
 import sys
 from pathlib import Path

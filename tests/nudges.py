@@ -1,7 +1,5 @@
 """Inputs moved in their last bits."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every tolerance of the tests, each with its reason. A test that fails is reported, not given a wider one."""
 
-from __future__ import annotations
-
 # --- Rounding -------------------------------------------------------------------------------------------------
 
 # One pass of a stencil: a handful of additions of numbers near 1, in another order than numpy's.

@@ -10,7 +10,7 @@
 Importing is light: the compiled kernels and xarray are loaded when the first scene is simulated.
 """
 
-from .lazy import lazy_names
+from .model.lazy import lazy_names
 
 __version__ = "0.1.0"
 

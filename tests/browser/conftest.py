@@ -1,7 +1,5 @@
 """A real browser, where there is one: Debian's chromium, or the like of another system."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager

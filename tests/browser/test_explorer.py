@@ -1,7 +1,5 @@
 """The explorer alone: its numbers are those of the theory, and it works by keyboard, on a phone and in the dark."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest
@@ -29,7 +27,7 @@ SCENE = dict(left=0.5, right=0.5, gamma=0.65, width=1.0, ratio=0.1, release="tot
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("explorer") / "explorer.html"
-    page = explorer_page(explorer_law.table({}, {}, {}), [pd.DataFrame([RUN])])
+    page = explorer_page(explorer_law.table({}, {}, {}), [pd.DataFrame([RUN])], "viridis")
     path.write_text(page, encoding="utf-8")
     return path
 

@@ -4,8 +4,6 @@ and that every column of its tables is explained.
 `make test-pages` says which folder; without one nothing is tested here, and an unfinished one fails.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from pathlib import Path

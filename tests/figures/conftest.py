@@ -1,7 +1,5 @@
 """Every figure drawn from small, really simulated data, through the CSV as the pipeline does it."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Readers with any colour vision can tell the colours of a figure apart: simulated after Machado et al. (2009)."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

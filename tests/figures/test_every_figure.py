@@ -1,7 +1,5 @@
 """Every figure fits the journal, is labelled and finite; and what the figures of the paper show."""
 
-from __future__ import annotations
-
 import re
 from itertools import product
 from pathlib import Path

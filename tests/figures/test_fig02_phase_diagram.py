@@ -1,7 +1,5 @@
 """The phase diagram has the exact regime of every run where the run is, and marks runs that end in another."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

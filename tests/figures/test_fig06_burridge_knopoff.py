@@ -1,7 +1,5 @@
 """Figure 6: blocks and springs stand where the runs put them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A run as a picture, in one call."""
 
-from __future__ import annotations
-
 import matplotlib
 import numpy as np
 import pytest

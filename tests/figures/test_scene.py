@@ -1,7 +1,5 @@
 """A scene by name: recorded where its fronts go, drawn from its table, its numbers beside theory, a page alone."""
 
-from __future__ import annotations
-
 import re
 from types import SimpleNamespace
 

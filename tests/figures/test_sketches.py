@@ -1,7 +1,5 @@
 """Figures 1 and 7: the sketches show what was computed."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The studies show what they claim, in the data that they draw."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -5,8 +5,6 @@ Runge-Kutta method at a tolerance near rounding; every event is looked for on a 
 one that comes and goes within a step is seen too.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,7 +57,7 @@ class Chain:
         acceleration = np.where(self.sliding, self.elastic(slip) + self.drag(velocity), 0.0)
         return np.concatenate([np.where(self.sliding, velocity, 0.0), acceleration])
 
-    def run(self, duration: float) -> Chain:
+    def run(self, duration: float) -> "Chain":
         """Advance to ``duration`` or until everything is stuck."""
         self._release(self.threshold_force(self.slip, self.velocity) >= 1.0, 0.0)
         time = 0.0

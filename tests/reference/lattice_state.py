@@ -1,7 +1,5 @@
 """Stress and motion of a finished run, recomputed from its slip with numpy alone."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """Random scenes over the whole documented range, edges included."""
 
-from __future__ import annotations
-
 import math
 import random
 

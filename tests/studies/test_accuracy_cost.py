@@ -1,7 +1,5 @@
 """Error against cost, and the check that no preset could be had cheaper and better."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

@@ -1,7 +1,5 @@
 """No edge of the solver's domain ends in a wrong number without a flag."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

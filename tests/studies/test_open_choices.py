@@ -1,7 +1,5 @@
 """Known deviations of the paper's estimates, to three digits, over the grids of figure 5."""
 
-from __future__ import annotations
-
 import pytest
 
 from slippulse.configuration.resolve import resolve

@@ -1,7 +1,5 @@
 """The inference from the published figure, which finds known parameters by numbers of lattices; the authors' scheme."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 import pytest

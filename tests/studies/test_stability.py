@@ -1,7 +1,5 @@
 """The measured stability boundary on the derived one."""
 
-from __future__ import annotations
-
 import pytest
 import tolerances as tol
 

@@ -1,7 +1,5 @@
 """With SLIPPULSE_NUDGED set, all inputs of the exact theory are moved by some units in the last place."""
 
-from __future__ import annotations
-
 import os
 
 import numpy as np

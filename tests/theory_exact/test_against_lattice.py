@@ -1,7 +1,5 @@
 """Lattices tend to the exact rupture at first order in dx."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

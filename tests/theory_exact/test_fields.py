@@ -1,7 +1,5 @@
 """Slip, velocity and strain behind the fronts, trailing edges, and where the construction ends."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad

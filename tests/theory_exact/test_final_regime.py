@@ -1,7 +1,5 @@
 """The regime that a rupture ends in, against the exact solution followed until it shows."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

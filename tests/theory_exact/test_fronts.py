@@ -1,7 +1,5 @@
 """Arrival times: front law, quadrature, several nucleation points, the free boundary of negative pre-stress."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad

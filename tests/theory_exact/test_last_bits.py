@@ -1,7 +1,5 @@
 """No answer of the exact theory hangs on the last bits: at the end of its duration, and for inputs nudged by some."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from nudges import nudged

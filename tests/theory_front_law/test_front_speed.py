@@ -1,7 +1,5 @@
 """The front law against its limits, its closed forms, its motion block by block and lattices; what it refuses."""
 
-from __future__ import annotations
-
 import time
 import tracemalloc
 

@@ -1,7 +1,5 @@
 """Settings for a target error: what they are, what is refused, and that nothing changes where none is asked for."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -1,7 +1,5 @@
 """Wrong arguments of the library are refused in one line: the argument, its value, what is allowed."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

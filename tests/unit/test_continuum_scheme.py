@@ -1,7 +1,5 @@
 """The exact solution as a scheme: the same Dataset as a lattice run, which tends to it at first order in dx."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

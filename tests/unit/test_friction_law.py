@@ -1,7 +1,5 @@
 """The friction law, state by state: stuck, released, sliding, stuck again, released again."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Roots of polynomials, releases and sticks within a step, and the list of segments, at their edges."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

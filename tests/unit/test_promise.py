@@ -1,7 +1,5 @@
 """What a promised accuracy covers, and the verdict of a grid study on it."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The rule that names a regime: each class and each threshold, on made-up runs and on simulated ones."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

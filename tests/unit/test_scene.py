@@ -1,7 +1,5 @@
 """The pre-stress profile: values, symmetry, steps, bumps, integral; and what a scene derives from its parameters."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

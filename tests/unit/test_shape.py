@@ -1,7 +1,5 @@
 """The shape of made-up pulses: half-width, waves of the lattice, blocks at once, and what changes far away."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """The stated stability bounds against the amplification of the step itself, and against runs that blow up."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Whether a pulse is called steady, unsteady or thick at its front, and a left front held up by the lattice stalled."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import xarray as xr

@@ -1,7 +1,5 @@
 """What a run records on its way, and many scenes in one Dataset: the order, the threads and the way back."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -7,7 +7,7 @@ from slippulse.claims import rules
 from slippulse.claims.paper import SIMULATIONS
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
 from slippulse.claims.transition import over_choices
-from slippulse.measure.quantities import QUANTITIES
+from slippulse.model.quantities import QUANTITIES
 
 YES, CAVEAT, DEPENDS, NO, OPEN, NONE = VERDICTS
 NAN = float("nan")

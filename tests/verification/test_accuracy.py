@@ -1,7 +1,5 @@
 """A promised accuracy against exact theory: every number that is covered, over scenes of both boundaries."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Formulas of the paper against the derived ones, and those of the report's appendix, as printed, against the code."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

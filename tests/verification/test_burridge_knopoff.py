@@ -1,7 +1,5 @@
 """Blocks and springs, dx = 1, against an independent integration of the same equation of motion."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

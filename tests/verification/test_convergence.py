@@ -1,7 +1,5 @@
 """Observed orders in the time step, each against a much finer run of the highest order."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

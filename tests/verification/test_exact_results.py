@@ -1,7 +1,5 @@
 """The theory against tables, closed forms and its equations; the solver against it and the published figure."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

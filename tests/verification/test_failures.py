@@ -1,7 +1,5 @@
 """Runs that are not the model's: stopped with a reason, or flagged."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

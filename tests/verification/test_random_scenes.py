@@ -1,7 +1,5 @@
 """Invariants of the model over hundreds of random valid scenes, extremes included."""
 
-from __future__ import annotations
-
 import collections
 import dataclasses
 import math

@@ -1,7 +1,5 @@
 """Friction that depends on slip rate: numbers of the exact solution, and where pulses end."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

@@ -1,7 +1,5 @@
 """What must not change a result: the mirror, half the lattice, the size of the first lattice, the length of a call."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import tolerances as tol

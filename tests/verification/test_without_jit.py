@@ -1,7 +1,5 @@
 """The compiled kernels against the same sources run by the interpreter."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """A scene costs what slides in it, and nothing else: work and bytes a block, how both grow, where rows begin."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from ..measure.quantities import QUANTITIES
 from ..model.checks import nearest, short_repr
+from ..model.quantities import QUANTITIES
 
 T = TypeVar("T")
 

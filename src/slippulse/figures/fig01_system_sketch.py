@@ -1,7 +1,5 @@
 """Figure 1: the layer on its rigid substrate, both conditions at the top, and the strip that is integrated."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure 2: which regime a rupture ends in, by boundary and by both levels of the pre-stress."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Figure 3: slip velocity of the steady pulses, both boundary conditions, with theory."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import pandas as pd

@@ -1,7 +1,5 @@
 """Slip velocity over time and position: a crack that becomes two pulses, and one that becomes one."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figure 5: L_trans and T_trans of every run against the paper's prediction, both boundary conditions."""
 
-from __future__ import annotations
-
 import pandas as pd
 from matplotlib.figure import Figure
 

@@ -1,7 +1,5 @@
 """Figure 6: the onset of pulses as blocks and springs, from runs at dx = 1."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import pairwise
 

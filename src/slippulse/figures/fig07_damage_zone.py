@@ -1,7 +1,5 @@
 """Figure 7: a fault with a damaged core, and the stress drop against the contrast of stiffness."""
 
-from __future__ import annotations
-
 import matplotlib
 import numpy as np
 import pandas as pd

@@ -1,7 +1,5 @@
 """A user-defined sweep: its main numbers against what varies in it, with exact theory where there is any."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """One run as a picture, in one call: for a notebook or a script."""
 
-from __future__ import annotations
-
 import io
 
 import matplotlib

@@ -1,7 +1,5 @@
 """One scene: slip velocity over time and position, the profile at the end, and its numbers beside theory."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """One scene as an animation: slip velocity and slip over position, as time goes on."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

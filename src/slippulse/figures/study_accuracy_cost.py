@@ -1,7 +1,5 @@
 """Error against work for every scheme, order, step and spacing, and how the textbook front locks on its step."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The arrest that never comes: the left front under a stress boundary against the exact theory."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

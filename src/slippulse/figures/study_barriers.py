@@ -1,7 +1,5 @@
 """How deep a steady pulse enters negative pre-stress: exact, on lattices, and by the later estimate."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 
 import numpy as np

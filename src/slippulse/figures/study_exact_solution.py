@@ -1,7 +1,5 @@
 """A whole rupture, exact and on lattices: velocity, fronts, trailing edge and slip, and how their difference falls."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

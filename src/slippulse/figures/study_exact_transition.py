@@ -1,7 +1,5 @@
 """The transition against the paper's predictions and against the exact theory, and what the predictions leave out."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What selects the front speed: pre-stress and beta/dx, leaf springs at coarse spacing; so refine at fixed beta/dx."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

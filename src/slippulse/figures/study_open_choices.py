@@ -1,7 +1,5 @@
 """Every claim that is judged by numbers, at each choice that the paper leaves open: a specification curve."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

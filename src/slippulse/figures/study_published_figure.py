@@ -1,7 +1,5 @@
 """Which parameters the published space-time figure was made with, and how surely its readings tell."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

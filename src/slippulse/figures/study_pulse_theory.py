@@ -1,7 +1,5 @@
 """The steady pulse against damping: the paper's formulas, the damped theory, simulations, and their limit dx -> 0."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

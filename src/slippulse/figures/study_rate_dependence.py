@@ -1,7 +1,5 @@
 """Friction that depends linearly on slip rate: where pulses end, the pulses, maps of both sides, and Gamma = 0."""
 
-from __future__ import annotations
-
 import matplotlib
 import numpy as np
 import pandas as pd

@@ -1,7 +1,5 @@
 """Pulses sent from one pre-stress into another: held displacement settles, imposed stress grows, decays or keeps."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Where the fronts and the trailing edges are, and how fast."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """What a promised accuracy covers, and whether a grid study finds it kept."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """The leading pulse of a finished run, on the right, in its own frame."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Crack-like or pulse-like, one-way or two-way, growing, steady, decaying or arrested: the rule, as code."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """The shape of a pulse: how broad, how even, how many blocks, and whether it stays as it is."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

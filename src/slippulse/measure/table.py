@@ -1,7 +1,5 @@
 """Every number of one run."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """When and where a crack becomes a pulse: definitions that converge, and the paper's own next to them."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 

@@ -1,7 +1,5 @@
 """Numerical uncertainty from a grid study: three spacings, the observed order, the extrapolated value."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

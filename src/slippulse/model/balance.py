@@ -1,7 +1,5 @@
 """Where the pre-stress is balanced: x_minus."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .checks import check_kind

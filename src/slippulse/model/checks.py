@@ -1,7 +1,5 @@
 """One form for every refusal: the key, the value it had, and what is allowed."""
 
-from __future__ import annotations
-
 import difflib
 import math
 import re

@@ -1,7 +1,5 @@
 """The pre-stress profile: a Gaussian peak on side levels, with optional steps and bumps."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """Roots of functions, of one float or of many at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a run records on its way."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

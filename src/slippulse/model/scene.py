@@ -1,14 +1,12 @@
 """What is modelled: one scene, its parameters, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from numbers import Real
-from typing import Any
+from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
 from .prestress import Prestress, prestress_from
@@ -186,7 +184,7 @@ class Scene:
         return f"<table>{rows}</table>"
 
     @classmethod
-    def from_attributes(cls, attributes: Mapping) -> Scene:
+    def from_attributes(cls, attributes: Mapping) -> Self:
         """The scene of a run, of the attributes of its Dataset or its row of a measured table.
 
         Raises ValueError: if a parameter is missing or is none that `attributes` writes.

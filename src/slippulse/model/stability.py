@@ -1,7 +1,5 @@
 """Largest stable step of each scheme on the sliding lattice, with leaf springs and damping."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -13,7 +13,6 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
-from ..figures.style import VELOCITY_MAP
 from ..model.prestress import Prestress, prestress_from
 from .html import page
 
@@ -23,15 +22,16 @@ DIGITS = 5
 COLOURS = 32
 
 
-def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame]) -> str:
+def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: str) -> str:
     """The page, one file that loads nothing.
 
     Parameters
     ----------
     law : the front law, as `slippulse.studies.explorer_law` has it
     measured : measured tables of sweeps
+    colours : colour map of slip velocity, by its name
     """
-    shades = matplotlib.colormaps[VELOCITY_MAP](np.linspace(0.0, 1.0, COLOURS))
+    shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, COLOURS))
     largest = float(law["damping_ratio"].max())
     data = {
         "law": front_law(law),

@@ -1,7 +1,5 @@
 """The exact solution of the continuum limit, as a run: the same arrays and numbers as a lattice leaves behind."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Finished runs as Datasets, with flags for what their numbers are not: one, or many in threads put together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed

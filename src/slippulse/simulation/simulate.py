@@ -1,7 +1,5 @@
 """Scenes in, Datasets out: one scene on the lattice or exactly, by its scheme, or a sweep of many."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Sequence
 

@@ -4,8 +4,6 @@ Shapes: K = order + 2 derivatives of slip (rows 0 to order + 1), N blocks of the
 included. Lengths are in units of H, times in units of H over the wave speed, stresses in units of the stress drop.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Compiles every kernel into the cache."""
 
-from __future__ import annotations
-
 import numba
 
 from ..model.prestress import Prestress

@@ -6,8 +6,6 @@ since damping couples neighbours through their velocities (without damping it ta
 the order of the step, so the few blocks within reach change exactly as in a new expansion of the whole lattice.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from .arrays import CENTRE, COLUMNS

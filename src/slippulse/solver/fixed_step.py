@@ -3,8 +3,6 @@
 First order in the step, and its measured front speed locks on dx / (n dt) for whole n.
 """
 
-from __future__ import annotations
-
 import math
 
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE

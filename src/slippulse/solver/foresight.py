@@ -1,7 +1,5 @@
 """When the next block is released or sticks: the first root of a stress or of a velocity within the step."""
 
-from __future__ import annotations
-
 import math
 
 from .arrays import REACH, Event

@@ -14,8 +14,6 @@ What each flag gains, measured in turns with and without it, the least of severa
 ``tests/unit/test_kernel_cache.py`` fails where numba changes what is private of these.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Runs one scene on the lattice: allocation, growth, calls of the kernels. Arrays in, arrays out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a run keeps on its way: releases, sticks, samples, viscous loss."""
 
-from __future__ import annotations
-
 import math
 
 from .jit import inner

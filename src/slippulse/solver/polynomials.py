@@ -1,7 +1,5 @@
 """Polynomials in the time since the start of the step: value, slope, root, Taylor shift."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from .arrays import REACH

@@ -1,7 +1,5 @@
 """A run, and what it leaves behind: energies, counters, and the lattice unfolded and trimmed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The sliding blocks as a sorted list of segments: contiguous stretches, [start, end) each."""
 
-from __future__ import annotations
-
 from .jit import inner
 
 

@@ -5,8 +5,6 @@ negative would have to be tested for wrapping, which costs a factor 4 to 10; and
 of a row that is handed to a function costs 30 ns, more than a narrow pulse needs for the pass.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from .jit import inner

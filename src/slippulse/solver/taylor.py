@@ -10,8 +10,6 @@ What paid for narrow pulses: events inside the step, and the difference that an 
 around it. What did not: passes written by hand for order 4, ending steps at events.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

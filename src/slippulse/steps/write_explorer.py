@@ -2,6 +2,7 @@
 
 from ..data.files import write_text
 from ..data.store import load_table
+from ..figures.style import VELOCITY_MAP
 from ..report.explorer_page import explorer_page
 
 FILES = ("report/templates/explorer.html", "report/templates/explorer/*")
@@ -18,4 +19,4 @@ SIMULATIONS = [
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: law, measured. Outputs: html."""
     measured = [load_table(path) for path in files["measured"]]
-    write_text(explorer_page(load_table(files["law"]), measured), outputs["html"])
+    write_text(explorer_page(load_table(files["law"]), measured, VELOCITY_MAP), outputs["html"])

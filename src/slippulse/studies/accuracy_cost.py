@@ -4,8 +4,6 @@ Cost is counted, not timed: passes of the stencil over a block do not depend on 
 sampled at the spacing of the textbook scheme.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from functools import cache

@@ -1,7 +1,5 @@
 """The exact path of the left front that slows for ever under a stress boundary."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

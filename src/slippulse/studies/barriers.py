@@ -1,7 +1,5 @@
 """Pulses sent into barriers: how deep they come, at several spacings, and past which barriers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from itertools import product

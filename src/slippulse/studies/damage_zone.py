@@ -1,7 +1,5 @@
 """A fault with a compliant damage zone: its stress drop, and the displacement before and after slip."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

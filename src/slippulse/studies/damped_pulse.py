@@ -1,7 +1,5 @@
 """The exact steady pulse with damping as curves over the damping ratio, and its limit as the spacing goes to 0."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Exact numbers that the derivations of the report quote: of the published scene, and of small scenes of their own."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from functools import cache

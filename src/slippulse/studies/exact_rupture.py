@@ -1,7 +1,5 @@
 """Whole ruptures, exact and on lattices: edges, slip, a map of slip velocity, and how their difference falls."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

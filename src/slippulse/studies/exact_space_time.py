@@ -1,7 +1,5 @@
 """Exact fronts and trailing edges of the two runs of the space-time figure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

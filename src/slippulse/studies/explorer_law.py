@@ -1,7 +1,5 @@
 """The front law on a grid, for the scripts of the explorer: speeds found in it by cubics are exact to 1e-4."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

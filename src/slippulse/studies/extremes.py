@@ -1,7 +1,5 @@
 """The edges of the solver's domain: one row an edge, with what should happen and what did."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from functools import lru_cache

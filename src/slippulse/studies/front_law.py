@@ -1,7 +1,5 @@
 """Exact front speeds as curves: over the pre-stress, over the leaf springs, and over the spacing."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Exact transitions over the pre-stress, without damping: nucleated at a point, and with a Gaussian peak of W = 1."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

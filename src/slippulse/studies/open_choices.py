@@ -1,7 +1,5 @@
 """Exact transitions at every admissible combination of what the paper leaves open, over the grids of figure 5."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import partial
 

@@ -5,8 +5,6 @@ to each reading is taken from a lattice run of the same trial. The largest veloc
 value over all blocks, still grows when the figure ends, and falls with the spacing.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import product

@@ -1,7 +1,5 @@
 """What the shortcuts of the authors' published solver cost: their scheme, from its description, and exact numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A pulse sent from one pre-stress into another, exactly: the slip that it leaves, and how far it remembers."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Exact pulses of the runs of figures 3, 8 and 9 over the distance from their largest velocity."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

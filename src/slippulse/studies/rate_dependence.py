@@ -1,7 +1,5 @@
 """Friction that depends linearly on slip rate: where pulses end, and what becomes of them without leaf springs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The planes of both levels of the pre-stress, cut into the regimes that ruptures end in by exact theory."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import product
 

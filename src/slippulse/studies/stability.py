@@ -1,7 +1,5 @@
 """Where a step blows up: the measured boundary on the derived one, for each scheme, order and damping ratio."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 

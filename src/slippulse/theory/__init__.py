@@ -1,6 +1,6 @@
 """Closed forms and quadratures; no simulation. Knows nothing of the lattice code, so that agreement means something."""
 
-from ..lazy import lazy_names
+from ..model.lazy import lazy_names
 
 _HOMES = {
     "ArrestingCrack": "arrest",

@@ -1,7 +1,5 @@
 """A crack under a stress boundary whose left front runs into negative pre-stress, in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..model.balance import prestress_balance_position

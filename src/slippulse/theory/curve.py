@@ -5,8 +5,6 @@ Behind the curve each field is an integral along it, between the two points wher
 rises to eta, going right.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import cached_property
 from typing import NamedTuple
@@ -48,12 +46,12 @@ class Panel(NamedTuple):
     x_ends: tuple[float, float]
     time_ends: tuple[float, float]
 
-    def mirrored(self) -> Panel:
+    def mirrored(self) -> "Panel":
         """The same at -x."""
         ends = (-self.x_ends[1], -self.x_ends[0]), self.time_ends[::-1]
         return Panel(-self.x[::-1], self.time[::-1], self.source[::-1], *ends)
 
-    def until(self, s: float, x_end: float) -> Panel:
+    def until(self, s: float, x_end: float) -> "Panel":
         """The part from the left end to the parameter s, where x is x_end."""
         half = 0.5 * (s + 1.0)
         resample = legendre.legvander(np.append(half * (1.0 + NODES) - 1.0, s), COUNT - 1) @ TO_SERIES
@@ -102,7 +100,7 @@ class Curve:
         slopes = np.append(values[..., 1:] * np.arange(1.0, COUNT), np.zeros_like(values[..., :1]), axis=-1)
         return dict(zip(names, np.stack([values, slopes], axis=2), strict=True))
 
-    def mirrored(self) -> Curve:
+    def mirrored(self) -> "Curve":
         """The same at -x."""
         restarts = ([-x for x in side] for side in (self.restarts_right, self.restarts_left))
         return Curve(seen(self.panels, -1.0), *restarts)

@@ -1,7 +1,5 @@
 """Dimensional forms: scales of the layer, and the paper's predictions in SI units."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The crack-pulse transition under leaf springs, and what it needs: the fronts of one nucleation point at x = 0."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import NamedTuple
 

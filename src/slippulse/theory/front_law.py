@@ -6,8 +6,6 @@ The slipping part is taken to reach far behind the front: sticking is felt at th
 wider than the layer of damped or lattice waves at its tip, a few blocks unless b is large.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..model.checks import (

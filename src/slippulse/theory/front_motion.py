@@ -6,8 +6,6 @@ its release, per unit pre-stress, is then 1/tau_0. A front is admissible when th
 until the release, and no block behind it comes to rest before the next is released.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 

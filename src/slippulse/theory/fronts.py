@@ -3,8 +3,6 @@
 The pre-stress is cut into pieces, smooth and of one sign on each, with the intervals that are released at t = 0.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -142,7 +140,7 @@ class FrontLaw:
         check_number("lowest prestress", lowest, at_least=LOWEST)
         self.pieces = pieces(prestress)
 
-    def mirrored(self) -> FrontLaw:
+    def mirrored(self) -> "FrontLaw":
         """The same at -x."""
         profile = self.prestress
         steps = tuple((-position, level) for position, level in profile.steps)

@@ -6,8 +6,6 @@ characteristics, d/d(t - y) < 0 and d/d(t + y) < 0. The stress of a block that h
 d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just before, so that no block is ever released again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import NamedTuple

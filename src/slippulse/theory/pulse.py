@@ -1,7 +1,5 @@
 """The steady slip pulse, with damping, and the paper's estimates of where and when a crack becomes a pulse."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -13,8 +13,6 @@ entire in z, is evaluated by polynomials, a third of the time of scipy's j0 (a f
 below 1e-11. Where k < 0 it is I0, whose size would cost them their digits.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import lru_cache, partial

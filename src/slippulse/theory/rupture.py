@@ -5,8 +5,6 @@ beta = (beta/dx) dx -> 0, acts at the front alone. Where tau < 0 the front is a 
 the fronts the undamped equation has Riemann's solution (`riemann`), up to the trailing edge (`part`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -10,8 +10,6 @@ with E and k = gamma - alpha^2/4 as in `riemann`.
 X is marched as a function of e, in which it stays smooth where the front stops: there dX/de = 0.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -5,8 +5,6 @@ turns within a distance of about b of psi = 0 (from psi^2 to psi) and of psi = p
 that are halved until they resolve it, and inverted by Newton's method.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

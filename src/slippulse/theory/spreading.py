@@ -1,7 +1,5 @@
 """How the rupture spreads from every nucleation point: fronts that outrun the waves, slow ones, and where they meet."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from itertools import pairwise
 

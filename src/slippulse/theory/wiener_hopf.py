@@ -21,8 +21,6 @@ g = 0 the root is 1 + i w/2 and M_+(k) = (1 + i v k - e^{ik})/(i v k) in closed 
 only the ratio to it is integrated.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The main numbers of a run: what they are called, as measured, and exact theory."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 

@@ -1,7 +1,5 @@
 """Pulses in their own frame, simulated and exact: rows of a figure's table, and how they are drawn."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

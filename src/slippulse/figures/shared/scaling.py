@@ -1,7 +1,5 @@
 """T_trans and L_trans of every run over the paper's predictions, with exact theory as lines."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

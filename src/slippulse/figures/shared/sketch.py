@@ -1,7 +1,5 @@
 """Arrows and words of a sketch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from matplotlib.axes import Axes

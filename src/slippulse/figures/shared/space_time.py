@@ -1,7 +1,5 @@
 """Slip velocity over time and position, with the fronts and where blocks stick: tables and drawing."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from itertools import pairwise
 
