@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import chdtrc, chdtri
 
 # Points of a curve over the damping ratio.
-FINE = 801
+FINE = 4001
 CONFIDENCE = (0.68, 0.95)
 
 

@@ -18,7 +18,7 @@ NEEDS = {
 LOOKS = {"total": (BLUE, "o", "total force"), "elastic": (ORANGE, "s", "elastic stress")}
 LEVELS = (0.68, 0.95)
 # Every how many points of each curve are kept.
-KEPT = 5
+KEPT = 25
 NAMES = {
     "front_speed": "front slope", "intercept": "intercept", "centre_stick": "centre stops",
     "velocity_displacement": r"largest $\dot u$",
