@@ -131,6 +131,11 @@ def step_for(step, job):
     return f"{step}_exact" if sweep_of(job)["scheme"] == "continuum" else step
 
 
+def kernels_for(job):
+    """Only runs on lattices wait for the kernels."""
+    return [] if sweep_of(job)["scheme"] == "continuum" else ["results/kernels.txt"]
+
+
 @cache
 def topics_of(simulation):
     """What is predicted of it: as far as it is read; all of what an overlay adds."""
@@ -142,10 +147,10 @@ def joined_path(wildcards):
     return Path(wildcards.joined)
 
 
-def kernels_for(study):
+def kernels_of(study):
     """Only a study that reaches the solver waits for the kernels."""
     reached = any("solver" in Path(path).parts for path in sources(f"studies.{study}"))
-    return {"kernels": "results/kernels.txt"} if reached else {}
+    return ["results/kernels.txt"] * reached
 
 
 def figure_files(names):

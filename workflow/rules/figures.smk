@@ -8,7 +8,7 @@ for study, needs in STUDY_NEEDS.items():
             f"study_of_{study}"
         input:
             **inputs_of(needs),
-            **kernels_for(study),
+            kernels=kernels_of(study),
         output:
             table=f"results/studies/{study}.csv",
         priority: 2

@@ -22,7 +22,7 @@ rule compile_kernels:
 
 rule simulate:
     input:
-        kernels="results/kernels.txt",
+        kernels=lambda wildcards: kernels_for(wildcards.simulation),
     output:
         data="results/data/{simulation}.nc",
     # Before what only draws, as all that the claims wait for: the report waits for them.
@@ -70,7 +70,7 @@ rule predict:
 
 rule study_grid:
     input:
-        kernels="results/kernels.txt",
+        kernels=lambda wildcards: kernels_for(wildcards.simulation),
         finest="results/measurements/{simulation}.csv",
     output:
         uncertainties="results/uncertainties/{simulation}.csv",
