@@ -57,7 +57,8 @@ def plot(run: xr.Dataset) -> Picture:
                 times.contourf(*unknown, [0.5, 1.5], colors="none", hatches=["///"])
                 figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
         else:
-            parts.draw_edges(times, roles, run.attrs["end_time"])
+            # A run in which nothing moves ends at 0.
+            parts.draw_edges(times, roles, run.attrs["end_time"] or run.attrs["duration"])
         if np.isfinite(run["release_time"]).any():
             times.legend(loc="upper left")
         slip.plot(run["slip"], run["x"], color=BLUE)
