@@ -128,7 +128,7 @@ def measure_of(job):
 
 def step_for(step, job):
     """A step that runs scenes, by their scheme: an edit of the theory re-runs exact solutions alone."""
-    return f"{step}_exact" if sweep_of(job)["scheme"] == "continuum" else step
+    return step if kernels_for(job) else f"{step}_exact"
 
 
 def kernels_for(job):

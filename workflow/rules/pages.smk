@@ -160,7 +160,7 @@ rule write_index:
             "The figures of the paper": FIGURES,
             "Beyond the paper": [name for name in NEEDS if name not in FIGURES],
         }
-        | ({"Sweeps of your own": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
+        | ({"User-defined sweeps": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
         scenes=TITLES,
     message:
         "Writing results/index.html, the page to open"

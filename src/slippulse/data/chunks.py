@@ -1,7 +1,7 @@
 """Which runs of a sweep are in which of its chunks: a rule that needs the number of chunks and nothing else.
 
-Each round of as many runs as there are chunks goes to as many different chunks, as cards are dealt: neighbours, which
-cost about the same, are spread. Who is first changes from round to round at random, always in the same way; were it
+Each round of as many runs as there are chunks goes to as many different chunks: neighbours, which cost
+about the same, are spread. Who is first changes from round to round at random, always in the same way; were it
 always the same, a list of as many values as there are chunks would give each chunk a single value of it.
 """
 

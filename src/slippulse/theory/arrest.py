@@ -83,7 +83,7 @@ class ArrestingCrack:
         right, left = np.linspace(2.0 * self.far, 0.0, count), np.linspace(0.0, self.zero, count)[1:]
         entries = np.concatenate([right, left])
         delay = entries - self.fronts.arrival(entries)
-        # Crowded towards x_minus, which takes for ever.
+        # Denser towards x_minus, which takes for ever.
         share = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
         slow = self.zero + (self.balance_position - self.zero) * share
         slow_delay = np.array([x - self.time_at(x) for x in slow])
