@@ -112,7 +112,8 @@ replicate: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py replicate
 
 rulegraph: $(READY)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" exec "$(BIN)/python" workflow/run.py rulegraph
+	@"$(BIN)/python" -m snakemake --workflow-profile none --quiet all --rulegraph mermaid-js $${OVERLAY:+--configfile "$$OVERLAY"} \
+	    -- $${TARGET:-results/figures/fig05_scaling.png results/claims.json}
 
 verify: $(READY)
 	@$(if $(AGAINST),"$(BIN)/python" -m slippulse.report.compare results "$$AGAINST",PATH="$(CURDIR)/$(BIN):$$PATH" "$(BIN)/python" workflow/run.py verify)

@@ -5,15 +5,6 @@
 #   snakemake --cores 2 --config preset=draft -- everything    studies, ledger and report too
 #   snakemake --cores 2 --configfile mine.yaml                 any part of the configuration overlaid
 
-from slippulse.configuration.read import main as check_files
-
-# Snakemake itself would name no line.
-if check_files([f"{workflow.basedir}/config/config.yaml"]):
-    raise SystemExit(1)
-
-
-configfile: "config/config.yaml"
-
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/simulate.smk"
@@ -26,9 +17,7 @@ rule all:
     input:
         EVERYTHING if WHOLE else FIRST,
     message:
-        "Done: open results/{}".format(
-            "index.html" if WHOLE else "figures; everything adds studies, ledger and report"
-        )
+        "Done: open results/index.html" if WHOLE else "Done: open results/figures; everything adds the rest"
 
 
 rule everything:

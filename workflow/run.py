@@ -1,6 +1,6 @@
 """Run Snakemake for make, so that a signal ends the run at once, with all of its jobs and with one line.
 
-    python workflow/run.py replicate|verify|rulegraph
+    python workflow/run.py replicate|verify
 
 Files are written whole or not at all, so that a run may be killed at any time: the next one goes on from what is there.
 The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
@@ -14,12 +14,11 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
+from datetime import timedelta
 from pathlib import Path
 
 # How the last run was called.
 CALL = Path("results/records/.call")
-# Without the log of a run.
-LOOK = ("--workflow-profile", "none", "--quiet", "all")
 SHOW_CURSOR = "\x1b[?25h"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
@@ -31,16 +30,14 @@ def arguments(what: str) -> list[str]:
     values = [f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if name in given]
     options = ["--config", *values] if values else []
     options += ["--configfile", given["OVERLAY"]] if "OVERLAY" in given else []
-    if what == "rulegraph":
-        targets = targets or ["results/figures/fig05_scaling.png", "results/claims.json"]
-        return [*LOOK, "--rulegraph", "mermaid-js", "--", *targets]
     if what == "verify":
         if not options:
             # As the last run was called.
             with suppress(OSError, ValueError, KeyError):
                 called = json.loads(CALL.read_text(encoding="utf-8"))
                 options, targets = called["options"], [*{"everything"} & {*called["targets"]}]
-        return [*LOOK, "--cores", "1", *options, "--", "verify", *targets]
+        look = ("--workflow-profile", "none", "--quiet", "all", "--cores", "1")
+        return [*look, *options, "--", "verify", *targets]
     return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
 
 
@@ -55,53 +52,50 @@ def meant(target: str) -> str:
     return target
 
 
-def answer(seconds: float) -> str:
-    """What to open when a run has ended, with the verdicts if it made or kept them, and how long it took."""
-    took = f"{seconds // 60:.0f} min {seconds % 60:.0f} s" if seconds >= 60 else f"{seconds:.0f} s"
+def answer() -> str:
+    """What to open when a run has ended, with the verdicts if it made or kept them."""
     called = json.loads(CALL.read_text(encoding="utf-8"))
     if called["page"]:
         from slippulse.claims.reading import Ledger
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        made = f"{ledger.summary()}\nOpen results/index.html"
-    elif called["targets"] == ["all"]:
-        made = "Open results/figures; TARGET=everything makes studies, ledger and report too"
-    else:
-        made = f"Made: {', '.join(called['targets'])}"
-    return f"{made}. It took {took}."
+        return f"{ledger.summary()}\nOpen results/index.html"
+    if called["targets"] == ["all"]:
+        return "Open results/figures; TARGET=everything makes studies, ledger and report too"
+    return f"Made: {', '.join(called['targets'])}"
 
 
 def main(what: str) -> int:
     """Run it in a group of processes of its own; returns the exit code."""
     began = time.monotonic()
     # When this process ends, however that happens, the other end of this pipe tells Snakemake.
-    leash, held = os.pipe()
+    leash, _held = os.pipe()
     process = None
+
+    def end() -> None:
+        with suppress(ProcessLookupError, AttributeError):
+            os.killpg(process.pid, signal.SIGKILL)
 
     def stop(number: int, _frame: object) -> None:
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
-        if process is not None:
-            with suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+        end()
         shown = SHOW_CURSOR if sys.stderr.isatty() else ""
         os.write(2, f"{shown}\nStopped; the next run goes on from what is there.\n".encode())
         sys.exit(128 + number)
 
     for number in SIGNALS:
         signal.signal(number, stop)
+    command = [sys.executable, "-m", "snakemake", *arguments(what)]
     process = subprocess.Popen(
-        [sys.executable, "-m", "snakemake", *arguments(what)],
-        env=os.environ | {"SLIPPULSE_LEASH": str(leash)}, pass_fds=[leash], start_new_session=True,
-    )  # fmt: skip
+        command, env=os.environ | {"SLIPPULSE_LEASH": str(leash)}, pass_fds=[leash], start_new_session=True
+    )
     os.close(leash)
     code = process.wait()
     # Jobs of a server that has died go on by themselves.
-    with suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)
-    os.close(held)
+    end()
     if code == 0 and what == "replicate":
-        print(answer(time.monotonic() - began))
+        print(f"{answer()}. It took {timedelta(seconds=round(time.monotonic() - began))}.")
     return code if code >= 0 else 128 - code
 
 

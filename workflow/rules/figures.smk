@@ -1,6 +1,5 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
-
 for study, needs in STUDY_NEEDS.items():
 
     rule:
@@ -8,7 +7,8 @@ for study, needs in STUDY_NEEDS.items():
             f"study_of_{study}"
         input:
             **inputs_of(needs),
-            kernels=kernels_of(study),
+            # Only a study that reaches the solver waits for them.
+            kernels=KERNELS * any("/solver/" in path for path in sources(f"studies.{study}")),
         output:
             table=f"results/studies/{study}.csv",
         priority: 2
@@ -19,7 +19,11 @@ for study, needs in STUDY_NEEDS.items():
             study=study,
             # Under `sweeps` the resolved simulations that it names.
             values=selected(config, needs.get("settings", ()), {})
-            | ({"sweeps": {name: sweep_of(name) for name in needs["sweeps"]}} if "sweeps" in needs else {}),
+            | {
+                key: {name: settings_of(name)["sweep"] for name in needs[key]}
+                for key in needs
+                if key == "sweeps"
+            },
         message:
             f"Studying {study}"
         run:
@@ -28,6 +32,7 @@ for study, needs in STUDY_NEEDS.items():
 
 # One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
 for figure, needs in (NEEDS | SWEEP_NEEDS).items():
+    category = "Figures of the paper" if figure in FIGURES else "Studies and sweeps"
 
     rule:
         name:
@@ -35,11 +40,7 @@ for figure, needs in (NEEDS | SWEEP_NEEDS).items():
         input:
             **inputs_of(needs),
         output:
-            png=report(
-                f"results/figures/{figure}.png",
-                category="Figures of the paper" if figure in FIGURES else "Studies and sweeps",
-                labels={"figure": figure},
-            ),
+            png=report(f"results/figures/{figure}.png", category=category, labels={"figure": figure}),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
         # Before scenes and the explorer, which run beside the report: that waits for the figures alone.
@@ -61,7 +62,7 @@ for figure in FIGURES:
         name:
             figure.partition("_")[0]
         input:
-            figure_files([figure]),
+            made("figures", [figure]),
 
 
 rule draw_scene:
@@ -99,7 +100,7 @@ rule animate_scene:
 
 rule scenes:
     input:
-        scene_files(SCENES),
+        made("scenes", SCENES),
         expand("results/scenes/{scene}.gif", scene=SCENES),
         "results/scenes/index.html",
     message:

@@ -1,45 +1,45 @@
-# What is read: the claims with their verdicts, the explorer, the report, what the results were made from, and the page
-# that leads to it all.
+# What is read: claims, explorer, report, what the results were made from, and the page that leads to it all.
 
-from slippulse.claims.reading import read_entries
+from slippulse.data.alterations import changes
 from slippulse.data.provenance import source_files
 
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
+CLAIM_STUDIES = "derivations open_choices published_figure published_scheme rate_dependence".split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
 MEASURED = sorted({*simulations_of(*NEEDS.values()), *STUDIED})
-OWN_SWEEPS = figure_files(f"sweep_{name}" for name in OWN_SIMULATIONS)
+OWN_SWEEPS = made("figures", SWEEP_NEEDS)
 RESULTS = [
-    *figure_files(NEEDS),
+    # The claims first, so that they come first in Snakemake's own report too.
+    *expand("results/{name}", name=("claims.html", "claims.json", "findings.json", "explorer.html")),
+    *made("figures", NEEDS),
     *made("data", MEASURED),
     *made("measured", MEASURED),
     *made("uncertainties", STUDIED),
     *made("studies", CONFIG.studies or STUDY_NEEDS),
-    *scene_files(SCENES),
+    *made("scenes", SCENES),
     *OWN_SWEEPS,
-    *(f"results/{name}" for name in ("claims.json", "findings.json", "claims.html", "explorer.html")),
     *expand("results/manuscript/{document}.{ending}", document=DOCUMENTS, ending=("html", "pdf")),
 ]
-# The claims first, so that they come first in Snakemake's own report too.
-EVERYTHING = ["results/claims.html", RESULTS, "results/provenance.json", "results/index.html"]
+EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
 WHOLE = ACCURACY.get("whole", True)
 # What a draft makes unless everything is asked for: the figures of the paper with what they are drawn from, and what
 # an overlay adds.
 FIRST = [
-    *figure_files(FIGURES),
-    *made("data", simulations_of(*(NEEDS[figure] for figure in FIGURES))),
-    *made("measured", {*OWN_SIMULATIONS}.union(*(NEEDS[figure].get("measured", []) for figure in FIGURES))),
-    *scene_files(OWN_SCENES),
+    *made("figures", FIGURES),
+    *made("data", sorted(simulations_of(*(NEEDS[figure] for figure in FIGURES)))),
+    *made("measured", [name for figure in FIGURES for name in NEEDS[figure].get("measured", [])]),
+    *made("measured", OWN_SIMULATIONS),
+    *made("scenes", OWN_SCENES),
     *OWN_SWEEPS,
 ]
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
-
-if config["claims"]:
-    try:
-        read_entries("manuscript/claims.yaml", config["claims"])
-    except ValueError as error:
-        refuse(f"The configuration is refused:\n{error}")
+GALLERIES = {
+    "The figures of the paper": FIGURES,
+    "Beyond the paper": [name for name in NEEDS if name not in FIGURES],
+    "User-defined sweeps": [*SWEEP_NEEDS],
+}
 
 
 rule write_claims:
@@ -49,10 +49,7 @@ rule write_claims:
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
         predicted=made("predicted", CLAIM_PREDICTED),
-        studies=made(
-            "studies",
-            ["derivations", "open_choices", "published_figure", "published_scheme", "rate_dependence"],
-        ),
+        studies=made("studies", CLAIM_STUDIES),
         texts="manuscript/claims.yaml",
         statements="manuscript/statements.yaml",
     output:
@@ -88,12 +85,12 @@ rule write_report:
     input:
         "manuscript/references.bib",
         expand("manuscript/{text}.yaml", text=TEXTS),
+        expand("results/figures/{name}.png", name=NEEDS),
         **inputs_of(REPORT_NEEDS),
         sources=expand("manuscript/{document}.md", document=DOCUMENTS),
         claims="results/claims.json",
         findings="results/findings.json",
-        figures=[f"results/figures/{name}.pdf" for name in NEEDS],
-        pictures=[f"results/figures/{name}.png" for name in NEEDS],
+        figures=expand("results/figures/{name}.pdf", name=NEEDS),
         shipped="config/config.yaml",
         citation="CITATION.cff",
     output:
@@ -145,22 +142,14 @@ rule write_index:
     input:
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
-        pictures=[f"results/figures/{name}.png" for name in NEEDS],
-        sweeps=OWN_SWEEPS,
-        scenes=scene_files(SCENES),
-        claims="results/claims.json",
-        findings="results/findings.json",
+        # All else that it shows, or leads to, comes before this.
         provenance="results/provenance.json",
-        report="results/manuscript/replication.html",
-        explorer="results/explorer.html",
+        ledger=["results/claims.json", "results/findings.json"],
+        pictures=made("figures", NEEDS) + OWN_SWEEPS,
     output:
         html="results/index.html",
     params:
-        galleries={
-            "The figures of the paper": FIGURES,
-            "Beyond the paper": [name for name in NEEDS if name not in FIGURES],
-        }
-        | ({"User-defined sweeps": [f"sweep_{name}" for name in OWN_SIMULATIONS]} if OWN_SIMULATIONS else {}),
+        galleries={heading: names for heading, names in GALLERIES.items() if names},
         scenes=TITLES,
     message:
         "Writing results/index.html, the page to open"

@@ -1,11 +1,16 @@
-# One data file a simulation of the configuration, one table of measured numbers, and one of their uncertainties.
-# A simulation with `chunks` makes these of each chunk, NAME/3-of-8, and then puts them together. The files of the chunks
-# stay: to measure anew, or to make a lost chunk again, needs them.
+# Of each simulation its data, measured numbers, predictions and uncertainties; with `chunks` of each chunk, NAME/3-of-8,
+# whose files are then put together, and stay: to measure anew, or to make a lost chunk again, needs them.
+
+
+def of(key):
+    """A setting of a rule's simulation, once its wildcards are known."""
+    return lambda wildcards: settings_of(wildcards.simulation)[key]
+
 
 # What a job that simulates may take.
 BOUNDS = {
-    "runtime": lambda wildcards, attempt: attempt * bound_of_job(wildcards.simulation).minutes,
-    "mem_mb": lambda wildcards, attempt: attempt * bound_of_job(wildcards.simulation).megabytes,
+    "runtime": lambda wildcards, attempt: attempt * of("bound")(wildcards).minutes,
+    "mem_mb": lambda wildcards, attempt: attempt * of("bound")(wildcards).megabytes,
 }
 
 
@@ -22,17 +27,17 @@ rule compile_kernels:
 
 rule simulate:
     input:
-        kernels=lambda wildcards: kernels_for(wildcards.simulation),
+        kernels=of("kernels"),
     output:
         data="results/data/{simulation}.nc",
     # Before what only draws, as all that the claims wait for: the report waits for them.
     priority: 2
-    threads: lambda wildcards: bound_of_job(wildcards.simulation).threads
+    threads: lambda wildcards: of("bound")(wildcards).threads
     resources:
         **BOUNDS,
     params:
-        step=lambda wildcards: step_for("simulate", wildcards.simulation),
-        sweep=lambda wildcards: promised_sweep(wildcards.simulation),
+        step=of("simulate"),
+        sweep=of("sweep"),
     message:
         "Simulating {wildcards.simulation}"
     run:
@@ -46,7 +51,7 @@ rule measure:
         measured="results/measurements/{simulation}.csv",
     priority: 2
     params:
-        measure=lambda wildcards: measure_of(wildcards.simulation),
+        measure=of("measure"),
     message:
         "Measuring {wildcards.simulation}"
     run:
@@ -58,9 +63,9 @@ rule predict:
         predicted="results/predictions/{simulation}.csv",
     priority: 2
     params:
-        sweep=lambda wildcards: promised_sweep(wildcards.simulation),
-        topics=lambda wildcards: topics_of(wildcards.simulation.partition("/")[0]),
-        share=lambda wildcards: measure_of(wildcards.simulation)["share"],
+        sweep=of("sweep"),
+        topics=of("topics"),
+        share=of("share"),
         still=config["measure"]["still"],
     message:
         "Predicting {wildcards.simulation}"
@@ -70,7 +75,7 @@ rule predict:
 
 rule study_grid:
     input:
-        kernels=lambda wildcards: kernels_for(wildcards.simulation),
+        kernels=of("kernels"),
         finest="results/measurements/{simulation}.csv",
     output:
         uncertainties="results/uncertainties/{simulation}.csv",
@@ -79,13 +84,9 @@ rule study_grid:
     resources:
         **BOUNDS,
     params:
-        step=lambda wildcards: step_for("study_grid", wildcards.simulation),
-        # On the coarser lattices of the preset, by factor of the spacing.
-        sweeps=lambda wildcards: {
-            float(factor): promised_sweep(wildcards.simulation, float(factor))
-            for factor in ACCURACY["coarser"]
-        },
-        measure=lambda wildcards: measure_of(wildcards.simulation),
+        step=of("study_grid"),
+        sweeps=of("sweeps"),
+        measure=of("measure"),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     run:
@@ -94,27 +95,17 @@ rule study_grid:
 
 rule join:
     input:
-        # In the order of their numbers.
-        chunks=lambda wildcards: [
-            f"results/{joined_path(wildcards).parent / chunk}{joined_path(wildcards).suffix}"
-            for chunk in CHUNKS[joined_path(wildcards).stem]
-        ],
-        # The measurements that a grid study is of.
-        finest=lambda wildcards: made(
-            "measured",
-            [joined_path(wildcards).stem] * (joined_path(wildcards).parent.name == "uncertainties"),
-        ),
+        chunks=lambda wildcards: JOINED[wildcards.joined]["chunks"],
+        finest=lambda wildcards: JOINED[wildcards.joined]["finest"],
     output:
         joined="results/{joined}",
     priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
-        # Measured over a million runs: 1.2 kB a run, and as much again for other sweeps.
-        mem_mb=lambda wildcards, attempt: attempt
-        * (1000 + run_count(sweep_of(joined_path(wildcards).stem)) // 400),
+        mem_mb=lambda wildcards, attempt: attempt * JOINED[wildcards.joined]["megabytes"],
     params:
-        kind=lambda wildcards: joined_path(wildcards).parent.as_posix(),
-        record=lambda wildcards: SIMULATIONS[joined_path(wildcards).stem].record,
+        kind=lambda wildcards: JOINED[wildcards.joined]["kind"],
+        record=lambda wildcards: JOINED[wildcards.joined]["record"],
     message:
         "Putting {wildcards.joined} together"
     run:

@@ -12,7 +12,7 @@ from ..data.records import Origin, digest_of
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.parents[1]
-RESULTS = PurePath("results")
+RESULTS = Path("results")
 # Every step loads libraries that are in it.
 LOCK = "requirements.lock"
 # Import statements as ruff formats them. To parse every module would take a second of each start of Snakemake.

@@ -1,11 +1,18 @@
-"""What a step takes of the configuration, what may be asked for on the command line, and where results may go."""
+"""What a step takes of the configuration; what a run is asked for, what is in its way, and what it leaves behind."""
 
 import os
+import sys
+import time
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from copy import deepcopy
 from pathlib import Path
+from typing import TextIO
 
+from ..data.lock import take
+from ..data.records import Tree, record_path
 from ..model.checks import ConfigError, nearest, short_repr
+from .reach import RESULTS, Job, below, is_result, origins_of
 
 
 def selected(config: Mapping, keys: Iterable[str], own: Mapping) -> dict:
@@ -20,25 +27,103 @@ def selected(config: Mapping, keys: Iterable[str], own: Mapping) -> dict:
     return found
 
 
-def check_targets(targets: Iterable[str], known: Sequence[str]) -> None:
-    """Refuse a target that is none of the rules and files that there are.
+class Plan:
+    """All jobs that there are, against the folder of results as it is.
 
-    Raises ConfigError: naming the target and the one that was probably meant.
+    Attributes
+    ----------
+    origins : what each result, by path below results/, is made by
     """
-    for target in targets:
-        if target not in known:
-            allowed = (
-                f"{nearest(target, known)}; allowed: a rule of a single job, or a file that a rule makes"
+
+    def __init__(self, jobs: Sequence[Job], named: Mapping[str, Iterable[str]]) -> None:
+        """With the files of every rule that may be asked for by its name."""
+        self.jobs, self.named, self.origins = jobs, named, origins_of(jobs)
+        self.tree = Tree(RESULTS, self.origins)
+
+    def wanted(self, targets: Iterable[str]) -> list[str]:
+        """Results that rules and files are, with all that they are made from, below results/.
+
+        Raises ConfigError: naming a target that there is not, and the one that was probably meant.
+        """
+        known, files = [*self.named, *(f"{RESULTS}/{name}" for name in self.origins)], []
+        for target in targets:
+            if target not in known:
+                allowed = "a rule of a single job, or a file that a rule makes"
+                raise ConfigError(f"target: {short_repr(target)}{nearest(target, known)}; allowed: {allowed}")
+            files += self.named.get(target, (target,))
+        return self.tree.behind(map(below, files))
+
+    def check_places(self, *others: str) -> None:
+        """Refuse something else where a result, its record or one of the other folders goes; raises ConfigError."""
+        files = {RESULTS / name for name in self.origins}
+        files |= {RESULTS / record_path(origin.record) for origin in self.origins.values()}
+        folders = {Path(other) for other in others}.union(*(path.parents[:-1] for path in files))
+        taken = [(path, "file", "folder") for path in folders if os.path.lexists(path) and not path.is_dir()]
+        taken += [(path, "folder", "file") for path in files if path.is_dir()]
+        for path, found, needed in sorted(taken):
+            raise ConfigError(f"{path} is a {found}; remove or rename it: a {needed} of that name is needed")
+
+    def verify(self, complete: Iterable[str]) -> int:
+        """Say what is not as a complete run would make it; returns the exit code."""
+        problems, count = self.tree.problems(complete)
+        print("\n".join(problems) or f"{count} files are as made by what is here now")
+        whole = [name for name in self.wanted(["everything"]) if not (RESULTS / name).exists()]
+        if skipped := [name for name in whole if name not in complete]:
+            print(
+                f"Not looked at: {len(skipped)} files that TARGET=everything makes besides, as {skipped[0]}"
             )
-            raise ConfigError(f"target: {short_repr(target)}{allowed}")
+        return int(bool(problems))
+
+    def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
+        """Remove what is not as its record says, of some results and of what they are made from.
+
+        Other locks, below a folder, are left by a run that was killed. Returns what holds the lock of this one.
+
+        Raises ConfigError: where another run is at work.
+        """
+        held = take(locks / "run.lock")
+        if held is None:
+            raise ConfigError("Another run is at work in this folder: wait for it, or stop it.")
+        if stale := [*locks.glob("locks/*.lock")]:
+            # Files that a killed job was writing have a hidden name of their own until they are whole.
+            for path in [*stale, *Path(RESULTS).rglob(".*-????????.*")]:
+                path.unlink(missing_ok=True)
+            sys.stderr.write("The last run was killed: what it left unfinished is made anew.\n")
+        faulty = self.tree.to_remove(wanted)
+        say_faulty(faulty, "; removed, and made anew where needed.")
+        for name in faulty:
+            (RESULTS / name).unlink()
+        self._settle_times({*wanted})
+        return held
+
+    def _settle_times(self, wanted: set[str]) -> None:
+        """Let no result be older than what it is made from, for which it would be made anew, nor later than now."""
+        now, jobs = time.time(), [job for job in self.jobs if below(job.outputs[0]) in wanted]
+        paths = {path for job in jobs for path in (*job.inputs, *job.outputs) if os.path.isfile(path)}
+        times = {path: os.path.getmtime(path) for path in paths}
+        late = sorted(path for path in times if times[path] > now)
+        if late:
+            text = f"{len(late)} files have a time in the future, as {late[0]}: set to now."
+            sys.stderr.write(f"{text}\n")
+        if late or any(
+            max((times.get(path, 0.0) for path in job.inputs), default=0.0)
+            > min(times.get(path, now) for path in job.outputs)
+            for job in jobs
+        ):
+            for path in {*late, *filter(is_result, paths)}:
+                with suppress(OSError):
+                    os.utime(path, (now, now))
+
+    def left_behind(self) -> dict[str, str]:
+        """Results that are there and would be made anew, the last ones first, with the reason."""
+        tree = Tree(RESULTS, self.origins)
+        reasons = {name: tree.outdated(name) for name in reversed(self.origins) if (RESULTS / name).is_file()}
+        return {name: reason for name, reason in reasons.items() if reason}
 
 
-def check_places(folders: Iterable[Path], files: Iterable[Path]) -> None:
-    """Refuse a place for a folder, or for a file, in which there is something else.
-
-    Raises ConfigError: naming the place.
-    """
-    taken = [(path, "file", "folder") for path in folders if os.path.lexists(path) and not path.is_dir()]
-    taken += [(path, "folder", "file") for path in files if path.is_dir()]
-    for path, found, needed in taken:
-        raise ConfigError(f"{path} is a {found}; remove or rename it: a {needed} of that name is needed")
+def say_faulty(reasons: Mapping[str, str], fate: str) -> None:
+    """One line on results that are not as made by what is here now, with the first reason that is not another's."""
+    if reasons:
+        first = min(reasons, key=lambda name: "older than" in reasons[name])
+        text = f"{len(reasons)} results are not as made by what is here now, as results/{first}: {reasons[first]}"
+        sys.stderr.write(f"{text}{fate}\n")
