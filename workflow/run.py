@@ -92,8 +92,7 @@ def main(what: str) -> int:
     )
     os.close(leash)
     code = process.wait()
-    # Jobs of a server that has died go on by themselves.
-    end()
+    end()  # of jobs too, which would go on after a server that has died
     if code == 0 and what == "replicate":
         print(f"{answer()}. It took {timedelta(seconds=round(time.monotonic() - began))}.")
     return code if code >= 0 else 128 - code

@@ -69,8 +69,8 @@ def test_records_are_read_by_step(tmp_path):
     for number, (step, seconds, memory) in enumerate(jobs):
         (results / f"{number}.csv").touch()
         used = {"seconds": seconds, "processor_seconds": seconds, "memory_MB": memory}
-        origin = Origin(f"{number}.csv", step, "", "", frozenset())
-        write_record(origin, {"made": f"{results}/{number}.csv"}, used)
+        origin = Origin((f"{number}.csv",), step, "", "", frozenset())
+        write_record(origin, used, results)
     by_step = {"simulate": 4.0, "measure": 1.0}
     assert measure.pipeline(results) == {"job_seconds": 5.0, "largest_memory_MB": 150, "by_step": by_step}
 

@@ -34,8 +34,8 @@ def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
     results.mkdir()
     for name, seconds in (("a.csv", 1.25), ("b.csv", 0.5)):
         (results / name).write_text(name)
-        origin = Origin(name, "simulate", "", "", frozenset())
-        write_record(origin, {"made": f"{results}/{name}"}, {"seconds": seconds})
+        origin = Origin((name,), "simulate", "", "", frozenset())
+        write_record(origin, {"seconds": seconds}, results)
     assert job_times(results) == {"simulate": 1.75}
     facts = provenance(project, "", config | {"preset": "draft"}, config, results)
     assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]

@@ -218,7 +218,7 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
 
 def test_a_job_that_fails_has_said_why(tmp_path, capfd):
     with pytest.raises(JobFailed, match="exit code 1"):
-        origin = Origin("one", "no_such_step", "", "", frozenset())
+        origin = Origin(("one",), "no_such_step", "", "", frozenset())
         Jobs().run(origin, "a job", {}, {}, {}, tmp_path / "logs/one.log")
     said = capfd.readouterr().err
     assert said.count("\n") == 1 and "No module named" in said and "one.traceback" in said

@@ -16,8 +16,7 @@ from slippulse.steps.job import Jobs, end_with
 from slippulse.steps.reach import below, declared, needs_of, sources
 from slippulse.steps.targets import selected
 
-# Each figure and study by name; what it is made from stands in its module: simulations by kind of file, studies, and
-# dotted keys of the configuration.
+# What each figure and study is made from, as its module says: names by kind of file, keys of the configuration.
 NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
 try:
     # Not by `configfile:`, which reads YAML 1.1 and names no line.
@@ -32,11 +31,11 @@ try:
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
 
-config.clear()
-config.update(CONFIG.given())
+config = CONFIG.given()
 ACCURACY = accuracy_of(CONFIG)
 # A scene is a simulation of one run that records everything.
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
+TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
@@ -49,29 +48,28 @@ if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
 def run_step(rule, wildcards, input, output, params, threads):
     """Run the step of a rule on plain values, in a process of its own."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    name, log = (sign.join([rule, *wildcards]) for sign in " /")
-    files = (dict(input.items()), dict(output.items()))
-    JOBS.run(PLAN.origins[below(output[0])], name, *files, settings, f"results/logs/{log}.log")
+    name, files = [rule, *wildcards], (dict(input.items()), dict(output.items()))
+    log = f"results/logs/{'/'.join(name)}.log"
+    JOBS.run(PLAN.origins[below(output[0])], " ".join(name), *files, settings, log)
 
 
 FIGURES, TOPICS = [name for name in NEEDS if name.startswith("fig")], declared("steps.predict", "TOPICS")
-SWEEP_NEEDS = {f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS}
+SWEEPS = {f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS}
 # What is read of predictions: topics by simulation.
 CLAIM_PREDICTED, REPORT_NEEDS = declared("claims.paper", "PREDICTED"), declared("steps.write_report", "NEEDS")
 READ = [CLAIM_PREDICTED, *(needs.get("predicted", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
 # Files by kind, of a name; those of lists are named by their whole path.
-OF_SIMULATIONS = {
+FILES = {
     "data": "results/data/{name}.nc",
     "measured": "results/measurements/{name}.csv",
     "predicted": "results/predictions/{name}.csv",
     "uncertainties": "results/uncertainties/{name}.csv",
     "coarser": "results/uncertainties/coarser/{name}.csv",
-}
-FILES = OF_SIMULATIONS | {
     "studies": "results/studies/{name}.csv",
     "lists": "{name}",
     "figures": expand("results/figures/{{name}}.{ending}", ending=("pdf", "png", "csv")),
     "scenes": expand("results/scenes/{{name}}.{ending}", ending=("html", "png", "pdf", "csv")),
+    "animations": "results/scenes/{name}.gif",
 }
 KERNELS = ["results/kernels.txt"]
 
@@ -84,13 +82,6 @@ def made(kind, names):
 def inputs_of(needs):
     """Files that a figure or a study is made from, by kind."""
     return {kind: made(kind, names) for kind, names in needs.items() if kind in FILES}
-
-
-def simulations_of(*needs):
-    """Simulations that some figures or studies are made from, through other studies too."""
-    found = {name for one in needs for kind in (*OF_SIMULATIONS, "sweeps") for name in one.get(kind, [])}
-    studies = [STUDY_NEEDS[study] for one in needs for study in one.get("studies", [])]
-    return found.union(simulations_of(*studies)) if studies else found
 
 
 # Snakemake asks for the parameters of every waiting job again whenever a job has ended: they are found once.
@@ -111,7 +102,6 @@ def settings_of(job):
         # On the coarser lattices of the preset, by factor of the spacing.
         "sweeps": {float(by): promised({**sweep, "coarser": float(by)}) for by in ACCURACY["coarser"]},
         "measure": {**config["measure"], "share": share},
-        "share": share,
         # What is predicted: as far as it is read; all of what an overlay adds.
         "topics": sorted({topic for read in READ for topic in read.get(name, ())} or TOPICS),
         # An edit of the theory re-runs exact solutions alone, which do not wait for the kernels of lattices.
@@ -130,22 +120,9 @@ CHUNKS = {
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
-# What is put together from chunks, below results/, with what its job takes.
-JOINED = {
-    below(path): {
-        "kind": kind,
-        "record": SIMULATIONS[name].record,
-        # In the order of their numbers.
-        "chunks": made(kind, CHUNKS[name]),
-        # The measurements that a grid study is of.
-        "finest": made("measured", [name]) if kind == "uncertainties" else [],
-        # Measured over a million runs: 1.2 kB a run, and as much again for other sweeps.
-        "megabytes": 1000 + settings_of(name)["runs"] // 400,
-    }
-    for name in CHUNKS
-    for kind in OF_SIMULATIONS
-    for path in made(kind, [name])
-}
+# What is put together from chunks, below results/: its kind, and its simulation.
+KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
+JOINED = {below(*made(kind, [name])): (kind, name) for name in CHUNKS for kind in KINDS}
 # What each wildcard stands for; a simulation is what one job works at: one without chunks, or a chunk of another.
 ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
 VALUES = {"simulation": ONE_JOB, "joined": [*JOINED], "scene": [*SCENES]}
@@ -153,3 +130,13 @@ VALUES = {"simulation": ONE_JOB, "joined": [*JOINED], "scene": [*SCENES]}
 
 wildcard_constraints:
     **{name: "|".join(map(re.escape, values)) or "(?!)" for name, values in VALUES.items()},
+
+
+def of(key):
+    """A setting of a rule's simulation, once its wildcards are known."""
+    return lambda wildcards: settings_of(wildcards.simulation)[key]
+
+
+def of_joined(function):
+    """What a function of kind and simulation says of what is put together, once the wildcards of its rule are known."""
+    return lambda wildcards: function(*JOINED[wildcards.joined])

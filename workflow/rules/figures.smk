@@ -8,7 +8,7 @@ for study, needs in STUDY_NEEDS.items():
         input:
             **inputs_of(needs),
             # Only a study that reaches the solver waits for them.
-            kernels=KERNELS * any("/solver/" in path for path in sources(f"studies.{study}")),
+            kernels=KERNELS * any("solver" in Path(path).parts for path in sources(f"studies.{study}")),
         output:
             table=f"results/studies/{study}.csv",
         priority: 2
@@ -31,7 +31,7 @@ for study, needs in STUDY_NEEDS.items():
 
 
 # One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
-for figure, needs in (NEEDS | SWEEP_NEEDS).items():
+for figure, needs in (NEEDS | SWEEPS).items():
     category = "Figures of the paper" if figure in FIGURES else "Studies and sweeps"
 
     rule:
@@ -55,16 +55,6 @@ for figure, needs in (NEEDS | SWEEP_NEEDS).items():
             run_step(rule, wildcards, input, output, params, threads)
 
 
-# The short name of each figure of the paper.
-for figure in FIGURES:
-
-    rule:
-        name:
-            figure.partition("_")[0]
-        input:
-            made("figures", [figure]),
-
-
 rule draw_scene:
     input:
         data="results/data/{scene}.nc",
@@ -78,7 +68,7 @@ rule draw_scene:
         numbers="results/scenes/{scene}_numbers.csv",
         html="results/scenes/{scene}.html",
     params:
-        title=lambda wildcards: SCENES[wildcards.scene]["title"],
+        title=lambda wildcards: TITLES[wildcards.scene],
     message:
         "Drawing scene {wildcards.scene}"
     run:
@@ -91,17 +81,8 @@ rule animate_scene:
     output:
         gif="results/scenes/{scene}.gif",
     params:
-        title=lambda wildcards: SCENES[wildcards.scene]["title"],
+        title=lambda wildcards: TITLES[wildcards.scene],
     message:
         "Animating scene {wildcards.scene}"
     run:
         run_step(rule, wildcards, input, output, params, threads)
-
-
-rule scenes:
-    input:
-        made("scenes", SCENES),
-        expand("results/scenes/{scene}.gif", scene=SCENES),
-        "results/scenes/index.html",
-    message:
-        "Done: every scene is in results/scenes, as HTML, PNG, PDF, CSV and GIF"

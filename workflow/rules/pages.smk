@@ -6,40 +6,21 @@ from slippulse.data.provenance import source_files
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 CLAIM_STUDIES = "derivations open_choices published_figure published_scheme rate_dependence".split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
-STUDIED = sorted({*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES})
-MEASURED = sorted({*simulations_of(*NEEDS.values()), *STUDIED})
-OWN_SWEEPS = made("figures", SWEEP_NEEDS)
 RESULTS = [
     # The claims first, so that they come first in Snakemake's own report too.
     *expand("results/{name}", name=("claims.html", "claims.json", "findings.json", "explorer.html")),
-    *made("figures", NEEDS),
-    *made("data", MEASURED),
-    *made("measured", MEASURED),
-    *made("uncertainties", STUDIED),
+    *made("figures", [*NEEDS, *SWEEPS]),
+    *made("data", SIMULATIONS),
+    *made("measured", SIMULATIONS),
+    *made("uncertainties", [*CLAIM_SIMULATIONS, *OWN_SIMULATIONS, *SCENES]),
     *made("studies", CONFIG.studies or STUDY_NEEDS),
     *made("scenes", SCENES),
-    *OWN_SWEEPS,
     *expand("results/manuscript/{document}.{ending}", document=DOCUMENTS, ending=("html", "pdf")),
 ]
 EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
-WHOLE = ACCURACY.get("whole", True)
-# What a draft makes unless everything is asked for: the figures of the paper with what they are drawn from, and what
-# an overlay adds.
-FIRST = [
-    *made("figures", FIGURES),
-    *made("data", sorted(simulations_of(*(NEEDS[figure] for figure in FIGURES)))),
-    *made("measured", [name for figure in FIGURES for name in NEEDS[figure].get("measured", [])]),
-    *made("measured", OWN_SIMULATIONS),
-    *made("scenes", OWN_SCENES),
-    *OWN_SWEEPS,
-]
+# Without a name a draft makes the figures of the paper and what an overlay adds.
+DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS) + made("scenes", OWN_SCENES)
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
-TITLES = {name: scene["title"] for name, scene in SCENES.items()}
-GALLERIES = {
-    "The figures of the paper": FIGURES,
-    "Beyond the paper": [name for name in NEEDS if name not in FIGURES],
-    "User-defined sweeps": [*SWEEP_NEEDS],
-}
 
 
 rule write_claims:
@@ -58,9 +39,7 @@ rule write_claims:
         html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
     priority: 2
     params:
-        claims=config["claims"],
-        published=config["published"],
-        measure=config["measure"],
+        **{key: config[key] for key in ("claims", "published", "measure")},
         damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
     message:
@@ -121,7 +100,6 @@ rule write_scenes_page:
 
 rule write_provenance:
     input:
-        # It notes a digest of them all.
         [path.as_posix() for path in source_files(".")],
         results=RESULTS,
         captions="manuscript/captions.yaml",
@@ -142,16 +120,30 @@ rule write_index:
     input:
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
-        # All else that it shows, or leads to, comes before this.
+        # Made from all else that it shows, or leads to.
         provenance="results/provenance.json",
-        ledger=["results/claims.json", "results/findings.json"],
-        pictures=made("figures", NEEDS) + OWN_SWEEPS,
     output:
         html="results/index.html",
     params:
-        galleries={heading: names for heading, names in GALLERIES.items() if names},
+        figures=[*NEEDS, *SWEEPS],
         scenes=TITLES,
     message:
         "Writing results/index.html, the page to open"
     run:
         run_step(rule, wildcards, input, output, params, threads)
+
+
+# Names for several files.
+GATHERED = {
+    "everything": EVERYTHING,
+    "scenes": [*made("scenes", SCENES), *made("animations", SCENES), "results/scenes/index.html"],
+    # The short name of each figure of the paper.
+    **{figure.partition("_")[0]: made("figures", [figure]) for figure in FIGURES},
+}
+for name, files in GATHERED.items():
+
+    rule:
+        name:
+            name
+        input:
+            files,

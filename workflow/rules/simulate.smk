@@ -2,11 +2,6 @@
 # whose files are then put together, and stay: to measure anew, or to make a lost chunk again, needs them.
 
 
-def of(key):
-    """A setting of a rule's simulation, once its wildcards are known."""
-    return lambda wildcards: settings_of(wildcards.simulation)[key]
-
-
 # What a job that simulates may take.
 BOUNDS = {
     "runtime": lambda wildcards, attempt: attempt * of("bound")(wildcards).minutes,
@@ -17,7 +12,6 @@ BOUNDS = {
 rule compile_kernels:
     output:
         kernels="results/kernels.txt",
-    # Everything waits for it.
     priority: 3
     message:
         "Compiling the lattice kernels (once)"
@@ -65,7 +59,7 @@ rule predict:
     params:
         sweep=of("sweep"),
         topics=of("topics"),
-        share=of("share"),
+        share=lambda wildcards: of("measure")(wildcards)["share"],
         still=config["measure"]["still"],
     message:
         "Predicting {wildcards.simulation}"
@@ -95,17 +89,20 @@ rule study_grid:
 
 rule join:
     input:
-        chunks=lambda wildcards: JOINED[wildcards.joined]["chunks"],
-        finest=lambda wildcards: JOINED[wildcards.joined]["finest"],
+        chunks=of_joined(lambda kind, name: made(kind, CHUNKS[name])),
+        # The measurements that a grid study is of.
+        finest=of_joined(lambda kind, name: made("measured", [name] * (kind == "uncertainties"))),
     output:
         joined="results/{joined}",
     priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
-        mem_mb=lambda wildcards, attempt: attempt * JOINED[wildcards.joined]["megabytes"],
+        # Measured over a million runs: 1.2 kB a run, and as much again for other sweeps.
+        mem_mb=lambda wildcards, attempt: attempt
+        * (1000 + settings_of(JOINED[wildcards.joined][1])["runs"] // 400),
     params:
-        kind=lambda wildcards: JOINED[wildcards.joined]["kind"],
-        record=lambda wildcards: JOINED[wildcards.joined]["record"],
+        kind=of_joined(lambda kind, name: kind),
+        record=of_joined(lambda kind, name: SIMULATIONS[name].record),
     message:
         "Putting {wildcards.joined} together"
     run:

@@ -2,13 +2,13 @@
 
 import shlex
 import threading
-from types import SimpleNamespace
 
 from snakemake.cli import get_argument_parser
 
 from slippulse.configuration.read import format_problems
 from slippulse.data.files import write_json
-from slippulse.steps.reach import Job
+from slippulse.data.records import Tree
+from slippulse.steps.reach import jobs_of
 from slippulse.steps.targets import Plan, say_faulty
 
 CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
@@ -21,30 +21,11 @@ LOOKS = (
 OPTIONS = ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []
 OPTIONS += ["--config", *CALLED.config] if CALLED.config else []
 RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
-
-
-def jobs_of(name, rule):
-    """The jobs that a rule stands for, one for each value of its wildcard."""
-    wildcard = next((key for key in VALUES if f"{{{key}}}" in rule.output[0]), "none")
-    for value in VALUES.get(wildcard, [""]):
-        known = {wildcard: value}
-
-        def filled(entry):
-            return entry(SimpleNamespace(**known)) if callable(entry) else entry
-
-        def files(entries):
-            several = (filled(entry) if callable(entry) else [entry] for entry in entries)
-            return tuple(path.format(**known) for paths in several for path in paths)
-
-        settings = {key: filled(entry) for key, entry in rule.params.items()}
-        # A rule without another step has that of its own name.
-        yield Job(settings.pop("step", name), files(rule.input), files(rule.output), settings)
-
-
-# What may be asked for by name: rules without wildcards; `verify` compares what they make.
+# What may be asked for by name: rules without wildcards, and to `verify` what a run without a name makes.
 NAMED = {name: rule.output or rule.input for name, rule in RULES.items() if "{" not in "".join(rule.output)}
-JOBS_OF_RULES = [job for name, rule in RULES.items() if rule.output for job in jobs_of(name, rule)]
-PLAN = Plan(JOBS_OF_RULES, NAMED | {"verify": NAMED["all"]})
+NAMED |= dict.fromkeys(("all", "verify"), EVERYTHING if ACCURACY.get("whole", True) else DRAFT)
+MAKING = [(name, rule.input, rule.output, rule.params) for name, rule in RULES.items() if rule.output]
+PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
 
 
 def begin():
@@ -86,7 +67,7 @@ def end():
     renewal = ["snakemake", "--cores", str(workflow.cores), *OPTIONS, "--", "everything"]
     if "MAKELEVEL" in os.environ:
         renewal = ["make", "replicate", *given, "TARGET=everything"]
-    say_faulty(PLAN.left_behind(), f". Renew them: {shlex.join(renewal)}")
+    say_faulty(Tree("results", PLAN.origins).outdated(), f". Renew them: {shlex.join(renewal)}")
     # Timers of Snakemake, which would look for jobs again: its process would last until each is due.
     for thread in threading.enumerate():
         if isinstance(thread, threading.Timer):

@@ -9,6 +9,7 @@ import os
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,18 +24,12 @@ SETTLED = 2.0
 
 
 class Origin(NamedTuple):
-    """What a result is made by. Paths are below results/.
+    """A job: what it makes from which results, by path below results/, and by which step of `slippulse.steps`.
 
-    Attributes
-    ----------
-    record : first output of its job, after which the record is named
-    step : module of `slippulse.steps`
-    configuration : digest of the configuration behind it
-    sources : digest of the sources that make it, and of the texts that they read
-    inputs : results that it is made from
+    With digests of the configuration behind it, and of the sources and texts that the step reads.
     """
 
-    record: str
+    outputs: tuple[str, ...]
     step: str
     configuration: str
     sources: str
@@ -64,26 +59,19 @@ def file_digest(path: str | Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def write_record(origin: Origin, outputs: Mapping, used: Mapping) -> None:
-    """Note what a job has made: paths, or lists of paths, by name; and what it used."""
-    made = [
-        Path(path) for value in outputs.values() for path in ([value] if isinstance(value, str) else value)
-    ]
-    results = next(parent for parent in made[0].parents if parent.name == "results")
-    record = Record(
-        origin.step,
-        origin.configuration,
-        origin.sources,
-        {path.relative_to(results).as_posix(): file_digest(path) for path in made},
-        {name: file_digest(results / name) for name in sorted(origin.inputs)},
-        dict(used),
+def write_record(origin: Origin, used: Mapping, results: str | Path = "results") -> None:
+    """Note what a job has made, and what it used."""
+    made, taken = (
+        {name: file_digest(Path(results, name)) for name in names}
+        for names in (origin.outputs, sorted(origin.inputs))
     )
-    write_json(record._asdict(), results / record_path(origin.record))
+    record = Record(origin.step, origin.configuration, origin.sources, made, taken, dict(used))
+    write_json(record._asdict(), Path(results, record_path(origin)))
 
 
-def record_path(name: str) -> str:
-    """Where the record is, below results/, of the job whose first output has this name."""
-    return f"{FOLDER}/{name}.json"
+def record_path(origin: Origin) -> str:
+    """Where the record of a job is, below results/: named after its first output."""
+    return f"{FOLDER}/{origin.outputs[0]}.json"
 
 
 def read_record(path: str | Path) -> Record:
@@ -109,12 +97,8 @@ class Tree:
 
     def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
         self.results, self.origins = Path(results), origins
-        self._made: dict[str, list[str]] = {}
-        for name, origin in origins.items():
-            self._made.setdefault(origin.record, []).append(name)
         self._digests = Digests(self.results / FOLDER / ".digests")
-        self._records: dict[str, Record | str] = {}
-        self._outdated: dict[str, str] = {}
+        self._read, self._compared = cache(read_record), cache(self._compare)
 
     def behind(self, names: Iterable[str]) -> list[str]:
         """Some results, all that they are made from, and what else the same jobs make; the first ones last."""
@@ -124,7 +108,7 @@ class Tree:
             if name not in found and name in self.origins:
                 for source in sorted(self.origins[name].inputs):
                     visit(source)
-                found.update(dict.fromkeys(self._made[self.origins[name].record]))
+                found.update(dict.fromkeys(self.origins[name].outputs))
 
         for name in names:
             visit(name)
@@ -132,15 +116,22 @@ class Tree:
 
     def faults(self, names: Iterable[str]) -> dict[str, str]:
         """Results that are not what their record says, made by what is here now, each with the reason."""
-        found = {name: self._fault(name) for name in names}
+        found = {}
+        for name in names:
+            path, (reason, written) = self.results / name, self._compared(name)
+            if not path.is_file():
+                found[name] = MISSING
+            elif reason or self._digests.of(path) != written:
+                found[name] = reason or CHANGED
         self._digests.save()
-        return {name: reason for name, reason in found.items() if reason}
+        return found
 
-    def outdated(self, name: str) -> str:
-        """Why a result would be made anew, whatever its content; empty where it would not."""
-        if name not in self._outdated:
-            self._outdated[name] = self._compare(name)
-        return self._outdated[name]
+    def outdated(self) -> dict[str, str]:
+        """Results that are there and would be made anew, whatever their content, with the reason; the last first."""
+        reasons = {name: self._compared(name)[0] for name in [*self.origins][::-1]}
+        return {
+            name: reason for name, reason in reasons.items() if reason and (self.results / name).is_file()
+        }
 
     def to_remove(self, names: Iterable[str]) -> dict[str, str]:
         """What is in the way of making anew what is faulty of some results and of what they are made from.
@@ -148,13 +139,11 @@ class Tree:
         What a job has made goes together: a missing file is made anew only where the others are not there either.
         """
         found = self.faults(self.behind(names))
-        jobs = {self.origins[name].record for name in found}
+        parts = {part: found.get(part, PARTED) for name in found for part in self.origins[name].outputs}
         # A link to nowhere, or to something else than a file, is in the way too.
+        places = {name: self.results / name for name in parts}
         return {
-            name: found.get(name, PARTED)
-            for job in jobs
-            for name in self._made[job]
-            if os.path.lexists(self.results / name) and not (self.results / name).is_dir()
+            name: parts[name] for name in parts if os.path.lexists(places[name]) and not places[name].is_dir()
         }
 
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
@@ -166,50 +155,29 @@ class Tree:
         there = {path.as_posix() for path in paths if path.parts[0] not in BESIDE and path.name[0] != "."}
         wanted = there.union(complete)
         compared = [name for name in self.origins if name in wanted]
-        unknown = sorted(there - self.origins.keys() - {record_path(job) for job in self._made})
+        unknown = sorted(there - self.origins.keys() - {*map(record_path, self.origins.values())})
         reasons = self.faults(compared) | dict.fromkeys(unknown, "not known; no rule makes it")
         return [f"{self.results / name}: {reason}" for name, reason in reasons.items()], len(compared)
 
-    def _fault(self, name: str) -> str:
-        path = self.results / name
-        if not path.is_file():
-            return MISSING
-        if reason := self.outdated(name):
-            return reason
-        return "" if self._digests.of(path) == self._written(name) else CHANGED
-
-    def _written(self, name: str) -> str:
-        """Digest of a result that is not outdated, as its job wrote it."""
-        record = self._record(self.origins[name].record)
-        assert isinstance(record, Record)
-        return record.outputs[name]
-
-    def _record(self, job: str) -> Record | str:
-        """The record of a job, or why there is none."""
-        if job not in self._records:
-            try:
-                self._records[job] = read_record(self.results / record_path(job))
-            except FileNotFoundError:
-                self._records[job] = "no record"
-            except (OSError, ValueError):
-                self._records[job] = "its record cannot be read"
-        return self._records[job]
-
-    def _compare(self, name: str) -> str:
+    def _compare(self, name: str) -> tuple[str, str]:
+        """Why a result is outdated, and its digest as its job wrote it; one of them is empty."""
         origin = self.origins[name]
-        record = self._record(origin.record)
-        if isinstance(record, str):
-            return record
+        try:
+            record = self._read(self.results / record_path(origin))
+        except FileNotFoundError:
+            return "no record", ""
+        except (OSError, ValueError):
+            return "its record cannot be read", ""
         if record.step != origin.step or name not in record.outputs or record.inputs.keys() != origin.inputs:
-            return "made by another rule"
+            return "made by another rule", ""
         if record.configuration != origin.configuration:
-            return "made by another configuration"
+            return "made by another configuration", ""
         if record.sources != origin.sources:
-            return "made by other sources"
+            return "made by other sources", ""
         for source, digest in record.inputs.items():
-            if self.outdated(source) or self._written(source) != digest:
-                return f"older than {source}, which it is made from"
-        return ""
+            if self._compared(source) != ("", digest):
+                return f"older than {source}, which it is made from", ""
+        return "", record.outputs[name]
 
 
 class Digests:
@@ -219,10 +187,10 @@ class Digests:
     """
 
     def __init__(self, path: Path) -> None:
-        self._path, self._new = path, False
-        self._known: dict[str, list] = {}
+        self._path, self._known = path, {}
         with suppress(OSError, ValueError):
             self._known = dict(json.loads(path.read_text(encoding="utf-8")))
+        self._saved = self._known.copy()
 
     def of(self, path: Path) -> str:
         """Digest of a file."""
@@ -234,12 +202,11 @@ class Digests:
         settled = time.time() - max(status.st_mtime, status.st_ctime) > SETTLED
         digest = file_digest(path)
         if settled:
-            self._known[path.as_posix()], self._new = [*state, digest], True
+            self._known[path.as_posix()] = [*state, digest]
         return digest
 
     def save(self) -> None:
         """Remember them, where that is possible."""
-        if self._new:
+        if self._known != self._saved:
             with suppress(OSError):
                 write_text(json.dumps(self._known), self._path)
-            self._new = False

@@ -1,10 +1,8 @@
 """Jobs of the workflow: a process each, with its log, its record, and one line on failure.
 
-Loading the libraries takes longer than most jobs. So each process is forked from one that has loaded them. What is the
-project's own it loads itself, as that stands when the job starts.
+Each is forked from one that has loaded the libraries, and loads what is the project's own as that stands then.
 """
 
-import contextlib
 import errno
 import multiprocessing
 import os
@@ -14,11 +12,13 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from threading import Lock, Thread
+from typing import Any
 
 from ..data.files import CONFIGURATION
 from ..data.records import Origin, write_record
@@ -35,7 +35,7 @@ def end_with(descriptor: int) -> None:
     """End this process and its group when the other end of a pipe is closed, as its holder ends."""
 
     def wait_for_it() -> None:
-        with contextlib.suppress(OSError):
+        with suppress(OSError):
             os.read(descriptor, 1)
             os.killpg(0, signal.SIGKILL)
 
@@ -49,9 +49,7 @@ class Jobs:
         """With modules of the main program, which every process would load again."""
         # Elsewhere libraries of the system do not all survive a fork.
         self._forks = sys.platform == "linux"
-        self._processes = (
-            multiprocessing.get_context("forkserver") if self._forks else multiprocessing.get_context("spawn")
-        )
+        self._processes: Any = multiprocessing.get_context("forkserver" if self._forks else "spawn")
         self._processes.set_forkserver_preload([*program, "slippulse.steps.libraries"])
         # A process that starts looks after those that have ended: not while another thread does.
         self._turn = Lock()
@@ -81,21 +79,18 @@ class Jobs:
 def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path) -> None:
     """Run one step, a module with ``run(files, outputs, settings)``, as all that a process does.
 
-    Parameters
-    ----------
-    origin : what its outputs are made by
-    name : of the job, for messages
-    files, outputs : paths, or lists of paths, by name
-    settings : what the step takes from the configuration
-    log : file for what the job says
+    Files and outputs are paths, or lists of paths, by name; settings are what it takes from the configuration.
     """
     began = time.monotonic()
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log):
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name)})
-        seconds = time.monotonic() - began
-        write_record(origin, outputs, used(seconds))
+        seconds, used = time.monotonic() - began, resource.getrusage(resource.RUSAGE_SELF)
+        memory = used.ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
+        processor = round(used.ru_utime + used.ru_stime, 2)
+        times = {"seconds": round(seconds, 2), "processor_seconds": processor}
+        write_record(origin, times | {"memory_MB": round(memory)})
     if not sys.stderr.isatty():
         sys.stderr.write(f"  {name}: {seconds:.1f} s\n")
 
@@ -111,21 +106,12 @@ def progress_of(name: str) -> Callable[[float, int], None]:
             shown = now
             part = f"{done:.0%} of the run" if total == 1 else f"{done} of {total} runs"
             left = (now - began) * (total / done - 1.0)
-            sys.stderr.write(f"  {name}: {part}, about {left:.0f} s left\n")
-            sys.stderr.flush()
+            print(f"  {name}: {part}, about {left:.0f} s left", file=sys.stderr, flush=True)
 
     return say
 
 
-def used(seconds: float) -> dict[str, float]:
-    """What this process has used: time, time of a processor (s) and the most memory (MB)."""
-    usage = resource.getrusage(resource.RUSAGE_SELF)
-    memory = usage.ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
-    processor = round(usage.ru_utime + usage.ru_stime, 2)
-    return {"seconds": round(seconds, 2), "processor_seconds": processor, "memory_MB": round(memory)}
-
-
-@contextlib.contextmanager
+@contextmanager
 def logged(path: str | Path) -> Iterator[None]:
     """Send what a job says to its log; a failure is one line on the terminal and a traceback beside the log."""
     terminal = sys.stderr
@@ -147,13 +133,13 @@ def logged(path: str | Path) -> Iterator[None]:
         raise SystemExit(130) from None
     except Exception as error:
         # A disk that is full has no room for the log either.
-        with contextlib.suppress(OSError):
+        with suppress(OSError):
             details.write_text(traceback.format_exc(), encoding="utf-8")
         terminal.write(f"{_reason(error)} (details: {details})\n")
         raise SystemExit(1) from None
     finally:
         sys.stderr = terminal
-        with contextlib.suppress(OSError):
+        with suppress(OSError):
             log.close()
 
 

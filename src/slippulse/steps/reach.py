@@ -3,9 +3,10 @@
 import ast
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path, PurePath
+from types import SimpleNamespace
 from typing import NamedTuple
 
 from ..data.records import Origin, digest_of
@@ -20,12 +21,29 @@ IMPORT = re.compile(r"^ *from (\.+)([\w.]*) import (?:\(([^)]*)\)|(.*))", re.M)
 
 
 class Job(NamedTuple):
-    """One job of the workflow: its step, the files that it reads and writes, what it takes from the configuration."""
+    """A job: its step, the files that it reads and writes, what it takes from the configuration."""
 
     step: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
     settings: Mapping
+
+
+def jobs_of(
+    name: str, inputs: Iterable, outputs: Sequence[str], params: Mapping, values: Mapping[str, Iterable[str]]
+) -> Iterator[Job]:
+    """The jobs of a rule, one for each value of its wildcard; its inputs and params may be functions of wildcards."""
+    wildcard = next((key for key in values if f"{{{key}}}" in outputs[0]), "none")
+    for value in values.get(wildcard, [""]):
+        wildcards = SimpleNamespace(**{wildcard: value})
+
+        def files(entries: Iterable, wildcards: SimpleNamespace = wildcards) -> tuple[str, ...]:
+            several = (entry(wildcards) if callable(entry) else [entry] for entry in entries)
+            return tuple(path.format(**vars(wildcards)) for paths in several for path in paths)
+
+        settings = {key: entry(wildcards) if callable(entry) else entry for key, entry in params.items()}
+        # A rule without another step has that of its own name.
+        yield Job(settings.pop("step", name), files(inputs), files(outputs), settings)
 
 
 def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
@@ -39,10 +57,10 @@ def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
             inside = frozenset(below(path) for path in job.inputs if is_result(path))
             behind = sorted({origin(source).configuration for source in inside})
             outside = tuple(sorted(path for path in job.inputs if not is_result(path)))
-            made = [below(output) for output in job.outputs]
+            made = tuple(below(output) for output in job.outputs)
             configuration = digest_of([job.settings, *behind])
             digest = _source_digest(tuple(modules_of(job.step, job.settings)), outside)
-            found.update(dict.fromkeys(made, Origin(made[0], job.step, configuration, digest, inside)))
+            found.update(dict.fromkeys(made, Origin(made, job.step, configuration, digest, inside)))
         return found[name]
 
     for name in makers:

@@ -28,15 +28,10 @@ def selected(config: Mapping, keys: Iterable[str], own: Mapping) -> dict:
 
 
 class Plan:
-    """All jobs that there are, against the folder of results as it is.
-
-    Attributes
-    ----------
-    origins : what each result, by path below results/, is made by
-    """
+    """All jobs that there are, against the folder of results as it is."""
 
     def __init__(self, jobs: Sequence[Job], named: Mapping[str, Iterable[str]]) -> None:
-        """With the files of every rule that may be asked for by its name."""
+        """Also the files of every rule that may be asked for by its name."""
         self.jobs, self.named, self.origins = jobs, named, origins_of(jobs)
         self.tree = Tree(RESULTS, self.origins)
 
@@ -45,7 +40,8 @@ class Plan:
 
         Raises ConfigError: naming a target that there is not, and the one that was probably meant.
         """
-        known, files = [*self.named, *(f"{RESULTS}/{name}" for name in self.origins)], []
+        known = [*self.named, *(f"{RESULTS}/{name}" for name in self.origins)]
+        files: list[str] = []
         for target in targets:
             if target not in known:
                 allowed = "a rule of a single job, or a file that a rule makes"
@@ -56,7 +52,7 @@ class Plan:
     def check_places(self, *others: str) -> None:
         """Refuse something else where a result, its record or one of the other folders goes; raises ConfigError."""
         files = {RESULTS / name for name in self.origins}
-        files |= {RESULTS / record_path(origin.record) for origin in self.origins.values()}
+        files |= {RESULTS / record_path(origin) for origin in self.origins.values()}
         folders = {Path(other) for other in others}.union(*(path.parents[:-1] for path in files))
         taken = [(path, "file", "folder") for path in folders if os.path.lexists(path) and not path.is_dir()]
         taken += [(path, "folder", "file") for path in files if path.is_dir()]
@@ -101,24 +97,14 @@ class Plan:
         now, jobs = time.time(), [job for job in self.jobs if below(job.outputs[0]) in wanted]
         paths = {path for job in jobs for path in (*job.inputs, *job.outputs) if os.path.isfile(path)}
         times = {path: os.path.getmtime(path) for path in paths}
-        late = sorted(path for path in times if times[path] > now)
+        late = sorted(path for path in paths if times[path] > now)
         if late:
-            text = f"{len(late)} files have a time in the future, as {late[0]}: set to now."
-            sys.stderr.write(f"{text}\n")
-        if late or any(
-            max((times.get(path, 0.0) for path in job.inputs), default=0.0)
-            > min(times.get(path, now) for path in job.outputs)
-            for job in jobs
-        ):
+            sys.stderr.write(f"{len(late)} files have a time in the future, as {late[0]}: set to now.\n")
+        made = [(source, path) for job in jobs for source in job.inputs for path in job.outputs]
+        if late or any(times.get(source, 0.0) > times.get(path, now) for source, path in made):
             for path in {*late, *filter(is_result, paths)}:
                 with suppress(OSError):
                     os.utime(path, (now, now))
-
-    def left_behind(self) -> dict[str, str]:
-        """Results that are there and would be made anew, the last ones first, with the reason."""
-        tree = Tree(RESULTS, self.origins)
-        reasons = {name: tree.outdated(name) for name in reversed(self.origins) if (RESULTS / name).is_file()}
-        return {name: reason for name, reason in reasons.items() if reason}
 
 
 def say_faulty(reasons: Mapping[str, str], fate: str) -> None:
