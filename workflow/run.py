@@ -19,7 +19,6 @@ from pathlib import Path
 
 # How the last run was called.
 CALL = Path("results/records/.call")
-SHOW_CURSOR = "\x1b[?25h"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -80,8 +79,8 @@ def main(what: str) -> int:
         for other in SIGNALS:
             signal.signal(other, signal.SIG_IGN)
         end()
-        shown = SHOW_CURSOR if sys.stderr.isatty() else ""
-        os.write(2, f"{shown}\nStopped; the next run goes on from what is there.\n".encode())
+        cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
+        os.write(2, f"{cursor}\nStopped; the next run goes on from what is there.\n".encode())
         sys.exit(128 + number)
 
     for number in SIGNALS:

@@ -40,17 +40,18 @@ TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
-JOBS = Jobs(program=["snakemake.cli"])
+JOBS = Jobs()
 if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
     end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
 
 
 def run_step(rule, wildcards, input, output, params, threads):
-    """Run the step of a rule on plain values, in a process of its own."""
+    """Run the step of a rule in a process of its own, on plain values, for which that need not load Snakemake."""
+    plain = lambda named: {key: it if isinstance(it, str) else [*it] for key, it in named.items()}
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    name, files = [rule, *wildcards], (dict(input.items()), dict(output.items()))
-    log = f"results/logs/{'/'.join(name)}.log"
-    JOBS.run(PLAN.origins[below(output[0])], " ".join(name), *files, settings, log)
+    log = f"results/logs/{'/'.join([rule, *wildcards])}.log"
+    origin, name = PLAN.origins[below(output[0])], " ".join([rule, *wildcards])
+    JOBS.run(origin, name, plain(input), plain(output), settings, log)
 
 
 FIGURES, TOPICS = [name for name in NEEDS if name.startswith("fig")], declared("steps.predict", "TOPICS")

@@ -11,7 +11,7 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from multiprocessing.connection import wait
@@ -45,12 +45,14 @@ def end_with(descriptor: int) -> None:
 class Jobs:
     """Runs jobs, each in a process of its own; threads may share it."""
 
-    def __init__(self, program: Sequence[str] = ()) -> None:
-        """With modules of the main program, which every process would load again."""
+    def __init__(self) -> None:
+        # Else each job would load the main program again, of which it needs nothing.
+        main = sys.modules["__main__"]
+        main.__spec__, main.__file__ = None, None
         # Elsewhere libraries of the system do not all survive a fork.
         self._forks = sys.platform == "linux"
         self._processes: Any = multiprocessing.get_context("forkserver" if self._forks else "spawn")
-        self._processes.set_forkserver_preload([*program, "slippulse.steps.libraries"])
+        self._processes.set_forkserver_preload(["slippulse.steps.libraries"])
         # A process that starts looks after those that have ended: not while another thread does.
         self._turn = Lock()
 
