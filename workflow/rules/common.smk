@@ -93,8 +93,9 @@ def settings_of(job):
     simulation = SIMULATIONS[name]
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
-    exact, bound = sweep["scheme"] == "continuum", bound_of_sweep(whole, simulation.chunks)
-    cost = bound.exceeded(simulation.chunks)
+    exact, kind = sweep["scheme"] == "continuum", "scenes" if name in SCENES else "simulations"
+    # Where it is asked for: jobs elsewhere check no scenes.
+    bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
     share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
     return {
@@ -110,7 +111,7 @@ def settings_of(job):
         "study_grid": "study_grid_exact" if exact else "study_grid",
         "kernels": [] if exact else KERNELS,
         "bound": bound,
-        "cost": f"{'scenes' if name in SCENES else 'simulations'}.{name}.{cost}" if cost else "",
+        "cost": lambda: [f"{kind}.{name}.{cost}" for cost in [bound().exceeded(simulation.chunks)] if cost],
         "runs": run_count(whole),
     }
 

@@ -2,10 +2,9 @@
 # whose files are then put together, and stay: to measure anew, or to make a lost chunk again, needs them.
 
 
-# What a job that simulates may take.
 BOUNDS = {
-    "runtime": lambda wildcards, attempt: attempt * of("bound")(wildcards).minutes,
-    "mem_mb": lambda wildcards, attempt: attempt * of("bound")(wildcards).megabytes,
+    "runtime": lambda wildcards, attempt: attempt * of("bound")(wildcards)().minutes,
+    "mem_mb": lambda wildcards, attempt: attempt * of("bound")(wildcards)().megabytes,
 }
 
 
@@ -26,7 +25,7 @@ rule simulate:
         data="results/data/{simulation}.nc",
     # Before what only draws, as all that the claims wait for: the report waits for them.
     priority: 2
-    threads: lambda wildcards: of("bound")(wildcards).threads
+    threads: lambda wildcards: of("bound")(wildcards)().threads
     resources:
         **BOUNDS,
     params:

@@ -36,9 +36,9 @@ def begin():
         sys.exit(PLAN.verify(wanted))
     PLAN.check_places(".snakemake", "results/logs")
     simulated = {Path(name).parts[1].removesuffix(".nc") for name in wanted if name.startswith("data/")}
-    costs = {settings_of(name)["cost"] for name in simulated} - {""}
+    costs = [line for name in sorted(simulated) for line in settings_of(name)["cost"]()]
     if costs and not CONFIG.allow_large:
-        raise ConfigError(format_problems(sorted(costs)))
+        raise ConfigError(format_problems(costs))
     if any(getattr(CALLED, option) for option in LOOKS.split()):
         return look(PLAN.tree.to_remove(wanted))
     held = PLAN.begin(wanted, Path(".snakemake"))
