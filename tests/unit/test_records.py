@@ -11,7 +11,9 @@ from slippulse.data import records
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times
 from slippulse.data.records import Digests, Tree, digest_of, read_record, read_records, write_record
-from slippulse.steps.reach import Job, origins_of
+from slippulse.model.checks import ConfigError
+from slippulse.steps.reach import Job, jobs_of, origins_of
+from slippulse.steps.targets import Plan
 
 DATA, TABLE, PAGE, OTHER = "data/a.nc", "measurements/a.csv", "index.html", "scenes/other.html"
 JOBS = [
@@ -179,3 +181,58 @@ def test_a_file_that_was_just_written_is_read_again(tmp_path):
 
 def test_the_digest_does_not_depend_on_the_order_of_keys():
     assert digest_of({"a": 1, "b": [2]}) == digest_of({"b": [2], "a": 1}) != digest_of({"a": 1, "b": [3]})
+
+
+@pytest.fixture
+def plan(results, monkeypatch) -> Plan:
+    """In the folder of the project."""
+    monkeypatch.chdir(results.parent)
+    return Plan(JOBS, {"all": [f"results/{PAGE}"], "everything": [f"results/{PAGE}", f"results/{OTHER}"]})
+
+
+def test_a_target_is_known_or_guessed(plan):
+    assert plan.wanted(["all"]) == [DATA, TABLE, PAGE] and plan.wanted([f"results/{OTHER}"]) == [OTHER]
+    with pytest.raises(ConfigError, match=r"target: 'al' \(did you mean 'all'\?\); allowed: a rule"):
+        plan.wanted(["al"])
+
+
+def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
+    (results / TABLE).write_text("changed")
+    os.utime(results / DATA, (2e9, 2e9))
+    held = plan.begin(plan.wanted(["all"]), results.parent / "locks")
+    assert not (results / TABLE).exists() and (results / PAGE).exists()
+    assert (results / DATA).stat().st_mtime <= (results / PAGE).stat().st_mtime < 2e9
+    said = capsys.readouterr().err
+    assert (
+        f"1 results are not as made by what is here now, as results/{TABLE}: not what its job wrote; removed"
+        in said
+    )
+    assert f"1 files have a time in the future, as results/{DATA}" in said
+    with pytest.raises(ConfigError, match="Another run is at work"):
+        plan.begin([], results.parent / "locks")
+    held.close()
+
+
+def test_verification_compares_what_is_asked_for(plan, results, capsys):
+    (results / OTHER).unlink()
+    assert plan.verify(plan.wanted(["all"])) == 0
+    assert "3 files are as made" in (said := capsys.readouterr().out) and "Not looked at: 1 files" in said
+    assert (
+        plan.verify(plan.wanted(["everything"])) == 1
+        and capsys.readouterr().out == f"results/{OTHER}: missing\n"
+    )
+
+
+def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
+    of = {"level": lambda wildcards: wildcards.name * 2, "step": "study"}
+    found = jobs_of(
+        "run",
+        ["texts", lambda wildcards: [f"results/{wildcards.name}"]],
+        ["results/{name}.csv"],
+        of,
+        {"name": "ab"},
+    )
+    assert [*found] == [
+        Job("study", ("texts", f"results/{name}"), (f"results/{name}.csv",), {"level": name * 2})
+        for name in "ab"
+    ]

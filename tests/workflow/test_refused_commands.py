@@ -69,6 +69,14 @@ def test_the_command_refuses_before_any_job(folder, case):
     assert not (folder / "results").exists() and not (folder / "written").exists()
 
 
+@pytest.mark.workflow
+def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(folder, project):
+    (folder / "profiles").symlink_to(project / "profiles")
+    text = said([sys.executable, "-m", "snakemake", "--config", "x"], folder, 1)
+    assert "name=value pairs" in text and "Traceback" not in text
+    assert len([line for line in text.splitlines() if not line.startswith("Using ")]) == 1
+
+
 @pytest.mark.slow
 @pytest.mark.workflow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
