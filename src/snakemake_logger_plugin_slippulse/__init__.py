@@ -9,7 +9,6 @@ class LogHandler(Rich):
     """Leaves out that a failed run is complete, and tracebacks of the parser of --config."""
 
     def emit(self, record):
-        """Show one message."""
         message = record.getMessage()
         if getattr(record, "done", None) and not sys.stderr.isatty():
             print(f"{record.done} of {record.total}", file=sys.stderr)

@@ -158,9 +158,5 @@ class _Both:
     def __init__(self, *streams) -> None:
         self.streams = streams
 
-    def write(self, text: str) -> int:
-        return max(stream.write(text) for stream in self.streams)
-
-    def flush(self) -> None:
-        for stream in self.streams:
-            stream.flush()
+    def __getattr__(self, name: str) -> Callable:
+        return lambda *given: [getattr(stream, name)(*given) for stream in self.streams][-1]

@@ -64,18 +64,15 @@ class Plan:
         problems, count = self.tree.problems(complete)
         print("\n".join(problems) or f"{count} files are as made by what is here now")
         whole = [name for name in self.wanted(["everything"]) if not (RESULTS / name).exists()]
-        if skipped := [name for name in whole if name not in complete]:
-            print(
-                f"Not looked at: {len(skipped)} files that TARGET=everything makes besides, as {skipped[0]}"
-            )
+        if left := [name for name in whole if name not in complete]:
+            print(f"Not looked at: {len(left)} files that TARGET=everything makes besides, as {left[0]}")
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
         """Remove what is not as its record says, of some results and of what they are made from.
 
-        Other locks, below a folder, are left by a run that was killed. Returns what holds the lock of this one.
-
-        Raises ConfigError: where another run is at work.
+        Other locks, below a folder, are left by a run that was killed. Returns what holds that of this run; raises
+        ConfigError where another one is at work.
         """
         held = take(locks / "run.lock")
         if held is None:
