@@ -89,7 +89,6 @@ rule study_grid:
 rule join:
     input:
         chunks=of_joined(lambda kind, name: made(kind, CHUNKS[name])),
-        # The measurements that a grid study is of.
         finest=of_joined(lambda kind, name: made("measured", [name] * (kind == "uncertainties"))),
     output:
         joined="results/{joined}",

@@ -64,7 +64,8 @@ def look(faulty):
 def end():
     """One line on results that this run has left behind, with the command that renews them."""
     given = [f"{name}={os.environ[name]}" for name in ("PRESET", "OVERLAY", "ALLOW_LARGE") if os.getenv(name)]
-    renewal = ["snakemake", "--cores", str(workflow.cores), *OPTIONS, "--", "everything"]
+    how = ["--profile", *CALLED.profile] if CALLED.profile else ["--cores", str(CALLED.cores or 1)]
+    renewal = ["snakemake", *how, *OPTIONS, "--", "everything"]
     if "MAKELEVEL" in os.environ:
         renewal = ["make", "replicate", *given, "TARGET=everything"]
     say_faulty(Tree("results", PLAN.origins).outdated(), f". Renew them: {shlex.join(renewal)}")
