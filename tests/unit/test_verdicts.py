@@ -89,10 +89,6 @@ def at(release: str, ratio: float) -> dict:
     return {"release": release, "damping_ratio": ratio, "solution": "exact"}
 
 
-def over(claims: list) -> dict:
-    return over_choices(claims, lambda claim: claim)
-
-
 # Measured of every run.
 OF_RUNS = ("regime", "min_velocity", "friction_ratio_needed", "min_stuck_stress")
 # Studies that simulate lattices themselves.
@@ -105,7 +101,7 @@ LENGTHS = [
 
 
 def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_most():
-    claim = over(LENGTHS)
+    claim = over_choices(LENGTHS)
     assert (claim["verdict"], claim["choice"]) == (DEPENDS, "damping_ratio")
     assert (claim["holds_at"], claim["combinations"]) == (2, 4)
     assert claim["why"].startswith("It holds at 2 of 4 combinations.")
@@ -119,9 +115,9 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
 
 
 def test_one_verdict_at_every_choice_is_the_verdict():
-    assert over(LENGTHS[1::2])["verdict"] == "reproduced" and "why" not in over(LENGTHS[1::2])
-    assert over(LENGTHS[0::2])["verdict"] == "not reproduced"
-    unsure = over([(at("total", 0.0), judged(0.19, 0.05)), *LENGTHS[3:]])
+    assert over_choices(LENGTHS[1::2])["verdict"] == "reproduced" and "why" not in over_choices(LENGTHS[1::2])
+    assert over_choices(LENGTHS[0::2])["verdict"] == "not reproduced"
+    unsure = over_choices([(at("total", 0.0), judged(0.19, 0.05)), *LENGTHS[3:]])
     assert unsure["verdict"] == "reproduced with caveat" and "0" in unsure["why"]
     assert rules.flips(judged(0.1)["at"], 0.0) == []
 

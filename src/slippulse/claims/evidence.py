@@ -38,7 +38,9 @@ def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
     """An expression over columns, of each run; true of every run if it is empty."""
     if expression in table:  # Sparing most of the time.
         return table[expression].to_numpy()
-    found = table.eval(expression, engine="python") if expression else True
+    # Every column costs time, whether it is named or not.
+    named = table[[name for name in table if name in expression]]
+    found = named.eval(expression, engine="python") if expression else True
     return np.broadcast_to(np.asarray(found), len(table))
 
 
@@ -47,11 +49,10 @@ def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
     return pd.Series(evaluated(table, measured) / evaluated(table, predicted), table.index, float)
 
 
-def exponent(table: pd.DataFrame) -> float:
-    """Exponent of column measured against predicted: slope of a straight line in logarithmic axes."""
-    logs = np.log(table[["predicted", "measured"]].astype(float))
-    x, y = logs[np.isfinite(logs).all(axis=1)].to_numpy().T
-    return straight_line(x, y)[0] if len(x) > 2 else NAN
+def exponent(logs: np.ndarray) -> float:
+    """Slope of a straight line through the logarithms of two quantities, [2, run]; NaN with fewer than three runs."""
+    x, y = logs[:, np.isfinite(logs).all(axis=0)]
+    return straight_line(x, y)[0] if x.size > 2 else NAN
 
 
 def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
@@ -127,9 +128,8 @@ class Evidence:
             **({} if run is None else {name: float(each[run]) for name, each in numbers.items()}),
         }
 
-    def studied(self, tables: Sequence[pd.DataFrame], number: Callable[[pd.DataFrame], float]) -> GridStudy:
-        """Grid study of a number that is computed from a table, as a median is; of one table, no uncertainty."""
-        values = [float(number(table)) for table in tables]
+    def studied(self, tables: Sequence[pd.DataFrame], values: Sequence[float]) -> GridStudy:
+        """Grid study of a number that was computed from each table, as a median is; of one table, no uncertainty."""
         if len(tables) == 1:
             return GridStudy(values[0], values[0], NAN, 0.0)
         return grid_study(values, [float(table["factor"].dropna().iloc[0]) for table in tables[1:]])
@@ -142,29 +142,21 @@ class Evidence:
         Tables are the same runs on the finest lattice, the middle and the coarsest, or one of exact values; of the
         columns ``levels`` one level at a time is left out, for the uncertainty of the exponent.
         """
-        tables = [
-            table.reindex(columns=[*levels, "factor"]).assign(
-                measured=evaluated(table, measured),
-                predicted=evaluated(table, predicted),
-                ratio=lambda t: t["measured"].astype(float) / t["predicted"],
-                off=lambda t: (t["ratio"] - 1.0).abs(),
-            )
-            for table in tables
-        ]
-        finest = tables[0]
-        each = finest["off"][np.isfinite(finest["off"])]
-        claim: Claim = {"runs": each.size, "left_out": len(finest) - each.size}
+        numbers = [np.array([evaluated(t, name) for name in (predicted, measured)], float) for t in tables]
+        ratio = [pd.Series(found / expected) for expected, found in numbers]
+        off = [(each - 1.0).abs() for each in ratio]
+        each = off[0][np.isfinite(off[0])]
+        claim: Claim = {"runs": each.size, "left_out": len(off[0]) - each.size}
         if not each.size:
             return claim | {"verdict": "not testable"}
-        median = self.studied(tables, lambda t: t["off"].median())
-        ratio = self.studied(tables, lambda t: t["ratio"].median())
+        median, shown = (self.studied(tables, [each.median() for each in of]) for of in (off, ratio))
         middle = median.value, median.uncertainty
         slope, allowed = None, self.entries[id].get("tolerance_exponent")
         if allowed is not None:
-            found = self.studied(tables, exponent)
-            without = [
-                exponent(finest[finest[name] != level]) for name in levels for level in finest[name].unique()
-            ]
+            logs = [np.log(each) for each in numbers]
+            found = self.studied(tables, [exponent(each) for each in logs])
+            columns = [tables[0][name].to_numpy() for name in levels]
+            without = [exponent(logs[0][:, of != level]) for of in columns for level in np.unique(of)]
             moved = max((abs(other - found.value) for other in without), default=0.0)
             slope = found.value, max(found.uncertainty, moved)
             claim |= {"exponent": slope[0], "exponent_uncertainty": slope[1]}
@@ -173,8 +165,8 @@ class Evidence:
             return rules.approximate(middle, tolerance, slope, float(allowed or 0.0))
 
         return claim | {
-            "verdict": at(self.tolerance(id)), "at": at, "predicted": 1.0, "measured": ratio.value,
-            "uncertainty": ratio.uncertainty, "deviation": median.value,
+            "verdict": at(self.tolerance(id)), "at": at, "predicted": 1.0, "measured": shown.value,
+            "uncertainty": shown.uncertainty, "deviation": median.value,
             "ninety": float(each.quantile(0.9)), "largest": float(each.max()),
         }  # fmt: skip
 

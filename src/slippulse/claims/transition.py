@@ -4,6 +4,7 @@ The choices are those of manuscript/open_choices.yaml. A function is named as it
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from itertools import permutations
 from typing import Any
 
@@ -49,14 +50,11 @@ SIMULATED = {
 Tables = list[tuple[Chosen, list[pd.DataFrame]]]
 
 
-def over_choices(
-    runs: Iterable[tuple[Chosen, Any]], judge: Callable[[Any], Claim], shown: Claim | None = None
-) -> Claim:
-    """One claim with the verdict over all combinations of choices, each given with what the claim is judged by.
+def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = None) -> Claim:
+    """One claim with the verdict over all combinations of choices, each given with the claim judged at it.
 
     ``shown``: whose numbers stand with it; without, those of the first combination.
     """
-    pairs = [(choice, judge(tables)) for choice, tables in runs]
     claims = [claim for _, claim in pairs]
     rows: list[dict[str, Any]] = [
         choice
@@ -137,6 +135,8 @@ def solved(evidence: Evidence, boundary: str) -> Tables:
     """The exact solution at each combination; ours first, by the damping of figure 5."""
     names = ["release", "damping_ratio", *(["nucleation", "fraction"] if boundary == "stress" else [])]
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
+    # Under a stress boundary the estimate of the time is the whole way.
+    table = table.assign(covered=table["fraction"] * table["paper_transition_time"])
     found: Tables = [
         (dict(zip(names, values, strict=True)) | {"solution": "exact"}, [rows])
         for values, rows in table.groupby(names)
@@ -145,6 +145,7 @@ def solved(evidence: Evidence, boundary: str) -> Tables:
     return sorted(found, key=lambda pair: any(pair[0].get(name, ours[name]) != ours[name] for name in ours))
 
 
+@cache
 def arrests(evidence: Evidence) -> Tables:
     """When the left front has covered fractions of |x_minus| by the exact solution, and its last release on lattices.
 
@@ -152,7 +153,7 @@ def arrests(evidence: Evidence) -> Tables:
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
     return [
-        (choice, [rows.rename(columns=SOLVED).eval("covered = fraction * distance") for rows in tables])
+        (choice, [rows.rename(columns=SOLVED) for rows in tables])
         for choice, tables in solved(evidence, "stress")
     ] + [
         (choice | last, [rows.rename(columns=SIMULATED) for rows in tables])
@@ -160,7 +161,12 @@ def arrests(evidence: Evidence) -> Tables:
     ]
 
 
-def at_ours(tables: Tables) -> Tables:
+def judged(tables: Tables, judge: Callable[[list[pd.DataFrame]], Claim]) -> list[tuple[Chosen, Claim]]:
+    """Each combination with its claim."""
+    return [(choice, judge(found)) for choice, found in tables]
+
+
+def at_ours(tables: Sequence[tuple[Chosen, Any]]) -> list[tuple[Chosen, Any]]:
     """Those of our own release rule and damping, by the exact solution and on lattices."""
     ours = {name: tables[0][0][name] for name in ("release", "damping_ratio", "nucleation")}
     return [pair for pair in tables if ours.items() <= pair[0].items()]
@@ -183,17 +189,17 @@ def under_displacement(evidence: Evidence, id: str) -> Claim:
         return evidence.approximate(id, tables, quantity, f"paper_{quantity}", "left", "gamma")
 
     tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(tables, judge) | evidence.compared("scaling_displacement", quantity)
+    return over_choices(judged(tables, judge)) | evidence.compared("scaling_displacement", quantity)
 
 
 def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim]) -> Claim:
     """A claim judged at each combination; beside its numbers the medians at each fraction, the rest being ours."""
-    tables = arrests(evidence)
+    pairs = judged(arrests(evidence), judge)
     further = {
-        f"median ratio: at {named(choice['fraction'])}": judge(found)["measured"]
-        for choice, found in sorted(at_ours(tables), key=lambda pair: named(pair[0]["fraction"]))
+        f"median ratio: at {named(choice['fraction'])}": claim["measured"]
+        for choice, claim in sorted(at_ours(pairs), key=lambda pair: named(pair[0]["fraction"]))
     }
-    return over_choices(tables, judge) | {"further": further}
+    return over_choices(pairs) | {"further": further}
 
 
 def under_stress(evidence: Evidence, id: str) -> Claim:
@@ -234,7 +240,7 @@ def T_trans_stress_underestimate(evidence: Evidence, id: str) -> Claim:
         longer = [table["time"] > table["distance"] for table in tables[:2]]
         return evidence.qualitative(agreeing(longer[0], longer[-1]))
 
-    return over_choices(arrests(evidence), judge)
+    return over_choices(judged(arrests(evidence), judge))
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> Claim:
@@ -244,7 +250,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> Claim:
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
         claim = evidence.approximate(id, tables, *what, "left", "width")
-        gap = evidence.studied(tables, lambda t: (t[what[1]] - t[what[0]]).abs().median())
+        gap = evidence.studied(tables, [(t[what[1]] - t[what[0]]).abs().median() for t in tables])
         far = rules.within(gap.value, gap.uncertainty, GAP)
         further = {"median gap in H, over all sweeps": gap.value}
         return claim | {"verdict": rules.worst([claim["verdict"], far]), "further": further}
@@ -258,7 +264,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> Claim:
     ]
     shown, ratio = judge(whole), ratios(whole[0], *what)
     shown["further"] |= {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
-    return over_choices([(chosen(tables, solution="lattice"), tables) for tables in each], judge, shown)
+    return over_choices([(chosen(tables, solution="lattice"), judge(tables)) for tables in each], shown)
 
 
 def transition_diverges(evidence: Evidence, id: str) -> Claim:
@@ -295,7 +301,7 @@ def rises(evidence: Evidence, table: pd.DataFrame, quantity: str) -> Claim:
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
     """The transition gets longer with the pre-stress."""
     tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(tables, lambda found: rises(evidence, found[0], "transition_length"))
+    return over_choices(judged(tables, lambda found: rises(evidence, found[0], "transition_length")))
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:
