@@ -26,8 +26,12 @@ def roots_between(function: Callable, lower, upper, at_lower, at_upper, xtol: fl
 
     function(x, which) has the values at x of those numbered by which; all are flat arrays.
 
+    Raises ValueError: if the signs at both ends of one are equal.
+
     Source: Chandrupatla's method, which is Brent's without branches; begun by a secant.
     """
+    if np.any(at_lower * at_upper > 0.0):
+        raise ValueError("lower, upper: values of equal signs; allowed: values of different signs")
     x1, x2, f1, f2 = lower, upper, at_lower, at_upper
     out, alive, part = np.array(upper), np.arange(upper.size), at_lower / (at_lower - at_upper)
     while alive.size:

@@ -1,14 +1,13 @@
 """Exact transitions at every admissible combination of what the paper leaves open, over the grids of figure 5."""
 
 from collections.abc import Iterator, Mapping
-from functools import partial
 
 import numpy as np
 import pandas as pd
-from scipy.optimize import brentq
 
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
+from ..model.roots import roots_between
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, slip_velocity
 from ..theory.front_law import front_speed
@@ -19,8 +18,9 @@ NEEDS = {
     "sweeps": ["scaling_displacement", "scaling_stress"],
 }
 
-# The first stick, over pi/sqrt(gamma), lies between these; beyond this number of widths a Gaussian is 0 to rounding.
-STICK, FAR = np.array([0.3, 1.7]), 12.0
+# The first stick, over pi/sqrt(gamma), lies between these; beyond this number of widths a Gaussian is 0 to rounding;
+# the error of a time.
+STICK, FAR, TIME = np.array([0.3, 1.7]), 12.0, 1e-12
 # Nodes of the time that a front takes across a tent.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
@@ -51,13 +51,17 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
 def displacement(grid: pd.DataFrame, ratio: float, release: str) -> Iterator[dict]:
     """The first stick of symmetric scenes, at x = 0, by one pair of fronts for every gamma."""
     for (left, width), rows in grid.groupby(["left", "width"]):
-        gammas, speed = rows["gamma"], float(front_speed(left, ratio, release))
+        gammas, speed = rows["gamma"].to_numpy(), float(front_speed(left, ratio, release))
+        first, last = STICK[:, None] * np.pi / np.sqrt(gammas)
         # The past of (0, t) begins at x + T(x) = t, so x < t.
-        reach = max(float(STICK[1] * np.pi / np.sqrt(gammas.min())), 2.0 * FAR * width)
+        reach = max(float(last.max()), 2.0 * FAR * width)
         fronts = Fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
-        for gamma in gammas:
-            bracket = STICK * np.pi / np.sqrt(gamma)
-            time = brentq(partial(slip_velocity, fronts, gamma, 0.0), *bracket, rtol=1e-10)
+
+        def velocity(time: np.ndarray, which=slice(None), fronts=fronts, gammas=gammas) -> np.ndarray:
+            return slip_velocity(fronts, gammas[which], 0.0, time)
+
+        times = roots_between(velocity, first, last, velocity(first), velocity(last), xtol=TIME)
+        for gamma, time in zip(gammas.tolist(), times.tolist(), strict=True):
             # How far the right front is then; uniform beyond the Gaussian.
             late = time - float(fronts.arrival(FAR * width))
             reached = FAR * width + speed * late if late > 0.0 else fronts.reached(time, 1.0)

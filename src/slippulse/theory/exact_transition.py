@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_domains, check_kind, check_number
+from ..model.checks import as_numbers, check_choice, check_domains, check_kind, check_number, of_one_shape
 from ..model.prestress import Prestress
 from .curve import Curve, seen
 from .front_law import front_speed
@@ -65,31 +65,33 @@ class Fronts:
         return abs(self.curve.front_at(time, 0.0, sign))
 
 
-def slip_velocity(fronts: Fronts, gamma: float, y: float, time: float) -> float:
-    """du/dt at one point behind the fronts and before anything sticks.
+def slip_velocity(fronts: Fronts, gamma, y, time):
+    """du/dt at points behind the fronts and before anything sticks.
 
     Parameters
     ----------
     fronts : the fronts of the scene
     gamma : elasticity ratio, >= 0, whose waves the panels of the fronts must resolve; 0 under a stress boundary
-    y, time : the point, finite; 0 where no front has been
+    y, time : the points, finite; 0 where no front has been
 
-    Raises ValueError: outside these ranges, or if the point's past leaves the part that outruns the waves.
+    Returns a float, or an array where gamma, y and time are arrays that broadcast.
+
+    Raises ValueError: outside these ranges, or if a point's past leaves the part that outruns the waves.
     Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
-    check_number("gamma", gamma, at_least=0.0)
-    check_number("y", y)
-    check_number("time", time)
-    if not float(fronts.curve.arrival(y)) < time:
-        return 0.0
-    past = Past(fronts.curve, float(gamma), np.array([float(y)]), np.array([float(time)]))
-    if not (past.left.known[0] and past.right.known[0]):
+    stiffness, y, time = of_one_shape(
+        gamma=as_numbers("gamma", gamma, at_least=0.0), y=as_numbers("y", y), time=as_numbers("time", time)
+    )
+    released = fronts.curve.arrival(y) < time
+    past = Past(fronts.curve, stiffness[released], y[released], time[released])
+    if not np.all(past.left.known & past.right.known):
         raise ValueError(f"time: {time!r}; allowed: earlier, its past leaves the part that outruns the waves")
-    velocity = float(past.slip_velocity()[0])
-    if not np.isfinite(velocity):
+    out = np.zeros(released.shape)
+    out[released] = past.slip_velocity()
+    if not np.isfinite(out).all():
         raise ValueError(f"gamma: {gamma!r}; allowed: numbers whose waves the panels of the fronts resolve")
-    return velocity
+    return out if out.ndim else float(out)
 
 
 class ExactTransition(NamedTuple):

@@ -79,9 +79,11 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
 
 
 class Past:
-    """The domains of dependence of points (y, time), flat arrays, behind a curve."""
+    """The domains of dependence of points (y, time), flat arrays as gamma may be for du/dt, behind a curve."""
 
-    def __init__(self, curve: Curve, gamma: float, y: np.ndarray, time: np.ndarray, alpha: float = 0.0):
+    def __init__(
+        self, curve: Curve, gamma: float | np.ndarray, y: np.ndarray, time: np.ndarray, alpha: float = 0.0
+    ):
         self.curve, self.alpha, self.y = curve, alpha, y
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
@@ -170,7 +172,7 @@ class Past:
     def _along(self, integrand: Callable, *count: int) -> np.ndarray:
         """Integrals of an integrand (or a count), per unit of the panels' parameter, over each domain."""
         curve = self.curve
-        out = np.empty((*count, self.xi.size))
+        out, stiffness = np.empty((*count, self.xi.size)), np.broadcast_to(self.stiffness, self.xi.shape)
         # Points of about the same panels together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, self.xi.size, CHUNK):
@@ -181,11 +183,11 @@ class Past:
             panels = slice(first, last)
             behind = self.xi[part, None] - curve.early[panels].ravel()
             ahead = self.eta[part, None] - curve.late[panels].ravel()
-            z = self.stiffness * behind * ahead
+            z = stiffness[part, None] * behind * ahead
             rows, here = np.arange(low.size), np.arange(last - first)
             low, high = low - first, high - first
             cut = z.reshape(low.size, -1, COUNT)[np.stack([rows, rows]), np.stack([low, high])]
-            values = integrand(behind, ahead, kernel_of(self.stiffness, z, cut), panels)
+            values = integrand(behind, ahead, kernel_of(stiffness[0], z, cut), panels)
             if self.alpha:
                 values = values * decay(self.alpha, behind + ahead)
             boxes = values.reshape(*count, low.size, -1, COUNT)
