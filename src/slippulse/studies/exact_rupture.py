@@ -49,7 +49,14 @@ def table(data: Mapping[str, xr.Dataset], tables: Mapping, settings: Mapping) ->
             )
         if name == NEEDS["data"][0]:
             rows += _map(shown, rupture)
-        rows += [_differences(run, rupture).assign(role="difference", dx=run.attrs["dx"]) for run in runs]
+        stops = rupture.front_ends[0][0].reason == "stops" or rupture.gamma == 0.0
+        left, right = _ends(rupture)
+        x = np.linspace(left * FRACTIONS[0 if stops else 1], right * FRACTIONS[1], POSITIONS)
+        known = _exact(rupture, x)
+        known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
+        rows += [
+            _differences(run, rupture, x, known).assign(role="difference", dx=run.attrs["dx"]) for run in runs
+        ]
         parts.append(pd.concat(rows).assign(scene=name))
     return pd.concat(parts, ignore_index=True)
 
@@ -79,13 +86,11 @@ def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     return parts
 
 
-def _differences(run: xr.Dataset, rupture: Rupture) -> pd.DataFrame:
-    """How far a run is from the exact solution of its scene; a quantity that the scene does not have is left out."""
-    stops = rupture.front_ends[0][0].reason == "stops" or rupture.gamma == 0.0
-    left, right = _ends(rupture)
-    x = np.linspace(left * FRACTIONS[0 if stops else 1], right * FRACTIONS[1], POSITIONS)
-    known = _exact(rupture, x)
-    known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
+def _differences(
+    run: xr.Dataset, rupture: Rupture, x: np.ndarray, exact: dict[str, np.ndarray]
+) -> pd.DataFrame:
+    """How far a run is from the exact solution of its scene, known at some positions; a quantity that the scene does
+    not have is left out."""
     found = {name: np.interp(x, run["x"].values, run[of].values) for name, of in EDGES.items()}
     # Slip velocity at the sampled points that slide, away from both edges.
     inside = np.flatnonzero(
@@ -95,7 +100,7 @@ def _differences(run: xr.Dataset, rupture: Rupture) -> pd.DataFrame:
     release, stick = rupture.release_time(x), np.nan_to_num(rupture.stick_time(x), nan=np.inf)
     row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
     found["velocity"] = run["sample_velocity"].values[row, inside[column]]
-    known["velocity"] = rupture.slip_velocity(x[column], times[row])
+    known = exact | {"velocity": rupture.slip_velocity(x[column], times[row])}
     rows = []
     for quantity in found:
         both = np.isfinite(found[quantity]) & np.isfinite(known[quantity])

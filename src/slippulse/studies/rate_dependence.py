@@ -79,20 +79,18 @@ def _lattice(level: float, speed: float, fraction: float) -> dict | None:
     duration = SHORTEST + MEMORIES / (speed - 1.0)
     of = ("displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx)
     run = simulate(Scene(*of, order=ORDER, max_step=MAX_STEP, rate_strengthening=alpha))
-    run = run.sel(x=slice(0.5 * dx, None))
+    right = run["x"].values > 0.5 * dx
+    names = ("x", "stick_time", "release_time", "slip_velocity", "slip")
+    x, stick, release, velocity, slip = (run[name].values[right] for name in names)
     (start, end), (earlier_start, earlier_end) = (
         # The outermost blocks that have stuck and that have been released.
-        [
-            float(run["x"].where(run[name] <= time).max().fillna(0.0))
-            for name in ("stick_time", "release_time")
-        ]
+        [float(x[times <= time].max(initial=0.0)) for times in (stick, release)]
         for time in (duration, 0.5 * duration)
     )
-    velocity = run["slip_velocity"].values
     # From the front backwards, the last that slides.
     slowest = velocity[velocity > 0.0][0] / velocity.max()
     pulse = end - start < GROWTH * (earlier_end - earlier_start) and slowest > QUIET
-    found = {"pulse_width": end - start, "pulse_slip": float(run["slip"].sel(x=start, method="nearest"))}
+    found = {"pulse_width": end - start, "pulse_slip": float(slip[np.argmin(np.abs(x - start))])}
     return {
         "level": level, "rate_strengthening": alpha, "over_critical": fraction, "dx": dx,
         "regime": "pulse" if pulse else "crack", "run_flags": run.attrs["run_flags"], **(found if pulse else {}),

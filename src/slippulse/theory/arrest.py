@@ -86,7 +86,8 @@ class ArrestingCrack:
         # Denser towards x_minus, which takes for ever.
         share = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
         slow = self.zero + (self.balance_position - self.zero) * share
-        slow_delay = np.array([x - self.time_at(x) for x in slow])
+        entered = np.array([self.entry_for(x) for x in slow])
+        slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)
         positions = np.concatenate([entries, slow])
         velocity = [0.5 * self.prestress.integral(x, 4.0 * self.far) for x in positions]
         return np.concatenate([delay, slow_delay]), np.array(velocity)
