@@ -16,7 +16,7 @@ def forces(medium, motion, sliding, history, t):
     """Fill w[2] with the force on each block, and release those at the threshold. Returns how many slide."""
     slip, velocity, force, tau = motion.w[0], motion.w[1], motion.w[2], motion.tau
     per_dx2, damping, tally = medium.per_dx2, medium.damping, history.tally
-    moving = 0
+    moving, lowest = 0, tally.min_stuck_stress
     for i in range(1, tau.shape[0] - 1):
         stress = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - medium.leaf * slip[i] + tau[i]
         drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
@@ -24,11 +24,12 @@ def forces(medium, motion, sliding, history, t):
         if not sliding[i]:
             if not medium.total:
                 drag = 0.0
-            tally.min_stuck_stress = min(tally.min_stuck_stress, stress + drag)
+            lowest = min(lowest, stress + drag)
             if stress + drag >= 1.0:
                 sliding[i] = True
                 note_release(history, i, t)
         moving += sliding[i]
+    tally.min_stuck_stress = lowest
     return moving
 
 
