@@ -87,7 +87,7 @@ def module_file(name: str) -> str:
 
 def is_lazy(name: str) -> bool:
     """Whether a package loads what it offers when that is used."""
-    return "lazy_names(" in (PROJECT / module_file(name)).read_text(encoding="utf-8")
+    return "def __getattr__(" in (PROJECT / module_file(name)).read_text(encoding="utf-8")
 
 
 @cache

@@ -1,25 +1,22 @@
 """slippulse: the onset of slip pulses in frictional rupture, replicated.
 
     import slippulse as sp
-    scene = sp.Scene(boundary="displacement", gamma=0.65, beta=1e-3, dx=0.01, duration=15.0,
-                     prestress=sp.Prestress(left=0.6, right=0.6))
+    scene = sp.Scene(boundary="displacement", gamma=0.65, dx=0.01, duration=15.0, prestress=sp.Prestress(0.6, 0.6))
     run = sp.simulate(scene)                                # xarray.Dataset over x
-    sp.plot(run)                                            # its fronts and slip, as a figure
     sp.theory.front_speed(0.6, damping_ratio=0.1)           # exact
 
-Importing is light: the compiled kernels and xarray are loaded when the first scene is simulated.
+A module is loaded when a name of it is first used, so that importing this is light.
 """
 
-from .model.lazy import lazy_names
+from importlib import import_module
 
 __version__ = "0.1.0"
-
 _HOMES = {
     "Prestress": "model.prestress",
     "Samples": "model.samples",
     "Scene": "model.scene",
     "UnresolvedRun": "simulation.simulate",
-    "UnstableRun": "solver.lattice",
+    "UnstableRun": "simulation.simulate",
     "plot": "figures.run",
     "point": "data.points",
     "run_sweep": "simulation.simulate",
@@ -27,5 +24,12 @@ _HOMES = {
     "simulate": "simulation.simulate",
     "theory": "theory",
 }
-__all__ = list(_HOMES)
-__getattr__, __dir__ = lazy_names(__name__, _HOMES)
+__all__ = [*_HOMES]
+__dir__ = __all__.copy
+
+
+def __getattr__(name: str):
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = import_module(f"{__name__}.{_HOMES[name]}")
+    return module if name == "theory" else getattr(module, name)

@@ -1,36 +1,24 @@
 """Closed forms and quadratures; no simulation. Knows nothing of the lattice code, so that agreement means something."""
 
-from ..model.lazy import lazy_names
+from importlib import import_module
 
-_HOMES = {
-    "ArrestingCrack": "arrest",
-    "ExactTransition": "exact_transition",
-    "FrontEnd": "rupture",
-    "Fronts": "exact_transition",
-    "Layer": "dimensional",
-    "Limit": "rupture",
-    "Rupture": "rupture",
-    "SteadyFront": "front_motion",
-    "SteadyPulse": "pulse",
-    "admissibility_table": "front_motion",
-    "barrier_depth": "slow_front",
-    "barrier_depth_estimate": "slow_front",
-    "continuum_front_speed": "front_law",
-    "critical_rate_strengthening": "pulse",
-    "damage_zone_stress_drop": "dimensional",
-    "exact_transition_displacement": "exact_transition",
-    "front_speed": "front_law",
-    "front_speed_undamped": "pulse",
-    "lattice_front_speed": "front_law",
-    "paper_pulse": "pulse",
-    "paper_transition_displacement": "pulse",
-    "paper_transition_stress": "pulse",
-    "prestress_balance_position": "pulse",
-    "prestress_for_speed": "front_law",
-    "slip_velocity": "exact_transition",
-    "steady_front": "front_motion",
-    "steady_pulse": "front_law",
-    "uniform_transition_time": "exact_transition",
+_NAMES = {
+    "arrest": "ArrestingCrack",
+    "dimensional": "Layer damage_zone_stress_drop",
+    "exact_transition": "ExactTransition Fronts exact_transition_displacement slip_velocity uniform_transition_time",
+    "front_law": "continuum_front_speed front_speed lattice_front_speed prestress_for_speed steady_pulse",
+    "front_motion": "SteadyFront admissibility_table steady_front",
+    "pulse": "SteadyPulse critical_rate_strengthening front_speed_undamped paper_pulse paper_transition_displacement"
+    " paper_transition_stress prestress_balance_position",
+    "rupture": "FrontEnd Limit Rupture",
+    "slow_front": "barrier_depth barrier_depth_estimate",
 }
-__all__ = list(_HOMES)
-__getattr__, __dir__ = lazy_names(__name__, _HOMES)
+_HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}
+__all__ = [*_HOMES]
+__dir__ = __all__.copy
+
+
+def __getattr__(name: str):
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
