@@ -140,7 +140,7 @@ slurm-test: $(VENV)/.slurm
 
 benchmark: $(READY)
 	@mkdir -p results/benchmarks
-	@"$(BIN)/python" -m benchmarks config/config.yaml results/benchmarks
+	@"$(BIN)/python" -m tests.benchmark config/config.yaml results/benchmarks
 
 check: $(READY)
 	@PATH="$(CURDIR)/$(BIN):$$PATH" ./.ci/check

@@ -9,9 +9,9 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from benchmarks import __main__ as command
-from benchmarks import critical_path, measure, stencils
 from slippulse.data.records import Origin, write_record
+from tests.benchmark import __main__ as command
+from tests.benchmark import critical_path, measure, stencils
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
 
@@ -82,6 +82,7 @@ def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatc
         "DURATION": 20.0,
         "DX": 0.05,
         "REPEATS": 1,
+        "TURNS": 2,
         "POWERS": (3, 4),
         "LENGTH": 60.0,
         "CRACK": (60.0, 90.0),
@@ -91,7 +92,7 @@ def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatc
         monkeypatch.setattr(measure, name, value)
     command.main(str(project / "config/config.yaml"), str(tmp_path))
     found = json.loads((tmp_path / "benchmark.json").read_text(encoding="utf-8"))
-    assert set(found) == {"machine", "kernel", "whole_scene", "exponents", "settings", "pipeline"}
+    assert set(found) == {"machine", "kernel", "whole_scene", "exponents", "pipeline"}
     assert found["machine"]["cores"] >= 1 and "numba" in found["machine"]["versions"]
     scene = found["whole_scene"]
     for kind in ("numba", "numpy"):

@@ -1,8 +1,9 @@
-"""The measurements of `make benchmark`: each a function that returns builtins, all in one run on one core."""
+"""The measurements, each a function that returns builtins, all in one run on one core."""
 
 import platform
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from slippulse.theory.front_law import steady_pulse
 from . import stencils
 
 LEVEL, GAMMA, RATIO, DX, DURATION = 0.5, 0.65, 0.1, 0.01, 400.0
-REPEATS, TURNS = 3, 6
+REPEATS, TURNS = 3, 18
 # When the kernel is timed: a crack with 4,200 to 6,200 sliding blocks on each side, a pulse of 200 when it is steady.
 CRACK, PULSE = (3400.0, 5000.0), (60.0, 200.0)
 # Steps of the textbook scheme around these powers of a half, over this many blocks of path.
@@ -45,13 +46,10 @@ def best(run: Callable[[], object], repeats: int = REPEATS) -> float:
     return min(times)
 
 
-def stencil_rates(blocks: int, seconds: float = 0.15) -> dict[str, float]:
+def stencil_rates(blocks: int, seconds: float) -> dict[str, float]:
     """Block updates a second of the branch-free stencils on an array of ``blocks`` blocks."""
-    tau = np.full(blocks, 0.5)
-    w = np.zeros((6, blocks))
-    force = np.zeros(blocks)
+    tau, w, force = np.full(blocks, 0.5), np.zeros((6, blocks)), np.zeros(blocks)
     constants = (1e-6, 1.0, 1e-6, RATIO)
-    steps = {"taylor": 20, "two_stage": 20}
     calls = {
         "taylor": lambda count: stencils.taylor_steps(w, tau, count, *constants),
         "two_stage": lambda count: stencils.two_stage_steps(w[0], w[1], force, tau, count, *constants),
@@ -59,7 +57,7 @@ def stencil_rates(blocks: int, seconds: float = 0.15) -> dict[str, float]:
     rates = {}
     for name, call in calls.items():
         call(1)
-        taken = best(lambda call=call, name=name: call(steps[name]), 1)
+        taken = best(lambda call=call: call(20), 1)
         count = max(20, int(20 * seconds / max(taken, 1e-9)))
         rates[name] = blocks * count / best(lambda call=call, count=count: call(count))
     return rates
@@ -70,37 +68,22 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
 
     Everything is included: events, growth of the lattice, energy balance.
     """
-    rates = []
-    start = scene.duration
-    for _ in range(REPEATS):
-        object.__setattr__(scene, "duration", start)
-        lattice = Lattice(scene, None, scene.beta)
-        lattice.run(None)
-        updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
-        object.__setattr__(scene, "duration", until)
-        began = time.process_time()
-        lattice.run(None)
-        taken = time.process_time() - began
-        updates = int(lattice.tally.block_updates) - updates
-        rates.append((updates / taken, updates / (int(lattice.tally.steps) - steps)))
-    return max(rates)
+    lattice = Lattice(scene, None, scene.beta)
+    lattice.run(None)
+    updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
+    lattice.scene = replace(scene, duration=until)
+    taken = best(lambda: lattice.run(None), 1)
+    updates = int(lattice.tally.block_updates) - updates
+    return updates / taken, updates / (int(lattice.tally.steps) - steps)
 
 
 def in_turns(scene: Scene, until: float) -> tuple[float, float, dict[str, float]]:
-    """Best rates of the kernel and of the stencils, in turns: a slow spell of the machine then meets both.
-
-    Returns
-    -------
-    block updates a second of the kernel, mean sliding blocks, block updates a second of each stencil
-    """
-    start, rate, rates = scene.duration, 0.0, {}
+    """As `kernel_rate`, and as `stencil_rates`; the best of turns, so that a slow spell of the machine meets both."""
+    found, rates = [], []
     for _ in range(TURNS):
-        object.__setattr__(scene, "duration", start)
-        found, blocks = kernel_rate(scene, until)
-        rate = max(rate, found)
-        for name, stencil in stencil_rates(round(blocks), 0.05).items():
-            rates[name] = max(rates.get(name, 0.0), stencil)
-    return rate, blocks, rates
+        found.append(kernel_rate(scene, until))
+        rates.append(stencil_rates(round(found[-1][1]), 0.05))
+    return *max(found), {name: max(each[name] for each in rates) for name in rates[0]}
 
 
 def kernel() -> dict:
@@ -108,15 +91,7 @@ def kernel() -> dict:
     more = {"max_step": 0.5, "order": 4}
     crack = Scene("displacement", Prestress(LEVEL, LEVEL, 8.0), CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **more)
     width = steady_pulse(LEVEL, GAMMA, 0.0, float(exact_speed(LEVEL, RATIO))).width
-    pulse = Scene(
-        "displacement",
-        Prestress(LEVEL, LEVEL),
-        PULSE[0],
-        width / 200.0,
-        gamma=GAMMA,
-        beta=RATIO * width / 200.0,
-        **more,
-    )
+    pulse = _scene(PULSE[0], width / 200.0, more)
     found = {}
     for name, scene, until in (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1])):
         rate, blocks, rates = in_turns(scene, until)
@@ -223,28 +198,6 @@ def exponents(accuracy: Mapping) -> dict:
 
 def _slope(x, y) -> float:
     return float(np.polyfit(np.log(x), np.log(y), 1)[0])
-
-
-def settings_compared(presets: Mapping, window: float) -> list[dict]:
-    """Seconds and front-speed error of each preset, and of higher orders at longer steps on its spacing."""
-    exact = float(exact_speed(LEVEL, RATIO))
-    found = []
-    for name, preset in presets.items():
-        others = [(preset["order"], preset["max_step"]), (4, 0.5), (6, 1.0), (8, 1.0)]
-        for order, step in dict.fromkeys(others):
-            scene = _scene(60.0, preset["dx"], {"order": order, "max_step": step})
-            error = abs(front_speed(simulate(scene), window)[0] / exact - 1.0)
-            found.append(
-                {
-                    "preset": name if (order, step) == others[0] else "",
-                    "dx": preset["dx"],
-                    "order": order,
-                    "step": step,
-                    "seconds": best(lambda scene=scene: run_scene(scene)),
-                    "front_speed_error": error,
-                }
-            )
-    return found
 
 
 def pipeline(results: Path) -> dict:

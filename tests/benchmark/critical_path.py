@@ -1,6 +1,6 @@
 """What a finished run waited for: the chain of jobs that ends with the last one, and how many ran at a time.
 
-    python -m benchmarks.critical_path [results]
+    python -m tests.benchmark.critical_path [results]
 
 A record is written when its job ends and says how long that took. Before it began a job waited for the last of its
 inputs, and then for a core.

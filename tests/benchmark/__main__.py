@@ -1,13 +1,15 @@
-"""`python -m benchmarks config/config.yaml results/benchmarks`: measure, and write benchmark.json there."""
+"""Speed as ratios within one run, for any machine, as `make benchmark` has it.
+
+python -m tests.benchmark config/config.yaml results/benchmarks     measures, and writes benchmark.json there
+"""
 
 import json
 import sys
 import time
 from pathlib import Path
 
-from slippulse.configuration.read import read_config, read_overlay
-from slippulse.data.files import write_whole
-from slippulse.model.checks import ConfigError
+from slippulse.configuration.read import ConfigError, read_config, read_overlay
+from slippulse.data.files import write_text
 
 from . import measure
 
@@ -22,7 +24,6 @@ def main(config_path: str, folder: str) -> None:
         "kernel": measure.kernel,
         "whole_scene": lambda: measure.whole_scene(accuracy, window),
         "exponents": lambda: measure.exponents(accuracy),
-        "settings": lambda: measure.settings_compared(config["presets"], window),
         "pipeline": lambda: measure.pipeline(Path(folder).parent),
     }
     found = {}
@@ -31,8 +32,7 @@ def main(config_path: str, folder: str) -> None:
         found[name] = part()
         print(f"  {name}: {time.perf_counter() - began:.1f} s", file=sys.stderr, flush=True)
     output = Path(folder) / "benchmark.json"
-    text = json.dumps(found, indent=1).replace("NaN", "null") + "\n"
-    write_whole(output, lambda part: part.write_text(text, encoding="utf-8"))
+    write_text(json.dumps(found, indent=1).replace("NaN", "null") + "\n", output)
     scene, kernel = found["whole_scene"], found["kernel"]
     for name, entry in kernel.items():
         print(
@@ -51,7 +51,7 @@ def main(config_path: str, folder: str) -> None:
 
 if __name__ == "__main__":
     if len(sys.argv) != 3:
-        print("usage: python -m benchmarks CONFIGURATION FOLDER", file=sys.stderr)
+        print("usage: python -m tests.benchmark CONFIGURATION FOLDER", file=sys.stderr)
         sys.exit(2)
     try:
         main(*sys.argv[1:])
