@@ -12,7 +12,7 @@ from ..data.variables import VARIABLES, combine
 from ..data.versions import versions
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..solver.run import LatticeRun
+from ..solver.run import LatticeRun, run_scene
 
 # A velocity this far below zero, as a fraction of the largest, means that a stick was stepped over. The textbook scheme
 # steps over each, by what one step decelerates.
@@ -69,6 +69,11 @@ def run_all(
             pool.shutdown(cancel_futures=True)
             raise
     return combine([results[i] for i in range(len(scenes))], record)
+
+
+def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:
+    """One scene on the lattice, as `slippulse.simulate` returns it."""
+    return dataset_of(scene, samples, run_scene(scene, samples))
 
 
 def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dataset:

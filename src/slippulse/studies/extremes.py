@@ -15,7 +15,8 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
 from ..predict.measured import pulse_state
-from ..simulation.simulate import UnstableRun, simulate
+from ..simulation.runs import simulate_on_lattice
+from ..solver.lattice import UnstableRun
 from ..solver.run import run_scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, exact_transition_displacement
@@ -203,7 +204,7 @@ def row(edge: Edge, window: float) -> dict[str, Any]:
 
 
 # Three edges are of the longest run.
-simulated = lru_cache(maxsize=1)(simulate)
+simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 
 
 def measured(edge: Edge, window: float) -> tuple[float, str, int]:

@@ -18,7 +18,7 @@ from ..measure.transition import between_fronts
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import RELEASES, Scene
-from ..simulation.simulate import simulate
+from ..simulation.runs import simulate_on_lattice
 from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
 
@@ -104,7 +104,7 @@ def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
 def sampled(scene: Scene, left: float) -> xr.Dataset:
     """The lattice run of a scene, with samples at its blocks from x = left on."""
     positions = scene.dx * np.arange(round(left / scene.dx), round(REACH * scene.duration / scene.dx))
-    return simulate(scene, Samples(np.linspace(0.0, scene.duration, TIMES), positions))
+    return simulate_on_lattice(scene, Samples(np.linspace(0.0, scene.duration, TIMES), positions))
 
 
 class LeftPanel:

@@ -8,7 +8,7 @@ import pandas as pd
 from ..measure.fronts import straight_line
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..simulation.simulate import simulate
+from ..simulation.runs import simulate_on_lattice
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_law import front_speed
 from ..theory.pulse import pulse_behind_front
@@ -26,7 +26,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     Returns quantity (front_speed, first_stick_time, pulse_slip), published, localised and exact
     """
     speed = float(front_speed(PROFILE.left, BETA / SPACING))
-    run = simulate(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
+    run = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
     ours = [run[name].values for name in ("x", "release_time", "stick_time", "slip")]
     window = settings["measure"]["front_window"]
     found = {

@@ -9,7 +9,7 @@ from ..model.balance import prestress_balance_position
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..simulation.simulate import simulate
+from ..simulation.runs import simulate_on_lattice
 from ..theory.front_law import front_speed
 from ..theory.pulse import critical_rate_strengthening, pulse_behind_front
 from ..theory.rupture import Rupture
@@ -78,7 +78,7 @@ def _lattice(level: float, speed: float, fraction: float) -> dict | None:
         return None
     duration = SHORTEST + MEMORIES / (speed - 1.0)
     of = ("displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx)
-    run = simulate(Scene(*of, order=ORDER, max_step=MAX_STEP, rate_strengthening=alpha))
+    run = simulate_on_lattice(Scene(*of, order=ORDER, max_step=MAX_STEP, rate_strengthening=alpha))
     right = run["x"].values > 0.5 * dx
     names = ("x", "stick_time", "release_time", "slip_velocity", "slip")
     x, stick, release, velocity, slip = (run[name].values[right] for name in names)
@@ -110,7 +110,7 @@ def _map(regime: str, alpha: float) -> pd.DataFrame:
 def _arrest(alpha: float, dx: float) -> pd.DataFrame:
     of = ("stress", ARRESTING, float(TIMES[-1]), dx, 0.0, RATIO * dx)
     samples = Samples(TIMES, np.arange(-8.0, TIMES[-1] + 10.0, 0.25))
-    run = simulate(Scene(*of, rate_strengthening=alpha, max_step=0.4), samples)
+    run = simulate_on_lattice(Scene(*of, rate_strengthening=alpha, max_step=0.4), samples)
     left = run.where(run["x"] < 0.0, drop=True)
     front = np.array([float(left["x"].values[left["release_time"].values <= time].min()) for time in TIMES])
     values = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}

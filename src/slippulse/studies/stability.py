@@ -8,8 +8,7 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..model.scene import ORDERS, Scene
 from ..model.stability import largest_step
-from ..simulation.simulate import UnstableRun
-from ..solver.lattice import Lattice
+from ..solver.lattice import Lattice, UnstableRun
 
 NEEDS = {}  # type: dict[str, list[str]]
 
