@@ -15,7 +15,7 @@ import pytest
 import yaml
 from selection import small_sweep
 
-from slippulse.data.store import load_table, save_table
+from slippulse.data.tables import load_table, save_table
 from slippulse.steps.inputs import given
 from slippulse.steps.reach import declared
 from slippulse.steps.targets import selected

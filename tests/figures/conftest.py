@@ -8,7 +8,8 @@ import pytest
 from selection import small_sweep
 
 from slippulse.configuration.expand import expand
-from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
+from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.tables import load_table, save_table
 from slippulse.predict.measured import measured_table
 from slippulse.simulation.simulate import run_sweep
 from slippulse.steps.predict import predictions

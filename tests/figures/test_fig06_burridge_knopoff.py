@@ -5,7 +5,7 @@ import pytest
 
 from slippulse import Prestress, Samples, Scene, run_sweep
 from slippulse.data.points import point
-from slippulse.data.store import load_table, save_table
+from slippulse.data.tables import load_table, save_table
 from slippulse.figures import fig06_burridge_knopoff as figure
 
 LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}

@@ -12,7 +12,7 @@ from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import resolve, scene_simulation
 from slippulse.configuration.schema import Model, NamedScene
 from slippulse.data.points import point
-from slippulse.data.store import load_table, save_table
+from slippulse.data.tables import load_table, save_table
 from slippulse.figures import own_sweep
 from slippulse.figures import scene as figure
 from slippulse.figures.scene import number_text

@@ -9,7 +9,8 @@ from scipy.integrate import quad
 
 import slippulse as sp
 from slippulse.data.points import point
-from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
+from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.tables import load_table, save_table
 from slippulse.predict.measured import measured_table
 
 STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}

@@ -9,7 +9,8 @@ import xarray as xr
 
 import slippulse as sp
 from slippulse.data.files import write_whole
-from slippulse.data.store import load_dataset, load_table, save_dataset, save_table
+from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.tables import load_table, save_table
 from slippulse.data.variables import VARIABLES
 
 SCENES = [

@@ -19,8 +19,9 @@ import pytest
 from faults import TARGETS, Report, at_work, digests, fault_run, prepare, start_by_make, stop_at
 from pipeline_copy import copy_project, snakemake
 
+from slippulse.data.files import UnreadableFile
 from slippulse.data.records import Origin
-from slippulse.data.store import UnreadableFile, load_table
+from slippulse.data.tables import load_table
 from slippulse.steps.job import JobFailed, Jobs
 
 pytestmark = pytest.mark.workflow
@@ -185,17 +186,17 @@ def test_a_place_that_is_taken_fails_in_one_line(tmp_path, place):
     assert f"{place} is a {kind}; remove or rename it" in said and path.exists()
 
 
-@pytest.mark.parametrize("kind", ["table", "dataset"])
-def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
+@pytest.mark.parametrize(("kind", "home"), [("table", "tables"), ("dataset", "store")])
+def test_a_full_disk_leaves_the_old_file(kind, home, tmp_path):
     """A limit on the size of files stands for a disk without room: writing fails in the same place."""
     path = tmp_path / kind
     path.write_text("what was there\n")
     program = (
         "import sys, numpy, pandas\n"
-        "from slippulse.steps.job import logged\nfrom slippulse.data import store\n"
+        f"from slippulse.steps.job import logged\nfrom slippulse.data.{home} import save_{kind} as save\n"
         "numbers = pandas.DataFrame({'a': numpy.arange(1e5)})\n"
         "with logged(sys.argv[2]):\n"
-        f"    store.save_{kind}(numbers{'.to_xarray()' if kind == 'dataset' else ''}, sys.argv[1])\n"
+        f"    save(numbers{'.to_xarray()' if kind == 'dataset' else ''}, sys.argv[1])\n"
     )
     result = subprocess.run(
         [sys.executable, "-c", program, str(path), str(tmp_path / "log")], capture_output=True, text=True, check=False,

@@ -9,6 +9,14 @@ from pathlib import Path
 CONFIGURATION = "SLIPPULSE_CONFIGURATION"
 
 
+class UnreadableFile(ValueError):
+    """A file of the pipeline that is cut short, corrupted or edited beyond reading."""
+
+    def __init__(self, path: str | Path, reason: object) -> None:
+        text = " ".join(str(reason).split())[:120]
+        super().__init__(f"{path}: cannot be read ({text}); delete it and run again, and it is made anew")
+
+
 def configuration() -> str:
     """Digest of the configuration behind what is being written; empty outside a job of the workflow."""
     return os.environ.get(CONFIGURATION, "")

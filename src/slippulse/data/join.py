@@ -12,7 +12,8 @@ import xarray as xr
 
 from .chunks import runs_of
 from .points import point
-from .store import load_dataset, load_table, save_table
+from .store import load_dataset
+from .tables import load_table, save_table
 from .variables import combine
 
 

@@ -1,16 +1,14 @@
-"""Files: netCDF data, CSV tables and figures, written whole or not at all and with no clock in them."""
+"""Datasets as netCDF-4 files, with no clock in them."""
 
-from collections.abc import Collection
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
-import pandas as pd
 import xarray as xr
 
-from .files import configuration, write_whole
+from .files import UnreadableFile, configuration, write_whole
 
 # Through xarray's engine each variable, of which a sweep has fifty, takes five times as long to write and to read.
 # Attributes of HDF5 and of the netCDF-4 library, and what marks a dimension that has no coordinate.
@@ -46,14 +44,6 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     write_whole(path, lambda part: part.write_bytes(content.getvalue()))
 
 
-class UnreadableFile(ValueError):
-    """A file of the pipeline that is cut short, corrupted or edited beyond reading."""
-
-    def __init__(self, path: str | Path, reason: object) -> None:
-        text = " ".join(str(reason).split())[:120]
-        super().__init__(f"{path}: cannot be read ({text}); delete it and run again, and it is made anew")
-
-
 def load_dataset(path: str | Path) -> xr.Dataset:
     """Read a Dataset into memory and close the file.
 
@@ -82,25 +72,3 @@ def _read(name: str, item: h5py.Dataset) -> tuple[list[str], np.ndarray, dict[st
 
 def _attributes(item: h5py.HLObject) -> dict[str, Any]:
     return {name: value for name, value in item.attrs.items() if name not in PLUMBING}
-
-
-def save_table(table: pd.DataFrame, path: str | Path, digits: int = 9) -> None:
-    """Write a table as CSV, to some significant digits."""
-    form = f"%.{digits}g"
-    write_whole(path, lambda part: table.to_csv(part, index=False, float_format=form, lineterminator="\n"))
-
-
-def load_table(path: str | Path, whole: Collection[str] | None = None) -> pd.DataFrame:
-    """Read a table. With ``whole``, only these columns may hold whole numbers, others fractions.
-
-    Raises UnreadableFile: naming the file and the remedy.
-    """
-    try:
-        table = pd.read_csv(path, low_memory=False)
-        if whole is None:
-            return table
-        # Read again, since -0 as a whole number has lost its sign.
-        fractions = [name for name in table if table[name].dtype.kind == "i" and name not in whole]
-        return pd.read_csv(path, low_memory=False, dtype=dict.fromkeys(fractions, float))
-    except ValueError as error:
-        raise UnreadableFile(path, error) from error

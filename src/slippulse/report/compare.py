@@ -14,7 +14,8 @@ import numpy as np
 import pandas as pd
 
 from ..data.alterations import changes
-from ..data.store import UnreadableFile, load_table
+from ..data.files import UnreadableFile
+from ..data.tables import load_table
 
 # What makes a run the same run in another tree, whatever its lattice.
 SAME = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]

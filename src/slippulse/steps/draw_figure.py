@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from ..data.store import load_table, save_table
+from ..data.tables import load_table, save_table
 from ..figures.style import save_figure
 from .inputs import given
 

@@ -2,7 +2,8 @@
 
 from ..data.files import write_text
 from ..data.points import point
-from ..data.store import load_dataset, load_table, save_table
+from ..data.store import load_dataset
+from ..data.tables import load_table, save_table
 from ..figures import scene
 from ..figures.shared.numbers import scene_numbers
 from ..figures.style import save_figure

@@ -8,7 +8,8 @@ import pandas as pd
 import xarray as xr
 import yaml
 
-from ..data.store import load_dataset, load_table
+from ..data.store import load_dataset
+from ..data.tables import load_table
 
 
 def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame]]:

@@ -1,6 +1,7 @@
 """Measure every run of one simulation and write the table."""
 
-from ..data.store import load_dataset, save_table
+from ..data.store import load_dataset
+from ..data.tables import save_table
 from ..predict.measured import measured_table
 
 

@@ -6,7 +6,7 @@ from importlib import import_module
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..data.store import save_table
+from ..data.tables import save_table
 from ..model.scene import Scene
 
 # Modules of `predict`.

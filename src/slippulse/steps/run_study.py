@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from ..data.store import save_table
+from ..data.tables import save_table
 from .inputs import given
 
 

@@ -11,7 +11,7 @@ from functools import partial
 import pandas as pd
 
 from ..configuration.expand import expand, promise_of
-from ..data.store import load_table, save_table
+from ..data.tables import load_table, save_table
 from ..measure.promise import judged, summary
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import grid_tables

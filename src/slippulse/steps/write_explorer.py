@@ -1,7 +1,7 @@
 """Write the page on which a rupture is explored with sliders."""
 
 from ..data.files import write_text
-from ..data.store import load_table
+from ..data.tables import load_table
 from ..figures.style import VELOCITY_MAP
 from ..report.explorer_page import explorer_page
 
