@@ -9,7 +9,7 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.data.points import point
 from slippulse.data.store import save_dataset
-from slippulse.data.variables import FIELDS, FRONTS
+from slippulse.data.sweeps import FIELDS, FRONTS
 from slippulse.simulation.simulate import run_sweep
 
 RECORDS = ("fronts", "fields", "samples")

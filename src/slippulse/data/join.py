@@ -13,8 +13,9 @@ import xarray as xr
 from .chunks import runs_of
 from .points import point
 from .store import load_dataset
+from .sweeps import combine
 from .tables import load_table, save_table
-from .variables import combine
+from .variables import described
 
 
 class ChunksDiffer(ValueError):
@@ -32,7 +33,7 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     runs = _runs(paths, [chunk.sizes["point"] for chunk in chunks])
     of_chunks = zip(chunks, runs, strict=True)
     found = {run: point(chunk, index) for chunk, own in of_chunks for index, run in enumerate(own)}
-    return combine([found[run] for run in sorted(found)], record)
+    return described(combine([found[run] for run in sorted(found)], record))
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[str] = ()) -> None:

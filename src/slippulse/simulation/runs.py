@@ -8,7 +8,7 @@ from threading import Event
 import numpy as np
 import xarray as xr
 
-from ..data.variables import VARIABLES, combine
+from ..data.sweeps import combine
 from ..data.versions import versions
 from ..model.samples import Samples
 from ..model.scene import Scene
@@ -72,12 +72,12 @@ def run_all(
 
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:
-    """One scene on the lattice, as `slippulse.simulate` returns it."""
+    """The Dataset of one scene on the lattice."""
     return dataset_of(scene, samples, run_scene(scene, samples))
 
 
 def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dataset:
-    """The Dataset of a run, as `slippulse.simulate` describes it."""
+    """The Dataset of a run, without the meaning of its variables."""
     data: dict = {name: ("x", getattr(run, name)) for name in FIELDS}
     coordinates = {"x": ("x", run.x)}
     if samples is not None:
@@ -85,8 +85,6 @@ def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dat
         coordinates |= {axes[0]: (axes[0], samples.times), axes[1]: (axes[1], samples.positions)}
         data |= {"sample_slip": (axes, run.sample_slip), "sample_velocity": (axes, run.sample_velocity)}
     dataset = xr.Dataset(data, coords=coordinates)
-    for name, variable in dataset.variables.items():
-        variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)][1]}
     dataset.attrs = scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()}
     return dataset
 

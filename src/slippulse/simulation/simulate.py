@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 
 import xarray as xr
 
+from ..data.variables import described
 from ..model.checks import check_number, short_repr
 from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
@@ -59,7 +60,7 @@ def simulate(
         samples.check_within(scene.duration)
     if isinstance(progress, bool):
         progress = bar() if progress else None
-    data = dataset_of(scene, samples, _run(scene, samples, progress))
+    data = described(dataset_of(scene, samples, _run(scene, samples, progress)))
     if strict and (flags := data.attrs["run_flags"]):
         raise UnresolvedRun(f"the run is flagged: {flags} ({describe_flags(scene, data.attrs)})")
     return data
@@ -116,7 +117,7 @@ def run_sweep(
     _require(
         progress is None or callable(progress), "progress", progress, "a function of (done, all), or None"
     )
-    return run_all(_run, scenes, samples, record, int(threads), progress)
+    return described(run_all(_run, scenes, samples, record, int(threads), progress))
 
 
 def bar(stream=None) -> Callable[[float], None]:

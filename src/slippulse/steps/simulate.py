@@ -7,6 +7,7 @@ from functools import partial
 
 from ..configuration.expand import expand
 from ..data.store import save_dataset
+from ..data.variables import described
 from ..simulation.runs import run_all
 from ..solver.run import run_scene
 
@@ -20,7 +21,7 @@ def simulate(solve: Callable, files: dict, outputs: dict, settings: dict) -> Non
     for kind in sorted(flags):
         what = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
         sys.stderr.write(f"  {settings['simulation']}: {what}\n")
-    save_dataset(data, outputs["data"])
+    save_dataset(described(data), outputs["data"])
 
 
 run = partial(simulate, run_scene)
