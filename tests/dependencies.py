@@ -36,9 +36,11 @@ STUDIED = {
     if re.search(r"^NEEDS = ", path.read_text(encoding="utf-8"), re.M)
 }
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")}
-# Every rule but those that only name targets; the exact scheme takes other steps of the same rules.
+# Every rule but those that only name targets; two schemes take other steps of the same rules.
 NO_RULES = {"__init__", "inputs", "job", "libraries", "reach", "targets"}
-NO_RULES |= {"draw_figure", "run_study", "simulate_exact", "study_grid_exact"}
+NO_RULES |= {"draw_figure", "run_study"} | {
+    step for step in STEPS if step.endswith(("_continuum", "_fixed_step"))
+}
 SWEEP = "sweep_own"
 RULES = (STEPS - NO_RULES) | DRAWN | set(STUDIED) | {SWEEP}
 # Pages, by the rule that writes them: the template that each begins with.

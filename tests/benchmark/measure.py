@@ -15,6 +15,7 @@ from slippulse.measure.fronts import front_speed
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
+from slippulse.solver.fixed_step import FixedStepLattice
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.run import run_scene
 from slippulse.theory.front_law import front_speed as exact_speed
@@ -172,9 +173,8 @@ def textbook_numba_step(blocks: int) -> float:
         "displacement", profile, duration, DX, gamma=GAMMA, beta=RATIO * DX, scheme="fixed_step", max_step=step,
         half_lattice=False,
     )  # fmt: skip
-    lattice = Lattice(scene, None, scene.beta)
-    size = lattice.size
-    seconds = best(lambda: Lattice(scene, None, scene.beta).run(None), 2)
+    size = FixedStepLattice(scene, None, scene.beta).size
+    seconds = best(lambda: FixedStepLattice(scene, None, scene.beta).run(None), 2)
     return seconds / (duration / (step * DX)) * blocks / size
 
 

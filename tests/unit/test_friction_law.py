@@ -10,7 +10,7 @@ from reference.lattice_state import elastic_stress, sliding, threshold_stress, t
 from scipy.optimize import brentq
 
 import slippulse as sp
-from slippulse.model.scene import LATTICE_SCHEMES
+from slippulse.solver.fixed_step import LATTICES
 
 GAMMA = 0.65
 FINE = {"max_step": 0.05, "order": 8, "resolved_blocks": 1}
@@ -45,7 +45,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 def test_nothing_moves_just_below_the_threshold(scheme):
     peak = math.nextafter(1.0, 0.0)
     scene = under_stress(0.9, 0.9, 5.0, 0.1, peak, scheme=scheme, resolved_blocks=1)
@@ -57,7 +57,7 @@ def test_nothing_moves_just_below_the_threshold(scheme):
         assert not run[name].values.any(), name
 
 
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 def test_every_block_at_or_above_the_threshold_is_released_at_once_and_no_other(scheme):
     for peak, blocks in ((1.0, 1), (1.3, 17)):
         run = sp.simulate(under_stress(0.2, 0.5, 0.001, 0.1, peak, scheme=scheme))

@@ -7,11 +7,11 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.scene import LATTICE_SCHEMES, ORDERS
+from slippulse.model.scene import ORDERS
 from slippulse.model.stability import largest_step
 from slippulse.simulation.runs import judge
+from slippulse.solver.fixed_step import LATTICES, run_by_scheme
 from slippulse.solver.lattice import UnstableRun
-from slippulse.solver.run import run_scene
 
 # Wave numbers of the lattice, as 4 sin^2(k/2).
 MODES = np.linspace(0.0, 4.0, 401)
@@ -79,7 +79,7 @@ def test_the_taylor_step_is_the_one_that_the_kernels_make():
     scene = sp.Scene(
         "displacement", sp.Prestress(-9.0, -9.0), 0.5, 1.0, gamma=gamma, max_step=0.5, resolved_blocks=1
     )
-    run = run_scene(scene)
+    run = run_by_scheme(scene)
     middle = run.x == 0.0
     stiffness, h = 2.0 + gamma, 0.5
     slip = sum((-stiffness) ** (k // 2 - 1) * h**k / math.factorial(k) for k in (2, 4))
@@ -94,28 +94,28 @@ STRONG = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.3), "duration"
 
 @pytest.mark.parametrize("ratio", [0.0, 1.0])
 def test_a_fixed_step_run_blows_up_just_above_the_bound_and_is_sound_just_below(ratio):
-    run = run_scene(beyond_the_bound("fixed_step", tol.BELOW_BOUND, **STRONG, beta=0.1 * ratio))
+    run = run_by_scheme(beyond_the_bound("fixed_step", tol.BELOW_BOUND, **STRONG, beta=0.1 * ratio))
     assert run.slip_velocity.max() < STRONG["duration"]
     with pytest.raises(UnstableRun, match=r"unstable at t = .*max_step"):
-        run_scene(beyond_the_bound("fixed_step", tol.ABOVE_BOUND, **STRONG, beta=0.1 * ratio))
+        run_by_scheme(beyond_the_bound("fixed_step", tol.ABOVE_BOUND, **STRONG, beta=0.1 * ratio))
 
 
 def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps_it_just_below():
     """A slowly growing mode that is thrown below zero sticks: the balance tells. A fast one blows up."""
     sound = beyond_the_bound("localised", tol.BELOW_BOUND, **STRONG, beta=1.0)
-    run = run_scene(sound)
+    run = run_by_scheme(sound)
     assert run.numbers["energy_residual"] < tol.ENERGY
     assert run.numbers["sticks"] == 0
     assert judge(sound, run)["run_flags"] == ""
     broken = beyond_the_bound("localised", tol.ABOVE_BOUND, **STRONG, beta=1.0)
-    run = run_scene(broken)
+    run = run_by_scheme(broken)
     assert run.numbers["sticks"] > 0
     assert "energy" in judge(broken, run)["run_flags"].split(",")
     with pytest.raises(UnstableRun, match=r"unstable at t = .*max_step"):
-        run_scene(beyond_the_bound("localised", tol.WELL_ABOVE_BOUND, **STRONG, beta=1.0))
+        run_by_scheme(beyond_the_bound("localised", tol.WELL_ABOVE_BOUND, **STRONG, beta=1.0))
 
 
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 def test_a_scene_beyond_the_bound_is_refused_with_the_bound(scheme):
     bound = largest_step(scheme, 4, 0.5, 0.0)
     values = {"prestress": sp.Prestress(0.5, 0.5), "duration": 1.0, "dx": 0.1, "beta": 0.05, "scheme": scheme}

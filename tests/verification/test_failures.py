@@ -5,9 +5,8 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.scene import LATTICE_SCHEMES
 from slippulse.model.stability import largest_step
-from slippulse.solver.lattice import Lattice
+from slippulse.solver.fixed_step import LATTICES
 from slippulse.solver.run import run_scene
 
 
@@ -36,23 +35,23 @@ def at_most(calls: int):
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
     """The published scene with -beta: modes grow at up to 2 beta/dx^2, 20 per unit of time."""
     scene = published(scheme=scheme, release=release)
     with pytest.raises(sp.UnstableRun, match=r"t = \d"):
-        run_scene(scene, progress=at_most(40), damping_sign=-1)
-    assert run_scene(scene).numbers["end_time"] == scene.duration
+        run_scene(scene, progress=at_most(40), damping_sign=-1, kind=LATTICES[scheme])
+    assert run_scene(scene, kind=LATTICES[scheme]).numbers["end_time"] == scene.duration
 
 
 @pytest.mark.parametrize("row", [0, 1])
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 @pytest.mark.parametrize("place", [0.2, 0.5, 0.9])
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     """Put into the slip or the velocity of a sliding block."""
     scene = displacement(0.5, 4.0, 0.05, right=0.4, beta=0.005, scheme=scheme)
-    lattice = Lattice(scene, None, scene.beta)
+    lattice = LATTICES[scheme](scene, None, scene.beta)
     lattice.run(None)
     object.__setattr__(scene, "duration", 8.0)
     moving = np.flatnonzero(lattice.motion.w[1] > 0.0)

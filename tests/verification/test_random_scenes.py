@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from reference.lattice_state import sliding, threshold_stress
 
 import slippulse as sp
-from slippulse.model.scene import LATTICE_SCHEMES, ORDERS, RELEASES
+from slippulse.model.scene import ORDERS, RELEASES
 from slippulse.model.stability import largest_step
+from slippulse.solver.fixed_step import LATTICES
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 SETTINGS = settings(
@@ -54,7 +55,7 @@ def random_scenes(draw) -> sp.Scene:
         steps=tuple(draw(st.lists(STEP, max_size=2, unique_by=lambda step: step[0]))),
         bumps=tuple(draw(st.lists(BUMP, max_size=2))),
     )
-    ratio, order, scheme = draw(RATIOS), draw(st.sampled_from(ORDERS)), draw(st.sampled_from(LATTICE_SCHEMES))
+    ratio, order, scheme = draw(RATIOS), draw(st.sampled_from(ORDERS)), draw(st.sampled_from([*LATTICES]))
     bound = largest_step(scheme, order, ratio, gamma * dx**2)
     duration, release = draw(st.one_of(real(0.5, 3.0), real(5.0, 10.0))), draw(st.sampled_from(RELEASES))
     max_step = min(0.5, 0.9 * bound) * draw(st.sampled_from([0.25, 0.5, 1.0]))

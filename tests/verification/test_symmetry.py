@@ -5,8 +5,8 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.model.scene import LATTICE_SCHEMES
 from slippulse.solver import lattice
+from slippulse.solver.fixed_step import LATTICES
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 COUNTS = ("releases", "sticks", "re_releases")
@@ -36,7 +36,7 @@ def assert_equal_but_for_rounding(one, two) -> None:
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1])
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 @pytest.mark.parametrize("boundary", ["displacement", "stress"])
 def test_the_mirror_image_and_half_the_lattice_give_the_same(boundary, scheme, ratio):
     case = boundary, scheme, ratio
@@ -48,7 +48,7 @@ def test_the_mirror_image_and_half_the_lattice_give_the_same(boundary, scheme, r
     assert_equal_but_for_rounding(half, whole)
 
 
-@pytest.mark.parametrize("scheme", LATTICE_SCHEMES)
+@pytest.mark.parametrize("scheme", LATTICES)
 @pytest.mark.parametrize("profile", [EVEN, UNEVEN], ids=["even", "uneven"])
 def test_the_size_of_the_first_lattice_and_the_length_of_a_call_do_not_change_a_bit(
     monkeypatch, profile, scheme

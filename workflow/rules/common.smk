@@ -93,7 +93,8 @@ def settings_of(job):
     simulation = SIMULATIONS[name]
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
-    exact, kind = sweep["scheme"] == "continuum", "scenes" if name in SCENES else "simulations"
+    kind, scheme = "scenes" if name in SCENES else "simulations", sweep["scheme"]
+    by_scheme = "" if scheme == "localised" else f"_{scheme}"
     # Where it is asked for: jobs elsewhere check no scenes.
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
@@ -106,10 +107,10 @@ def settings_of(job):
         "measure": {**config["measure"], "share": share},
         # What is predicted: as far as it is read; all of what an overlay adds.
         "topics": sorted({topic for read in READ for topic in read.get(name, ())} or TOPICS),
-        # An edit of the theory re-runs exact solutions alone, which do not wait for the kernels of lattices.
-        "simulate": "simulate_exact" if exact else "simulate",
-        "study_grid": "study_grid_exact" if exact else "study_grid",
-        "kernels": [] if exact else KERNELS,
+        # By scheme: an edit of the theory re-runs exact solutions alone, which do not wait for the kernels of lattices.
+        "simulate": f"simulate{by_scheme}",
+        "study_grid": f"study_grid{by_scheme}",
+        "kernels": [] if scheme == "continuum" else KERNELS,
         "bound": bound,
         "cost": lambda: [f"{kind}.{name}.{cost}" for cost in [bound().exceeded(simulation.chunks)] if cost],
         "runs": run_count(whole),

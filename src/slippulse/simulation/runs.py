@@ -72,7 +72,7 @@ def run_all(
 
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:
-    """The Dataset of one scene on the lattice."""
+    """The Dataset of one scene by the localised scheme."""
     return dataset_of(scene, samples, run_scene(scene, samples))
 
 

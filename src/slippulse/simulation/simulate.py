@@ -9,8 +9,9 @@ from ..data.variables import described
 from ..model.checks import check_number, short_repr
 from ..model.samples import RECORDS, Samples
 from ..model.scene import Scene
+from ..solver.fixed_step import run_by_scheme
 from ..solver.lattice import UnstableRun
-from ..solver.run import LatticeRun, run_scene
+from ..solver.run import LatticeRun
 from .continuum import solve_scene
 from .runs import dataset_of, describe_flags, run_all
 
@@ -138,7 +139,7 @@ def bar(stream=None) -> Callable[[float], None]:
 
 
 def _run(scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None) -> LatticeRun:
-    solve = solve_scene if scene.scheme == "continuum" else run_scene
+    solve = solve_scene if scene.scheme == "continuum" else run_by_scheme
     return solve(scene, samples, progress)
 
 

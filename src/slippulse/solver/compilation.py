@@ -3,13 +3,13 @@
 import numba
 
 from ..model.prestress import Prestress
-from ..model.scene import SCHEMES, Scene
-from .run import run_scene
+from ..model.scene import Scene
+from .fixed_step import LATTICES, run_by_scheme
 
 
 def compile_all() -> None:
     """Compile the kernels of both schemes, unless they are in the cache or the compiler is switched off."""
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
-    for scheme in SCHEMES:
-        run_scene(Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme))
+    for scheme in LATTICES:
+        run_by_scheme(Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme))

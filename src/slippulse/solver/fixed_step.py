@@ -4,10 +4,15 @@ First order in the step, and its measured front speed locks on dx / (n dt) for w
 """
 
 import math
+from collections.abc import Callable
 
-from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE
+from ..model.samples import Samples
+from ..model.scene import Scene
+from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
 from .jit import entry, inner
+from .lattice import Lattice
 from .notes import note_release, note_stick
+from .run import LatticeRun, run_scene
 from .taylor import BLOW_UP
 
 
@@ -123,3 +128,23 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
             return UNSTABLE
         take_samples(recorder, motion, tally, end)
     return CONTINUE
+
+
+class FixedStepLattice(Lattice):
+    """State of one run by this scheme."""
+
+    localised = False
+
+    def _call(self, limits: Limits) -> int:
+        return advance_fixed(self.medium, self.motion, self.sliding, self.history, self.recorder, limits)
+
+
+# By the scheme of a scene.
+LATTICES = {"localised": Lattice, "fixed_step": FixedStepLattice}
+
+
+def run_by_scheme(
+    scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
+) -> LatticeRun:
+    """Run a scene on the lattice by its scheme, as `run_scene` does by the localised one."""
+    return run_scene(scene, samples, progress, kind=LATTICES[scene.scheme])

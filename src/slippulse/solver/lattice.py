@@ -6,7 +6,7 @@ import numpy as np
 
 from ..model.samples import Samples
 from ..model.scene import Scene
-from . import arrays, fixed_step, taylor
+from . import arrays, taylor
 
 # Steps between two returns to Python, for progress and interruption, at most; and steps times the blocks that they
 # update, about a tenth of a second.
@@ -30,10 +30,13 @@ def _row_length(size: int) -> int:
 class Lattice:
     """State of one run, in arrays with one ghost block at each end; beta is the scene's, or with the other sign."""
 
+    # By the localised scheme; that of fixed steps has a class of its own.
+    localised = True
+
     def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
+        assert self.localised == (scene.scheme == "localised")
         self.scene, self.samples = scene, samples
         self.call_steps = CALL_STEPS
-        self.localised = scene.scheme == "localised"
         self.mirror = scene.symmetric
         leaf = scene.gamma if scene.boundary == "displacement" else 0.0
         self.medium = arrays.make_medium(
@@ -125,10 +128,12 @@ class Lattice:
         step = scene.max_step * scene.dx
         largest = self.largest_force * self.growth
         limits = arrays.Limits(scene.order, step, scene.duration, largest, steps)
-        state = (self.medium, self.motion)
-        if self.localised:
-            return taylor.advance(*state, self.segments, self.scratch, self.history, self.recorder, limits)
-        return fixed_step.advance_fixed(*state, self.sliding, self.history, self.recorder, limits)
+        return self._call(limits)
+
+    def _call(self, limits: arrays.Limits) -> int:
+        """Call the kernel; returns why it stopped."""
+        state = (self.medium, self.motion, self.segments, self.scratch, self.history, self.recorder)
+        return taylor.advance(*state, limits)
 
     def _unstable(self, time: float, reason: str) -> UnstableRun:
         settings = f"dx = {self.scene.dx:g}, beta = {self.medium.beta:g}, max_step = {self.scene.max_step:g}"

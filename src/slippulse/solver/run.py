@@ -131,7 +131,8 @@ def run_scene(
     samples: Samples | None = None,
     progress: Callable[[float], None] | None = None,
     damping_sign: int = 1,
+    kind: type[Lattice] = Lattice,
 ) -> LatticeRun:
-    """Run a scene; ``damping_sign = -1`` is the sign as printed in the paper, which blows up."""
-    lattice = Lattice(scene, samples, damping_sign * scene.beta)
+    """Run a scene by the localised scheme; ``damping_sign = -1`` is as printed in the paper, and blows up."""
+    lattice = kind(scene, samples, damping_sign * scene.beta)
     return assemble(lattice, lattice.run(progress))

@@ -8,7 +8,8 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..model.scene import ORDERS, Scene
 from ..model.stability import largest_step
-from ..solver.lattice import Lattice, UnstableRun
+from ..solver.fixed_step import LATTICES
+from ..solver.lattice import UnstableRun
 
 NEEDS = {}  # type: dict[str, list[str]]
 
@@ -71,7 +72,7 @@ def sound(profile: Prestress, bound: float, scheme: str, order: int, ratio: floa
     scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, max(order, 3))
     # A Scene refuses a step beyond the bound.
     object.__setattr__(scene, "max_step", step)
-    lattice = Lattice(scene, None, scene.beta)
+    lattice = LATTICES[scheme](scene, None, scene.beta)
     lattice.call_steps = LOOK_AFTER
 
     def stop_at_the_first_stick(fraction: float) -> None:

@@ -1,4 +1,4 @@
-"""The grid study of a simulation by the exact scheme: apart, as `simulate_exact` is."""
+"""The grid study of a simulation by the exact scheme: apart, as `simulate_continuum` is."""
 
 from functools import partial
 

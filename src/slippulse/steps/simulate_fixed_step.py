@@ -1,0 +1,8 @@
+"""Run the scenes of one simulation by the textbook scheme: apart, so that other runs do not depend on it."""
+
+from functools import partial
+
+from ..solver.fixed_step import run_by_scheme
+from .simulate import simulate
+
+run = partial(simulate, run_by_scheme)
