@@ -8,7 +8,8 @@ import sys
 import time
 from pathlib import Path
 
-from slippulse.configuration.read import ConfigError, read_config, read_overlay
+from slippulse.configuration.problems import ConfigError
+from slippulse.configuration.read import read_config, read_overlay
 from slippulse.data.files import write_text
 
 from . import measure

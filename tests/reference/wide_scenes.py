@@ -4,8 +4,9 @@ import math
 import random
 
 import slippulse as sp
-from slippulse.model.scene import LATTICE_SCHEMES, ORDERS, RELEASES
+from slippulse.model.scene import ORDERS, RELEASES
 from slippulse.model.stability import MARGIN, largest_step
+from slippulse.solver.fixed_step import LATTICES
 
 LEVELS = (-100.0, -10.0, -1.0, -0.3, -0.01, 0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999, 0.9999, 1.0 - 1e-8)
 RATIOS = (0.0, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4)
@@ -27,7 +28,7 @@ def wide_scene(chance: random.Random) -> sp.Scene:
         step = (pick([-1, 1]) * uniform(1.0, 40.0), pick([-0.5, 0.0, 0.3, 0.8]))
         bump = (uniform(-20.0, 20.0), pick([-1.0, -0.5, 0.3, 0.5]), uniform(0.3, 3.0))
         steps, bumps = ((part,) if chance.random() < 0.25 else () for part in (step, bump))
-        scheme, order = pick([*LATTICE_SCHEMES, "localised", "localised", "localised"]), pick(ORDERS)
+        scheme, order = pick([*LATTICES, "localised", "localised", "localised"]), pick(ORDERS)
         longest = min(1.0, MARGIN * largest_step(scheme, order, ratio, gamma * dx**2))
         try:
             profile = sp.Prestress(left, right, pick([1.0, 1.0, *WIDTHS]), 1.0, steps, bumps)

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from slippulse.configuration.problems import ConfigError
 from slippulse.data import records
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times
 from slippulse.data.records import Digests, Tree, digest_of, read_record, read_records, write_record
-from slippulse.model.checks import ConfigError
 from slippulse.steps.reach import Job, jobs_of, origins_of
 from slippulse.steps.targets import Plan
 

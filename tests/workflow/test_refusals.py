@@ -6,6 +6,7 @@ import warnings
 import pytest
 
 from slippulse.configuration.expand import expand
+from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import LARGEST_FILE, main, read_config, read_overlay
 from slippulse.configuration.resolve import (
     HOW_TO_GO_ON,
@@ -14,7 +15,6 @@ from slippulse.configuration.resolve import (
     bound_of_sweep,
     resolve,
 )
-from slippulse.model.checks import ConfigError
 
 # Enough of the shipped simulations for every case, so that a refusal of scenes is quick.
 KEPT = (

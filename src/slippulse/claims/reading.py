@@ -8,8 +8,8 @@ from typing import Any
 
 import yaml
 
+from ..configuration.problems import nearest
 from ..data.numerals import number, percent, rounded, setting, with_uncertainty
-from ..model.checks import nearest
 from .rules import VERDICTS
 
 # Why a sentence has no claim of its own; a repetition names the sentence that it repeats.

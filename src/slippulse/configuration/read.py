@@ -22,7 +22,8 @@ from ruamel.yaml.error import YAMLError
 from ruamel.yaml.events import AliasEvent, ScalarEvent
 from ruamel.yaml.nodes import MappingNode
 
-from ..model.checks import ConfigError, nearest, short_repr
+from ..model.checks import short_repr
+from .problems import ConfigError, nearest
 from .resolve import simulation_problems
 from .schema import NAME_WORDS, Configuration
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..theory.front_law import LARGEST_RATIO, front_speed
@@ -115,10 +116,21 @@ def simulation_problems(config: Configuration) -> list[str]:
     return problems
 
 
+def _largest(profile: Prestress, dx: float) -> float:
+    """The largest pre-stress of a block, at the peak and the bumps and around them."""
+    if not profile.bumps:
+        return max(profile.peak, *(level for *_, level in profile.intervals))
+    centres, widths = np.array(
+        [(0.0, profile.width), *((centre, width) for centre, _, width in profile.bumps)]
+    ).T
+    near = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
+    return float(np.max(profile(np.round(np.append(near, centres) / dx) * dx)))
+
+
 def _check_runs(scenes: Sequence[Scene]) -> None:
     """Refuse profiles by which nothing ever moves, and scenes none of which comes near resolving its pulse."""
     for profile, dx in dict.fromkeys((scene.prestress, scene.dx) for scene in scenes):
-        if (profile.bumps or profile.peak < 1.0) and not (largest := profile.largest(dx)) >= 1.0:
+        if (profile.bumps or profile.peak < 1.0) and not (largest := _largest(profile, dx)) >= 1.0:
             raise ValueError(
                 f"peak: {profile.peak:g}, and the pre-stress of a block is at most {largest:.9g}"
                 f" (dx = {dx:g}); allowed: a pre-stress that reaches 1 somewhere, or nothing moves"

@@ -10,8 +10,9 @@ from typing import Annotated, Any, Literal, Self, TypeVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from ..model.checks import nearest, short_repr
+from ..model.checks import short_repr
 from ..model.quantities import QUANTITIES
+from .problems import nearest
 
 T = TypeVar("T")
 

@@ -106,16 +106,6 @@ class Prestress:
         # The far tail of a bump leaves the peak within rounding of the threshold, which it is meant to meet.
         return np.where(np.abs(tau - 1.0) <= 4.0 * EPSILON, 1.0, tau) if self.bumps else tau
 
-    def largest(self, dx: float = 0.0) -> float:
-        """The largest pre-stress, at the peak and the bumps and around them; with dx, at the blocks there."""
-        if not self.bumps:
-            return max(self.peak, *(level for _, level in self.steps), self.left, self.right)
-        centres = np.array([0.0, *(centre for centre, *_ in self.bumps)])
-        widths = np.array([self.width, *(width for *_, width in self.bumps)])
-        near = centres[:, None, None] + np.linspace(-3.0, 3.0, 601) * widths[:, None]
-        x = np.concatenate([near.ravel(), centres])
-        return float(np.max(self(np.round(x / dx) * dx if dx else x)))
-
     def integral(self, lower: float, upper: float) -> float:
         """Integral of tau from ``lower`` to ``upper``, in closed form between the steps.
 

@@ -9,9 +9,10 @@ from copy import deepcopy
 from pathlib import Path
 from typing import TextIO
 
+from ..configuration.problems import ConfigError, nearest
 from ..data.lock import take
 from ..data.records import Tree, record_path
-from ..model.checks import ConfigError, nearest, short_repr
+from ..model.checks import short_repr
 from .reach import RESULTS, Job, below, is_result, origins_of
 
 

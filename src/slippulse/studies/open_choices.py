@@ -7,11 +7,11 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
-from ..model.roots import roots_between
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, slip_velocity
 from ..theory.front_law import front_speed
 from ..theory.pulse import paper_transition_displacement
+from ..theory.roots import roots_between
 
 NEEDS = {
     "lists": ["manuscript/open_choices.yaml"],

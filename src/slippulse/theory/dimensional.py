@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_domains, check_number, of_one_shape
+from ..model.checks import as_numbers, check_choice, check_number
+from .domains import check_domains, of_one_shape
 
 # So that no product overflows.
 LARGEST = 1e100

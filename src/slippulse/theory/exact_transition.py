@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_domains, check_kind, check_number, of_one_shape
+from ..model.checks import as_numbers, check_choice, check_kind, check_number
 from ..model.prestress import Prestress
 from .curve import Curve, seen
+from .domains import check_domains, of_one_shape
 from .front_law import front_speed
 from .fronts import NARROWEST, FrontLaw, nucleations, straight_panel
 from .part import Part

@@ -8,16 +8,9 @@ wider than the layer of damped or lattice waves at its tip, a few blocks unless 
 
 import numpy as np
 
-from ..model.checks import (
-    DOMAINS,
-    as_numbers,
-    check_choice,
-    check_domains,
-    check_number,
-    check_runaway,
-    of_one_shape,
-)
+from ..model.checks import as_numbers, check_choice, check_number, check_runaway
 from ..model.scene import RELEASES
+from .domains import DOMAINS, check_domains, of_one_shape
 from .pulse import SteadyPulse, front_speed_undamped, pulse_behind_front
 from .wiener_hopf import log_prestress
 

@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.roots import root_between, roots_between
+from ..model.roots import root_between
 from .curve import SAME, Curve
 from .riemann import Past, Rest
+from .roots import roots_between
 
 # Times looked at together, and their distance: a fraction of 1/sqrt(gamma), or of the duration without leaf springs.
 # Around a minimum of du/dt two such steps are cut into FINE parts, twice.

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.balance import prestress_balance_position
-from ..model.checks import as_numbers, check_domains, check_number
+from ..model.checks import as_numbers, check_number
 from ..model.prestress import Prestress
+from .domains import check_domains
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:

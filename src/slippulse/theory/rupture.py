@@ -11,10 +11,11 @@ from functools import cached_property
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number, of_one_shape, short_repr
+from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.roots import root_between
 from .curve import SAME
+from .domains import of_one_shape
 from .fronts import NARROWEST, FrontLaw
 from .part import Part
 from .spreading import Stretch, spread

@@ -16,9 +16,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..model.checks import check_domains, check_number
+from ..model.checks import check_number
 from ..model.prestress import Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
+from .domains import check_domains
 from .front_law import front_speed
 from .fronts import analytic, straight_panel
 from .pulse import pulse_behind_front

@@ -1,0 +1,14 @@
+"""What is wrong with a configuration, and what was probably meant."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class ConfigError(ValueError):
+    """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
+
+
+def nearest(name: object, known: Iterable[str]) -> str:
+    """A hint at the known name that was probably meant; empty where none is near."""
+    near = difflib.get_close_matches(str(name)[:80], list(known), n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""

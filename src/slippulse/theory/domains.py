@@ -1,0 +1,30 @@
+"""What arguments of formulas may be."""
+
+from typing import Any
+
+import numpy as np
+
+from ..model.checks import check_number
+
+# Beyond this damping ratio, with tau_0 as near 1 as floating point comes, products of speed and damping would overflow.
+DOMAINS: dict[str, dict[str, Any]] = {
+    "tau0": {"above": 0.0, "below": 1.0},
+    "gamma": {"above": 0.0},
+    "dx": {"above": 0.0},
+    "damping_ratio": {"at_least": 0.0, "at_most": 1e100},
+}
+
+
+def check_domains(**values: Any) -> None:
+    """Refuse arguments of formulas, by name, that are outside DOMAINS."""
+    for key, value in values.items():
+        check_number(key, value, **DOMAINS[key])
+
+
+def of_one_shape(**arrays: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Arrays broadcast to each other."""
+    try:
+        return np.broadcast_arrays(*arrays.values())
+    except ValueError:
+        shapes = " and ".join(str(array.shape) for array in arrays.values())
+        raise ValueError(f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast") from None
