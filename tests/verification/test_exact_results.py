@@ -10,7 +10,7 @@ from scipy.integrate import quad
 import slippulse as sp
 from slippulse.measure.fronts import arrival, front_speed, position_at
 from slippulse.measure.pulses import leading_pulse
-from slippulse.model.balance import prestress_balance_position
+from slippulse.model.prestress import prestress_balance_position
 
 GAMMA = 2.0 / 3.0
 

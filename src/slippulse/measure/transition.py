@@ -3,8 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from ..model.balance import prestress_balance_position
-from ..model.prestress import prestress_from
+from ..model.prestress import prestress_balance_position, prestress_from
 from .fronts import arrival, longest_wait, path, position_at
 
 NAN = float("nan")

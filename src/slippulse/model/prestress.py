@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from .checks import check_number, short_repr
+from .checks import check_kind, check_number, short_repr
+from .roots import root_between
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -58,7 +59,7 @@ class Prestress:
             check_number("prestress.steps level", level, below=1.0)
             if position == 0.0:
                 raise ValueError(
-                    "prestress.steps: position is 0.0; allowed: any other number (use left and right)"
+                    "prestress.steps: position is 0.0; allowed: any other number (see left, right)"
                 )
         positions = [position for position, _ in self.steps]
         if twice := next((position for position in positions if positions.count(position) > 1), None):
@@ -69,13 +70,8 @@ class Prestress:
     @property
     def symmetric(self) -> bool:
         """Whether tau(-x) = tau(x), so that half the lattice is enough."""
-        mirrored_steps = {(-position, level) for position, level in self.steps}
-        mirrored_bumps = {(-centre, amplitude, width) for centre, amplitude, width in self.bumps}
-        return (
-            self.left == self.right
-            and set(self.steps) == mirrored_steps
-            and set(self.bumps) == mirrored_bumps
-        )
+        parts = {*self.steps, *self.bumps}
+        return self.left == self.right and parts == {(-position, *rest) for position, *rest in parts}
 
     def level(self, x: np.ndarray | float) -> np.ndarray:
         """Side level at positions x, steps included, the Gaussian and the bumps not."""
@@ -90,9 +86,10 @@ class Prestress:
         """Where the side level is constant, from left to right: left end, right end, level."""
         jumps = sorted({0.0, *(position for position, _ in self.steps)})
         inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
-        return list(
-            zip([-math.inf, *jumps], [*jumps, math.inf], self.level(np.array(inside)).tolist(), strict=True)
-        )
+        ends = pairwise([-math.inf, *jumps, math.inf])
+        return [
+            (*pair, level) for pair, level in zip(ends, self.level(np.array(inside)).tolist(), strict=True)
+        ]
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Pre-stress at positions x (units of H), exactly ``peak`` at x = 0 when there are no bumps."""
@@ -138,6 +135,31 @@ def prestress_from(attributes: Mapping) -> Prestress:
         allowed = "a JSON object of steps and bumps"
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
     return Prestress(left, right, width, peak, steps, bumps)
+
+
+def prestress_balance_position(prestress: Prestress) -> float:
+    """x_minus < 0, where the integral of the pre-stress from x_minus to infinity vanishes.
+
+    Raises ValueError: if its level is not 0 far to the right and negative far to the left; ArithmeticError: if numbers
+    are too large to compute with. Source: equation (11) of the paper, section III C.
+    """
+    check_kind("prestress", prestress, Prestress)
+    # Beyond here the profile is its side levels to rounding.
+    reaches = [(centre, 40.0 * width) for centre, _, width in prestress.bumps]
+    reaches += [(position, prestress.width) for position, _ in prestress.steps]
+    far = max([40.0 * prestress.width, *(abs(x) + width for x, width in reaches)])
+    right, left = float(prestress.level(np.asarray(far))), float(prestress.level(np.asarray(-far)))
+    if right != 0.0:
+        raise ValueError(f"prestress.right: {right!r}; allowed: 0, or the balance integral is not finite")
+    if left >= 0.0:
+        raise ValueError(f"prestress.left: {left!r}; allowed: < 0, or the pre-stress is never balanced")
+    reach = far
+    while prestress.integral(-reach, far) > 0.0:
+        reach *= 2.0
+    try:
+        return float(root_between(lambda x: prestress.integral(x, far), -reach, 0.0, xtol=1e-12 * reach))
+    except ValueError as error:
+        raise ArithmeticError(f"the balance of the pre-stress cannot be computed: {error}") from None
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:

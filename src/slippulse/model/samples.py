@@ -12,14 +12,11 @@ RECORDS = ("fronts", "fields", "samples")
 
 @dataclass
 class Samples:
-    """Where and when slip and slip velocity are recorded.
+    """Where and when slip and slip velocity are recorded, of the nearest block.
 
-    Parameters
-    ----------
-    times : increasing times >= 0, up to the duration of the scene, shape (n_times,)
-    positions : positions, shape (n_positions,); the nearest block answers
+    times, positions : arrays of one dimension; times increase from 0 or later to the duration of the scene at most
 
-    Raises ValueError: if they are not one-dimensional, or the times do not increase.
+    Raises ValueError: if they are no such arrays.
     """
 
     times: np.ndarray
@@ -34,11 +31,7 @@ class Samples:
             raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")
 
     def check_within(self, duration: float) -> None:
-        """Refuse samples after the end of a run.
-
-        Raises ValueError: naming the last time and the duration.
-        """
+        """Refuse samples after the end of a run."""
         if np.any(self.times > duration):
-            raise ValueError(
-                f"samples.times: {self.times[-1]:g}; allowed: up to the duration of the scene, {duration:g}"
-            )
+            allowed = f"up to the duration of the scene, {duration:g}"
+            raise ValueError(f"samples.times: {self.times[-1]:g}; allowed: {allowed}")

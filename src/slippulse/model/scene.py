@@ -17,14 +17,17 @@ RELEASES = ("total", "elastic")
 # The lattice in two ways, and the exact solution of its continuum limit.
 SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
-
-# A pulse narrower than this many blocks is a lattice object, not a solution of the continuum equation: its width
-# carries an error of about one block in this many.
-RESOLVED_BLOCKS = 8
 # A lattice holds every bump from the start, at 200 bytes a block.
 FARTHEST_BUMP = 10**6
 # After this number a step no longer moves the time.
 MOST_STEPS = 2.0**52
+# What a data file has of each run.
+ATTRIBUTES = (
+    "boundary", "gamma", "beta", "damping_ratio", "left", "right", "width", "peak", "steps_and_bumps", "duration", "dx",
+    "release", "scheme", "max_step", "order", "half_lattice", "friction_ratio", "resolved_blocks", "rate_strengthening",
+)  # fmt: skip
+# As Python has them: a data file has numbers of its own.
+KINDS = {"half_lattice": bool, "order": int, "resolved_blocks": int}
 
 
 @dataclass(frozen=True)
@@ -53,10 +56,9 @@ class Scene:
     order : of the Taylor step, 3 to 8; used by "localised" alone
     half_lattice : simulate x >= 0 only when the pre-stress is symmetric
     friction_ratio : mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio)
-    resolved_blocks : a pulse of fewer sliding blocks is flagged as unresolved
-    rate_strengthening : alpha (units of wave speed / H), by which friction grows with slip rate; 0 in the paper, below
-        0 where friction weakens; refused where no sliding state could slow down: alpha <= -2 sqrt(gamma), alpha < 0
-        under "stress"
+    resolved_blocks : a pulse of fewer sliding blocks is flagged as unresolved: its width errs by about a block
+    rate_strengthening : alpha (units of wave speed / H), by which friction grows (> 0) or weakens (< 0) with slip rate;
+        refused where slip would run away: alpha <= -2 sqrt(gamma), alpha < 0 under "stress"
 
     Raises ValueError: one line naming the key, the value and what is allowed.
 
@@ -75,7 +77,7 @@ class Scene:
     order: int = 4
     half_lattice: bool = True
     friction_ratio: float = 5.0
-    resolved_blocks: int = RESOLVED_BLOCKS
+    resolved_blocks: int = 8
     rate_strengthening: float = 0.0
 
     def __post_init__(self) -> None:
@@ -83,12 +85,9 @@ class Scene:
         check_choice("release", self.release, RELEASES)
         check_choice("scheme", self.scheme, SCHEMES)
         check_choice("order", self.order, ORDERS)
-        for name, kind, allowed in (
-            ("order", int, "a whole number"),
-            ("resolved_blocks", int, "a whole number >= 1"),
-            ("half_lattice", bool, "true or false"),
-        ):
+        for name, kind in KINDS.items():
             if type(getattr(self, name)) is not kind:
+                allowed = "true or false" if kind is bool else "a whole number >= 1"
                 raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
         check_kind("prestress", self.prestress, Prestress)
         check_number("duration", self.duration, above=0.0)
@@ -97,13 +96,11 @@ class Scene:
         check_number("beta", self.beta, at_least=0.0)
         check_number("friction_ratio", self.friction_ratio, at_least=0.0)
         check_number("resolved_blocks", self.resolved_blocks, at_least=1)
-        if self.boundary == "stress":
-            if not (isinstance(self.gamma, Real) and self.gamma == 0.0) or isinstance(self.gamma, bool):
-                raise ValueError(
-                    f"gamma: {short_repr(self.gamma)}; allowed: 0 or left out under boundary 'stress' (no leaf springs)"
-                )
-        else:
+        if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
+        elif not isinstance(self.gamma, Real) or isinstance(self.gamma, bool) or self.gamma != 0.0:
+            allowed = "0 or left out under boundary 'stress' (no leaf springs)"
+            raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
         check_number("rate_strengthening", self.rate_strengthening)
         check_runaway(float(self.gamma), float(self.rate_strengthening))
         for centre, _, width in self.prestress.bumps:
@@ -112,7 +109,11 @@ class Scene:
             raise ValueError(
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
-        bound = self._largest_step()
+        stiffness, bound = float(self.gamma) * float(self.dx) ** 2, self.largest_stable_step
+        at = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
+        if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
+            allowed = "numbers for which a stable step can be computed"
+            raise ValueError(f"gamma: {self.gamma!r}, at {at}; allowed: {allowed}")
         check_number("max_step", self.max_step, above=0.0)
         if self.scheme != "continuum":
             check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
@@ -120,23 +121,11 @@ class Scene:
         for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio", "rate_strengthening"):
             object.__setattr__(self, name, float(getattr(self, name)))
         if self.max_step > bound:
+            drag = f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
             raise ValueError(
                 f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
-                f" {self.scheme!r} at beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {self.gamma * self.dx**2:.4g}"
-                + f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
-                * bool(self.rate_strengthening)
+                f" {self.scheme!r} at {at}{drag if self.rate_strengthening else ''}"
             )
-
-    def _largest_step(self) -> float:
-        """The stability bound, refused where there is none."""
-        stiffness = float(self.gamma) * float(self.dx) ** 2
-        bound = self.largest_stable_step
-        if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
-            raise ValueError(
-                f"gamma: {self.gamma!r}, at beta/dx = {self.damping_ratio:.4g} and gamma dx^2 = {stiffness:.4g};"
-                " allowed: numbers for which a stable step can be computed"
-            )
-        return bound
 
     @property
     def damping_ratio(self) -> float:
@@ -161,20 +150,10 @@ class Scene:
 
     def attributes(self) -> dict:
         """Every parameter as plain numbers and text, for attributes of a data file; inverse of `from_attributes`."""
-        profile = self.prestress
-        parts = {name: [list(part) for part in getattr(profile, name)] for name in ("steps", "bumps")}
-
-        def own(*names: str) -> dict:
-            return {name: getattr(self, name) for name in names}
-
-        return {
-            **own("boundary", "gamma", "beta", "damping_ratio"),
-            **{name: getattr(profile, name) for name in ("left", "right", "width", "peak")},
-            "steps_and_bumps": json.dumps(parts),
-            **own("duration", "dx", "release", "scheme", "max_step", "order"),
-            "half_lattice": int(self.half_lattice),
-            **own("friction_ratio", "resolved_blocks", "rate_strengthening"),
-        }
+        parts = {name: getattr(self.prestress, name) for name in ("steps", "bumps")}
+        values = vars(self.prestress) | vars(self) | {"half_lattice": int(self.half_lattice)}
+        values |= {"damping_ratio": self.damping_ratio, "steps_and_bumps": json.dumps(parts)}
+        return {name: values[name] for name in ATTRIBUTES}
 
     def _repr_html_(self) -> str:
         """The parameters as a table, for a notebook."""
@@ -191,21 +170,13 @@ class Scene:
         if not hasattr(attributes, "keys"):
             raise ValueError(f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values")
         try:
-            # As whole numbers of a data file, which are not Python's.
-            kinds = {"half_lattice": bool, "order": int, "resolved_blocks": int}
-            for name in kinds:
-                most = 1 if name == "half_lattice" else None
+            for name, kind in KINDS.items():
+                most = 1 if kind is bool else None
                 check_number(name, attributes[name], whole=True, at_least=0, at_most=most)
-            named = (
-                "boundary", "release", "scheme", "duration", "dx", "gamma", "beta", "max_step", "friction_ratio",
-            )  # fmt: skip
-            return cls(
-                prestress=prestress_from(attributes),
-                # Data files of the paper's model need not name it.
-                rate_strengthening=attributes.get("rate_strengthening", 0.0),
-                **{name: kind(attributes[name]) for name, kind in kinds.items()},
-                **{name: attributes[name] for name in named},
-            )
+            # Data files of the paper's model need not name the rate strengthening.
+            given = {"rate_strengthening": 0.0, **attributes, "prestress": prestress_from(attributes)}
+            given |= {name: kind(given[name]) for name, kind in KINDS.items()}
+            return cls(**{name: given[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
             raise ValueError(f"{error.args[0]}: missing; allowed: every attribute of a run") from None
 
@@ -215,7 +186,5 @@ def scene_of(run: Any) -> Scene:
 
     Raises as `Scene.from_attributes` does.
     """
-    if hasattr(run, "_asdict"):
-        return Scene.from_attributes(run._asdict())
-    attributes = getattr(run, "attrs", None)
+    attributes = run._asdict() if hasattr(run, "_asdict") else getattr(run, "attrs", None)
     return Scene.from_attributes(attributes or run)

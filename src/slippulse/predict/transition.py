@@ -5,8 +5,7 @@ from functools import cache, partial
 
 import pandas as pd
 
-from ..model.balance import prestress_balance_position
-from ..model.prestress import Prestress
+from ..model.prestress import Prestress, prestress_balance_position
 from ..model.roots import root_between
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack

@@ -1,5 +1,2 @@
-"""One module a rule of the workflow: ``run(files, outputs, settings)`` reads, calls and writes.
-
-What a module imports, at its top or inside, is what its rule depends on. ``FILES`` names the data files of the package
-that it reads, relative to the package.
-"""
+"""One module a rule of the workflow: ``run(files, outputs, settings)`` reads, calls and writes; what it imports, at its
+top or inside, is what its rule depends on, and data files of the package that it reads, named in its ``FILES``."""

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from ..model.balance import prestress_balance_position
-from ..model.prestress import Prestress
+from ..model.prestress import Prestress, prestress_balance_position
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.runs import simulate_on_lattice

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from ..model.balance import prestress_balance_position
 from ..model.checks import check_number
-from ..model.prestress import Prestress
+from ..model.prestress import Prestress, prestress_balance_position
 from ..model.roots import root_between
 from .exact_transition import Fronts
 

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_number
-from ..model.prestress import Prestress
+from ..model.prestress import Prestress, prestress_balance_position
 from .domains import check_domains
 
 
