@@ -79,17 +79,12 @@ def run_count(simulation: Mapping) -> int:
 def _axes(simulation: Mapping) -> list[Sequence]:
     """The lists whose product the runs are."""
     release, right, rule = simulation["release"], simulation.get("right"), simulation.get("beyond")
-    shapes = (
-        [simulation["profiles"]]
-        if "profiles" in simulation
-        else [
-            simulation["left"],
-            [None] if right == "same" else right,
-            simulation["width"],
-            # One step a level, at the position from which the level holds.
-            [((rule["position"], level),) for level in rule["levels"]] if rule else [()],
-        ]
-    )
+    # One step a level, at the position from which the level holds.
+    steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
+    if "profiles" in simulation:
+        shapes = [simulation["profiles"]]
+    else:
+        shapes = [simulation["left"], [None] if right == "same" else right, simulation["width"], steps]
     return [
         [release] if isinstance(release, str) else release,
         *shapes,
@@ -137,4 +132,4 @@ def _samples(rule: Mapping | None, duration: float) -> Samples | None:
         return None
     extent, count = rule["extent"], rule["positions"]
     positions = np.linspace(-extent, extent, count) if count > 1 else np.zeros(1)
-    return Samples(times=np.linspace(0.0, duration, rule["times"]), positions=positions)
+    return Samples(np.linspace(0.0, duration, rule["times"]), positions)

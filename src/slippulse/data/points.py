@@ -12,17 +12,10 @@ from ..model.checks import check_number, short_repr
 def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     """One run of a sweep as `simulate` returned it, as far as it was recorded.
 
-    Parameters
-    ----------
     sweep : data of a sweep, such as ``xarray.open_dataset("results/data/arrest.nc")``
     index : number of the run, from 0
 
-    Raises
-    ------
-    TypeError
-        If it is not a sweep.
-    ValueError
-        If it has no such run, or its blocks are not those of its runs.
+    Raises TypeError: if it is not a sweep; ValueError: if it has no such run, or its blocks are not those of its runs.
     """
     if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
         raise TypeError(

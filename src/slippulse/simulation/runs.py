@@ -161,13 +161,3 @@ def died_out(run: LatticeRun) -> bool:
             if ahead.any() and run.prestress[ahead][np.argmin(side * run.x[ahead])] > 0.0:
                 return True
     return False
-
-
-def describe_flags(scene: Scene, numbers: dict) -> str:
-    """The figures behind the flags, in one line."""
-    return (
-        f"lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding at"
-        f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse {numbers['pulse_blocks']}, needed"
-        f" {scene.resolved_blocks}; smallest velocity {numbers['min_velocity']:.3g}; energy residual"
-        f" {numbers['energy_residual']:.2g}, allowed {ENERGY_RESIDUAL:g}"
-    )

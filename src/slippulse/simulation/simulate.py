@@ -13,7 +13,7 @@ from ..solver.fixed_step import run_by_scheme
 from ..solver.lattice import UnstableRun
 from ..solver.run import LatticeRun
 from .continuum import solve_scene
-from .runs import dataset_of, describe_flags, run_all
+from .runs import ENERGY_RESIDUAL, dataset_of, run_all
 
 
 class UnresolvedRun(RuntimeError):
@@ -63,7 +63,7 @@ def simulate(
         progress = bar() if progress else None
     data = described(dataset_of(scene, samples, _run(scene, samples, progress)))
     if strict and (flags := data.attrs["run_flags"]):
-        raise UnresolvedRun(f"the run is flagged: {flags} ({describe_flags(scene, data.attrs)})")
+        raise UnresolvedRun(f"the run is flagged: {flags} ({_describe_flags(scene, data.attrs)})")
     return data
 
 
@@ -136,6 +136,16 @@ def bar(stream=None) -> Callable[[float], None]:
             shown.close()
 
     return draw
+
+
+def _describe_flags(scene: Scene, numbers: dict) -> str:
+    """The figures behind the flags, in one line."""
+    return (
+        f"lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding at"
+        f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse {numbers['pulse_blocks']}, needed"
+        f" {scene.resolved_blocks}; smallest velocity {numbers['min_velocity']:.3g}; energy residual"
+        f" {numbers['energy_residual']:.2g}, allowed {ENERGY_RESIDUAL:g}"
+    )
 
 
 def _run(scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None) -> LatticeRun:

@@ -69,8 +69,6 @@ def pulse_behind_front(
 ) -> SteadyPulse:
     """Steady pulse in uniform pre-stress behind a front of given speed.
 
-    Parameters
-    ----------
     tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
     beta, speed : damping, >= 0 (0 is the limit dx -> 0 at any damping ratio), and front speed, > 1
     rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
@@ -90,15 +88,11 @@ def pulse_behind_front(
     except (ArithmeticError, ValueError):
         pulse = None
     # Floats of Python overflow without a word.
-    if not (
-        pulse and all(0.0 < getattr(pulse, name) < math.inf for name in ("width", "slip", "peak_velocity"))
-    ):
+    if not pulse or not all(0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)):
         critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
         if abs(alpha) > 0.5 * critical:
-            raise ValueError(
-                f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size at gamma = {gamma:.4g},"
-                f" speed = {speed:.6g} without beta, or no pulse is steady"
-            )
+            at = f"at gamma = {gamma:.4g}, speed = {speed:.6g} without beta, or no pulse is steady"
+            raise ValueError(f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size {at}")
         point = f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
         raise ValueError(f"{point}; allowed: numbers whose pulse can be computed")
     return pulse
