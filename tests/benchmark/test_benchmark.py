@@ -9,9 +9,8 @@ import pytest
 import tolerances as tol
 
 import slippulse as sp
-from slippulse.data.records import Origin, write_record
-from tests.benchmark import __main__ as command
-from tests.benchmark import critical_path, measure, stencils
+from tests.benchmark import __main__ as benchmark
+from tests.benchmark import critical_path, stencils
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
 
@@ -56,43 +55,20 @@ def test_plain_numpy_is_the_textbook_scheme():
 
 def test_the_kernel_is_timed_with_everything_included():
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 5.0, 0.05, gamma=0.65, beta=0.005)
-    rate, blocks = measure.kernel_rate(scene, 10.0)
+    rate, blocks = benchmark.kernel_rate(scene, 10.0)
     assert rate > 0.0
     assert 30 < blocks < 80
-
-
-def test_records_are_read_by_step(tmp_path):
-    results = tmp_path / "results"
-    assert measure.pipeline(results) == {}
-    results.mkdir()
-    jobs = (("simulate", 2.5, 150), ("simulate", 1.5, 90), ("measure", 1.0, 80))
-    for number, (step, seconds, memory) in enumerate(jobs):
-        (results / f"{number}.csv").touch()
-        used = {"seconds": seconds, "processor_seconds": seconds, "memory_MB": memory}
-        origin = Origin((f"{number}.csv",), step, "", "", frozenset())
-        write_record(origin, used, results)
-    by_step = {"simulate": 4.0, "measure": 1.0}
-    assert measure.pipeline(results) == {"job_seconds": 5.0, "largest_memory_MB": 150, "by_step": by_step}
 
 
 @pytest.mark.slow
 def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatch, capsys):
     """On scenes a hundredth of the size."""
-    small = {
-        "DURATION": 20.0,
-        "DX": 0.05,
-        "REPEATS": 1,
-        "TURNS": 2,
-        "POWERS": (3, 4),
-        "LENGTH": 60.0,
-        "CRACK": (60.0, 90.0),
-    }
-    small |= {"PULSE": (20.0, 30.0), "DURATIONS": (10.0, 20.0), "SPACINGS": (0.1, 0.05)}
-    for name, value in small.items():
-        monkeypatch.setattr(measure, name, value)
-    command.main(str(project / "config/config.yaml"), str(tmp_path))
+    small = {"DURATION": 20.0, "DX": 0.05, "REPEATS": 1, "TURNS": 2, "POWERS": (3, 4), "LENGTH": 60.0}
+    for name, value in (small | {"CRACK": (60.0, 90.0), "PULSE": (20.0, 30.0)}).items():
+        monkeypatch.setattr(benchmark, name, value)
+    benchmark.main(str(project / "config/config.yaml"), str(tmp_path))
     found = json.loads((tmp_path / "benchmark.json").read_text(encoding="utf-8"))
-    assert set(found) == {"machine", "kernel", "whole_scene", "exponents", "pipeline"}
+    assert set(found) == {"machine", "kernel", "whole_scene"}
     assert found["machine"]["cores"] >= 1 and "numba" in found["machine"]["versions"]
     scene = found["whole_scene"]
     for kind in ("numba", "numpy"):
