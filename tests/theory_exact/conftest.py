@@ -30,6 +30,4 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
     as_numbers = rupture.as_numbers
     monkeypatch.setattr(rupture, "FrontLaw", Law)
     for module in (rupture, front_law):
-        monkeypatch.setattr(
-            module, "as_numbers", lambda *a, **k: np.asarray(nudged(as_numbers(*a, **k), rng))
-        )
+        monkeypatch.setattr(module, "as_numbers", lambda *a, **k: np.array(nudged(as_numbers(*a, **k), rng)))

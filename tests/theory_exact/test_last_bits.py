@@ -9,13 +9,26 @@ from slippulse.model.prestress import Prestress
 from slippulse.theory.rupture import Rupture
 
 # Some in each run of the tests, the others with the slow ones.
-SCENES = [*range(20), *(pytest.param(number, marks=pytest.mark.slow) for number in range(20, 200))]
+SCENES = [*range(18), *(pytest.param(number, marks=pytest.mark.slow) for number in range(18, 200))]
 # How far before its end a rupture is looked at, relative.
 BEFORE = 1e-7
 
 
+# Ends at which the width of a pulse and the first stick have been wrong; a front 48 times as fast as the waves.
+KNOWN = [
+    {"prestress": profile, "gamma": gamma, "damping_ratio": ratio, "release": "total", "duration": duration}
+    for profile, gamma, ratio, durations in (
+        (Prestress(0.63, 0.416, 1.352), 0.215, 1.703, (20.0, 30.0)),
+        (Prestress(0.5, 0.91), 0.033, 4.5321, (16.77, 17.0)),
+    )
+    for duration in durations
+]
+
+
 def scene(number: int) -> dict:
-    """Keys of a random rupture."""
+    """Keys of a random rupture, or of a known one."""
+    if number < 0:
+        return KNOWN[number]
     rng = np.random.default_rng(number)
     left, right = rng.uniform(-0.8, 0.9, 2)
     if rng.random() < 0.4:
@@ -41,14 +54,15 @@ def scene(number: int) -> dict:
 def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarray]:
     """Every method of a rupture, at positions, and at a time that is or was its end."""
     found = {
-        "release_time": rupture.release_time(x),
-        "stick_time": rupture.stick_time(x),
-        "final_slip": rupture.final_slip(x),
-        "horizon": rupture.horizon(x),
-        "transition_time": rupture.transition_time,
-        "transition_length": rupture.transition_length,
+        **{
+            name: getattr(rupture, name)(x)
+            for name in ("release_time", "stick_time", "final_slip", "horizon")
+        },
+        **{
+            name: getattr(rupture, name)
+            for name in ("transition_time", "transition_length", "largest_velocity")
+        },
         "first_stick": (rupture.first_stick or (np.nan, np.nan))[1],
-        "largest_velocity": rupture.largest_velocity,
         "limit": (rupture.limit.x, rupture.limit.time) if rupture.limit else (np.nan, np.nan),
         "ends": [(end.x, end.time) for pair in rupture.front_ends for end in pair],
         **at(rupture, x, time),
@@ -57,13 +71,10 @@ def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarra
 
 
 def at(rupture: Rupture, x: np.ndarray, time: float) -> dict:
-    """Those that take a time."""
     return {
         "fronts_at": rupture.fronts_at(time),
         "pulse_width": [rupture.pulse_width(time, side) for side in ("left", "right")],
-        "slip_velocity": rupture.slip_velocity(x, time),
-        "slip": rupture.slip(x, time),
-        "strain": rupture.strain(x, time),
+        **{name: getattr(rupture, name)(x, time) for name in ("slip_velocity", "slip", "strain")},
         "map": rupture.map([0.5 * time, time], x, ("slip_velocity",))["slip_velocity"],
     }
 
@@ -76,7 +87,7 @@ def reasons(rupture: Rupture) -> list[str]:
 def positions(rupture: Rupture, number: int) -> np.ndarray:
     """Some, and those of the fronts at the end that have not stopped, where T(x) is a square root."""
     fronts = rupture.fronts_at(rupture.duration)
-    inside = np.random.default_rng((number, 1)).uniform(*fronts, 6)
+    inside = np.random.default_rng((number % 1000, 1)).uniform(*fronts, 6)
     going = [end.x for pair in rupture.front_ends for end in pair if end.reason == "duration"]
     return np.concatenate([inside, [0.0], going])
 
@@ -98,15 +109,14 @@ def test_inputs_nudged_in_their_last_bits(number):
         assert found[name] == pytest.approx(value, rel=tolerance, abs=tolerance, nan_ok=True), name
 
 
-@pytest.mark.parametrize("number", SCENES)
+@pytest.mark.parametrize("number", [*range(-len(KNOWN), 0), *SCENES])
 def test_the_end_is_a_time_like_any_other(number):
     """Answers at the end of a rupture are those of one that goes on, and their own limit from below."""
     keys = scene(number)
     rupture = Rupture(**keys)
-    duration = rupture.duration
-    longer = Rupture(**keys | {"duration": 1.1 * duration})
-    x = positions(rupture, number)
+    duration, x = rupture.duration, positions(rupture, number)
     inside, fronts = x[:7], x[7:]
+    longer = Rupture(**keys | {"duration": 1.1 * duration})
     here = at(rupture, inside, duration)
     for name, value in at(longer, inside, duration).items():
         assert here[name] == pytest.approx(value, rel=END, abs=END, nan_ok=True), name
@@ -114,6 +124,8 @@ def test_the_end_is_a_time_like_any_other(number):
         value = getattr(longer, name)(inside)
         value = np.where(value <= duration, value, np.nan)
         assert getattr(rupture, name)(inside) == pytest.approx(value, rel=END, abs=END, nan_ok=True), name
+    first = longer.first_stick if longer.first_stick and longer.first_stick[0] <= duration else None
+    assert (rupture.first_stick or (np.nan,)) == pytest.approx(first or (np.nan,), rel=END, nan_ok=True)
     # What the front has come to at the end is released then, and has not moved.
     known = np.isfinite(rupture.slip(fronts, duration))
     assert np.array_equal(np.isfinite(rupture.release_time(fronts)), known)

@@ -7,13 +7,7 @@ import numpy as np
 import pytest
 
 import slippulse as sp
-from slippulse.theory import (
-    continuum_front_speed,
-    front_speed,
-    lattice_front_speed,
-    prestress_for_speed,
-    steady_front,
-)
+from slippulse.theory import front_speed, lattice_front_speed, prestress_for_speed, steady_front
 
 LEVELS = np.concatenate([np.geomspace(0.01, 0.5, 10), 1.0 - np.geomspace(0.4, 1e-4, 10)])
 # In tau_0, relative: rounding of some 200 terms.
@@ -66,12 +60,9 @@ def test_many_levels_and_one_by_one_agree(ratio, release):
 @pytest.mark.parametrize("release", ["total", "elastic"])
 def test_next_to_one(release):
     """The first terms in 1/v take over from the quadrature without a jump."""
-    edge = {"total": 1e-10, "elastic": 1e-13}[release]
-    rest = np.array([1.02, 0.98]) * edge
-    levels = 1.0 - rest
-    speeds = front_speed(levels, 0.7, release)
-    power = {"total": 1.0, "elastic": 0.5}[release]
-    scaled = speeds * (1.0 - levels) ** power
+    edge, power = {"total": (1e-10, 1.0), "elastic": (1e-13, 0.5)}[release]
+    levels = 1.0 - np.array([1.02, 0.98]) * edge
+    scaled = front_speed(levels, 0.7, release) * (1.0 - levels) ** power
     # One rounding of ln(tau_0) over 1 - tau_0.
     assert scaled[0] == pytest.approx(scaled[1], rel=10.0 * np.finfo(float).eps / edge)
 
@@ -87,9 +78,8 @@ def test_springs_without_damping():
 @pytest.mark.parametrize("release", ["total", "elastic"])
 @pytest.mark.parametrize("ratio", [0.0, 0.05, 1.0, 6.0])
 def test_springs_of_no_strength(ratio, release):
-    free = front_speed(0.5, ratio, release)
-    for gamma in (1e-12, 1e-20, 1e-40):
-        assert lattice_front_speed(0.5, gamma, 1.0, ratio, release) == pytest.approx(free, rel=1e-10)
+    found = [lattice_front_speed(0.5, gamma, 1.0, ratio, release) for gamma in (1e-12, 1e-20, 1e-40)]
+    assert found == pytest.approx([front_speed(0.5, ratio, release)] * 3, rel=1e-10)
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
@@ -108,18 +98,16 @@ def test_springs_next_to_one(ratio, release):
 def test_the_continuum_is_the_limit_of_the_lattice():
     """dx -> 0 at fixed beta, first order in dx."""
     tau, gamma, beta = 0.5, 1.0, 0.3
-    limit = continuum_front_speed(tau, gamma, beta)
+    limit = sp.theory.continuum_front_speed(tau, gamma, beta)
     assert limit == pytest.approx(1.3545709229571927, rel=1e-15)
     errors = [lattice_front_speed(tau, gamma, dx, beta / dx, "elastic") - limit for dx in (4e-4, 2e-4, 1e-4)]
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=1e-2)
     assert abs(2.0 * errors[2] - errors[1]) < 1e-6
-    assert continuum_front_speed(0.3, 0.0, 1.0) == pytest.approx(1.0 / np.sqrt(0.7), rel=1e-15)
+    assert sp.theory.continuum_front_speed(0.3, 0.0, 1.0) == pytest.approx(1.0 / np.sqrt(0.7), rel=1e-15)
 
 
 def test_a_fold():
     """Strong damping under the rule "total": the speed at the least pre-stress is above 1, and grows from there."""
-    with pytest.raises(ValueError, match=r"tau0: 0.33; allowed: > 0.336545"):
-        lattice_front_speed(0.33, 0.5, 1.0, 3.0)
     speeds = [lattice_front_speed(tau, 0.5, 1.0, 3.0) for tau in (0.33655, 0.34, 0.4, 0.6, 0.9)]
     assert speeds[0] > 1.39 and np.all(np.diff(speeds) > 0.0)
 
@@ -139,60 +127,32 @@ def test_block_by_block(v, b, g, release):
     assert np.all(np.diff(front.ahead) > 0.0)
 
 
-@pytest.mark.parametrize(
-    ("tau", "gamma", "dx", "b", "release"),
-    [
-        (0.6, 0.05, 1.0, 0.0, "total"),
-        (0.6, 0.3, 1.0, 0.0, "total"),
-        (0.6, 0.05, 1.0, 0.1, "total"),
-        (0.6, 0.05, 1.0, 0.1, "elastic"),
-        (0.6, 0.3, 1.0, 0.1, "elastic"),
-        (0.8, 0.5, 1.0, 0.2, "total"),
-        (0.9, 1.0, 1.0, 0.3, "elastic"),
-        (0.5, 0.5, 1.0, 3.0, "total"),
-        (0.5, 0.65, 0.2, 0.3, "total"),
-        (0.4, 1.0, 0.1, 1.0, "elastic"),
-    ],
-)
-def test_lattice(tau, gamma, dx, b, release):
-    speed = lattice_front_speed(tau, gamma, dx, b, release)
-    run = sp.simulate(
-        sp.Scene(
-            boundary="displacement", gamma=gamma, beta=b * dx, dx=dx, release=release, order=8, max_step=0.15,
-            prestress=sp.Prestress(tau, tau), duration=600.0 * dx / speed, resolved_blocks=1,
+# Level, gamma, dx, damping ratio, release, rate strengthening; without leaf springs the fronts of a crack.
+LATTICES = [
+    (0.6, 0.05, 1.0, 0.0, "total"), (0.6, 0.3, 1.0, 0.0, "total"), (0.6, 0.05, 1.0, 0.1, "total"),
+    (0.6, 0.05, 1.0, 0.1, "elastic"), (0.6, 0.3, 1.0, 0.1, "elastic"), (0.8, 0.5, 1.0, 0.2, "total"),
+    (0.9, 1.0, 1.0, 0.3, "elastic"), (0.5, 0.5, 1.0, 3.0, "total"), (0.5, 0.65, 0.2, 0.3, "total"),
+    (0.4, 1.0, 0.1, 1.0, "elastic"),
+    *((0.5, 0.65, 0.4, 0.1, release, alpha) for release in ("total", "elastic") for alpha in (0.9, -0.6)),
+    *(
+        (tau, 0.0, 0.02, ratio, release)
+        for tau, ratio in (
+            (0.2, 0.02), (0.35, 0.05), (0.5, 0.1), (0.65, 0.2), (0.8, 0.3), (0.3, 0.5), (0.45, 1.0), (0.6, 1.5),
+            (0.7, 2.0), (0.55, 3.0),
         )
-    )  # fmt: skip
+        for release in ("total", "elastic")
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("case", LATTICES, ids=str)
+def test_lattice(case):
+    tau, gamma, dx, b, release, alpha = (*case, 0.0)[:6]
+    law = lattice_front_speed(tau, gamma, dx, b, release, alpha) if gamma else front_speed(tau, b, release)
+    accuracy = {"order": 8, "max_step": 0.15, "resolved_blocks": 1} if gamma else {"max_step": 0.05}
+    values = {"gamma": gamma, "beta": b * dx, "release": release, "rate_strengthening": alpha} | accuracy
+    boundary, duration = ("displacement", 600.0 * dx / law) if gamma else ("stress", 14.0)
+    run = sp.simulate(sp.Scene(boundary, sp.Prestress(tau, tau), duration, dx, **values))
     x, t = run.x.to_numpy(), run.release_time.to_numpy()
-    late = (x > 400.0 * dx) & np.isfinite(t)
-    assert np.polyfit(t[late], x[late], 1)[0] == pytest.approx(speed, rel=LATTICE)
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        (lambda: front_speed(0.5, -1.0), "damping_ratio: -1.0; allowed: a finite number and >= 0"),
-        (lambda: front_speed(0.5, np.nan), "damping_ratio: nan; allowed"),
-        (lambda: front_speed(0.5, [0.1, np.inf]), "damping_ratio: inf; allowed"),
-        (lambda: front_speed(0.5, 1e200), "damping_ratio: 1e[+]200; allowed: .*<= 1e[+]100"),
-        (lambda: front_speed([0.5, 1.0], 0.1), "tau0: 1.0; allowed: .*< 1"),
-        (lambda: front_speed(0.0, 0.1), "tau0: 0.0; allowed: .*> 0"),
-        (lambda: front_speed(0.5, 0.1, "other"), "release: 'other'; allowed: total, elastic"),
-        (lambda: prestress_for_speed(1.0, 0.1), "speed: 1.0; allowed: .*> 1"),
-        (lambda: prestress_for_speed(1e200, 0.1), "speed: 1e[+]200; allowed"),
-        (
-            lambda: lattice_front_speed(0.3, 1.0, 1.0, 0.1),
-            "tau0: 0.3; allowed: > 0.50849, values whose front outr",
-        ),
-        (lambda: lattice_front_speed(0.5, 1e300, 1e300), "tau0: 0.5; allowed: > 1"),
-        (lambda: lattice_front_speed(0.5, 1.0, 0.0), "dx: 0.0; allowed"),
-        (lambda: lattice_front_speed(0.5, 0.0, 1.0), "gamma: 0.0; allowed"),
-        (lambda: continuum_front_speed(0.3, 2.0, 0.3), "tau0: 0.3; allowed: values whose front outruns"),
-        (lambda: continuum_front_speed(0.3, 2.0, 0.0), "beta: 0.0; allowed"),
-        (lambda: steady_front(0.9, 0.1), "speed: 0.9; allowed: .*> 1"),
-        (lambda: steady_front(1.5, 1000.0), "damping_ratio: 1000.0; allowed"),
-    ],
-)
-def test_refused(call, message):
-    with pytest.raises(ValueError, match=message) as caught:
-        call()
-    assert "\n" not in str(caught.value)
+    late = (x > 0.67 * np.max(x, where=np.isfinite(t), initial=0.0)) & np.isfinite(t)
+    assert np.polyfit(t[late], x[late], 1)[0] == pytest.approx(law, rel=LATTICE)
