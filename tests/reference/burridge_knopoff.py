@@ -11,8 +11,7 @@ import numpy as np
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
-RELATIVE, ABSOLUTE = 1e-12, 1e-13
-LONGEST_STEP = 0.1
+ACCURACY = {"max_step": 0.1, "rtol": 1e-12, "atol": 1e-13}
 MESH = np.linspace(0.0, 1.0, 9)[1:]
 # Events this close are one: the two sides of a symmetric chain.
 TOGETHER = 1e-9
@@ -63,18 +62,14 @@ class Chain:
         time = 0.0
         while time < duration and self.sliding.any():
             state = np.concatenate([self.slip, self.velocity])
-            solver = DOP853(
-                self.rate, time, state, duration, max_step=LONGEST_STEP, rtol=RELATIVE, atol=ABSOLUTE
-            )
+            solver = DOP853(self.rate, time, state, duration, **ACCURACY)
             while solver.status == "running":
                 solver.step()
                 path = solver.dense_output()
                 event = self._first_event(path)
+                time, state = (solver.t, solver.y) if event is None else (event, path(event))
                 if event is not None:
-                    time = event
-                    state = path(time)
                     break
-                time, state = solver.t, solver.y
             self.slip, self.velocity = np.split(state.copy(), 2)
             self._apply(time)
         return self
@@ -103,17 +98,12 @@ class Chain:
     def _apply(self, time: float) -> None:
         """Stick what has stopped and release what has reached the threshold."""
         state = np.concatenate([self.slip, self.velocity])
-        rate = self.rate(time, state)
-        slip_rate, velocity_rate = np.split(rate, 2)
-        force_rate = self.elastic(slip_rate) - self.pull
-        if self.release == "total":
-            force_rate += self.drag(velocity_rate)
+        slip_rate, velocity_rate = np.split(self.rate(time, state), 2)
+        force_rate = self.threshold_force(slip_rate, velocity_rate) - self.pull
         margin = self._margins(state)
         stops = self.sliding & (margin <= TOGETHER * np.abs(velocity_rate)) & (velocity_rate < 0.0)
         starts = ~self.sliding & (margin <= TOGETHER * np.abs(force_rate)) & (force_rate > 0.0)
-        self.sliding[stops] = False
-        self.velocity[stops] = 0.0
-        self.stick_time[stops] = time
+        self.sliding[stops], self.velocity[stops], self.stick_time[stops] = False, 0.0, time
         self.sticks += int(stops.sum())
         self._release(starts, time)
 

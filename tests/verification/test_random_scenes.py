@@ -9,7 +9,7 @@ import pytest
 import tolerances as tol
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
-from reference.lattice_state import sliding, threshold_stress
+from reference.lattice_state import sliding, threshold_stress, total_stress
 
 import slippulse as sp
 from slippulse.model.scene import ORDERS, RELEASES
@@ -78,14 +78,10 @@ def check_invariants(scene):
     run = sp.simulate(scene, samples)
     release, stick = run["release_time"].values, run["stick_time"].values
     kinds = {
-        "scenes": True,
-        "in which blocks slip": np.isfinite(release).any(),
-        "in which blocks stick": np.isfinite(stick).any(),
-        "asymmetric": not scene.symmetric,
-        "stress boundary": scene.boundary == "stress",
-        "textbook scheme": scene.scheme == "fixed_step",
-        "strongly damped": scene.damping_ratio >= 1.0,
-    }
+        "scenes": True, "in which blocks slip": np.isfinite(release).any(), "asymmetric": not scene.symmetric,
+        "in which blocks stick": np.isfinite(stick).any(), "stress boundary": scene.boundary == "stress",
+        "textbook scheme": scene.scheme == "fixed_step", "strongly damped": scene.damping_ratio >= 1.0,
+    }  # fmt: skip
     seen.update(kind for kind, held in kinds.items() if held)
 
     # Slip velocity is never negative, slip never decreases.
@@ -103,9 +99,15 @@ def check_invariants(scene):
     # The energy balance is kept, or the run is flagged, whatever the scheme.
     flagged = "energy" in run.attrs["run_flags"]
     assert flagged == (run.attrs["energy_residual"] > tol.RANDOM_ENERGY)
+    assert not any(run[name].values[np.isnan(release)].any() for name in FIELDS[2:])
     if scene.scheme == "localised":
-        stuck = threshold_stress(run)[1:-1][~sliding(run)[1:-1]]
+        # Stuck at rest below the threshold; sliding as the equation of motion says.
+        moving, total = sliding(run)[1:-1], total_stress(run)[1:-1]
+        stuck = threshold_stress(run)[1:-1][~moving]
         assert np.max(stuck, initial=-np.inf) <= 1.0 + tol.STRESS_AT_END
+        assert not run["slip_velocity"].values[1:-1][~moving].any()
+        force = np.where(moving, total, 0.0)
+        assert np.max(np.abs(run["slip_acceleration"].values[1:-1] - force)) < tol.STRESS_AT_END
         # Flagged only where the run is coarse or strongly damped.
         assert not flagged or run.attrs["steps"] < 20 or scene.order == 3 or scene.damping_ratio >= 1.0
         seen["flagged for energy"] += flagged
@@ -134,7 +136,6 @@ def check_exact_solution(scene):
 
 
 def mirrored(scene: sp.Scene) -> sp.Scene:
-    """The same scene with left and right exchanged."""
     profile = scene.prestress
     steps, bumps = (tuple((-x, *rest) for x, *rest in parts) for parts in (profile.steps, profile.bumps))
     turned = dataclasses.replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)

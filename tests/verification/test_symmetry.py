@@ -1,6 +1,5 @@
 """What must not change a result: the mirror, half the lattice, the size of the first lattice, the length of a call."""
 
-import numpy as np
 import pytest
 import tolerances as tol
 
@@ -50,9 +49,7 @@ def test_the_mirror_image_and_half_the_lattice_give_the_same(boundary, scheme, r
 
 @pytest.mark.parametrize("scheme", LATTICES)
 @pytest.mark.parametrize("profile", [EVEN, UNEVEN], ids=["even", "uneven"])
-def test_the_size_of_the_first_lattice_and_the_length_of_a_call_do_not_change_a_bit(
-    monkeypatch, profile, scheme
-):
+def test_the_first_size_and_the_length_of_a_call_do_not_change_a_bit(monkeypatch, profile, scheme):
     whole = simulated(profile, scheme=scheme)
     for name, value in {"FIRST_BLOCKS": 16, "PAGE": 8, "BEYOND_PAGES": 3, "CALL_STEPS": 7}.items():
         monkeypatch.setattr(lattice, name, value)
@@ -62,10 +59,3 @@ def test_the_size_of_the_first_lattice_and_the_length_of_a_call_do_not_change_a_
     assert grown.attrs["block_updates"] == whole.attrs["block_updates"]
     assert len(shares) > 10
     assert shares == sorted(shares) and shares[0] > 0.0 and shares[-1] <= 1.0
-
-
-def test_a_longer_run_begins_with_the_shorter_one():
-    long, short = (simulated(UNEVEN, duration=duration)["release_time"] for duration in (8.0, 5.0))
-    early = long[long.values <= 5.0]
-    assert np.nanmax(short.values) <= 5.0
-    assert short.sel(x=early["x"]).values == pytest.approx(early.values, abs=tol.MIRROR)
