@@ -1,13 +1,20 @@
-"""The shipped configuration: what its sweeps are, and that a run takes no more than its bound says."""
+"""The shipped configuration, settings for a target error, and that a run takes no more than its bound says."""
 
+import math
 import random
+from contextlib import suppress
 
 import pytest
-from reference.wide_scenes import wide_scene
+import tolerances as tol
 
 import slippulse as sp
-from slippulse.configuration.expand import expand
-from slippulse.configuration.resolve import bound_of, resolve
+from slippulse.configuration.accuracy import promised
+from slippulse.configuration.expand import expand, promise_of
+from slippulse.configuration.resolve import accuracy_of, bound_of, resolve
+from slippulse.configuration.schema import Configuration
+from slippulse.model.scene import ORDERS, RELEASES
+from slippulse.model.stability import MARGIN, largest_step
+from slippulse.solver.fixed_step import LATTICES
 
 # Undamped blocks that slip again and again cut steps short.
 SMALL_FACTOR = 3.0
@@ -56,21 +63,47 @@ def test_the_sweeps_cover_what_the_paper_states(shipped):
         assert ratios[0] == 0.0 < ratios[1] and len(ratios) >= 5 and ratios[-1] / ratios[1] >= 100.0
 
 
+LEVELS = (-100.0, -10.0, -1.0, -0.3, -0.01, 0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999, 0.9999, 1.0 - 1e-8)
+RATIOS = (0.0, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4)
+GAMMAS = (1e-8, 1e-4, 1e-2, 0.3, 0.65, 1.0, 10.0, 1e3, 1e5)
+WIDTHS = (0.5, 1.0, 3.0, 16.0, 1e3, 1e9)
+DURATIONS = (0.1, 1.0, 5.0, 20.0, 60.0, 200.0)
+SPACINGS = (0.005, 0.01, 0.03, 0.1, 0.3, 1.0)
+
+
+def wide_scene(chance: random.Random) -> sp.Scene:
+    """A valid scene of anywhere in the documented range; what it costs may be anything."""
+    pick, uniform = chance.choice, chance.uniform
+    while True:
+        dx, ratio = pick(SPACINGS), pick([0.0, 0.1, 0.1, *RATIOS])
+        boundary = pick(["displacement", "stress"])
+        gamma = pick([0.3, 0.65, *GAMMAS]) if boundary == "displacement" else 0.0
+        left = pick([*LEVELS, uniform(-1.0, 1.0)])
+        right = left if chance.random() < 0.6 else pick([0.0, *LEVELS, uniform(-1.0, 1.0)])
+        step = (pick([-1, 1]) * uniform(1.0, 40.0), pick([-0.5, 0.0, 0.3, 0.8]))
+        bump = (uniform(-20.0, 20.0), pick([-1.0, -0.5, 0.3, 0.5]), uniform(0.3, 3.0))
+        steps, bumps = ((part,) if chance.random() < 0.25 else () for part in (step, bump))
+        scheme, order = pick([*LATTICES, "localised", "localised", "localised"]), pick(ORDERS)
+        longest = min(1.0, MARGIN * largest_step(scheme, order, ratio, gamma * dx**2))
+        with suppress(ValueError):
+            profile = sp.Prestress(left, right, pick([1.0, 1.0, *WIDTHS]), 1.0, steps, bumps)
+            duration, release = pick(DURATIONS) * math.exp(uniform(-0.5, 0.5)), pick(RELEASES)
+            rule = release, scheme, longest * pick([0.3, 1.0, 1.0]), order
+            return sp.Scene(boundary, profile, duration, dx, gamma, ratio * dx, *rule)
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_bound_is_not_exceeded_by_more_than_a_small_factor(seed):
-    """Random scenes over the whole documented range, edges included."""
     chance, tried = random.Random(seed), 0
     for scene in (wide_scene(chance) for _ in range(60)):
         bound = bound_of(scene)
         if bound.block_updates > 2e7:
             continue
-        try:
+        with suppress(sp.UnstableRun):
             run = sp.simulate(scene)
-        except sp.UnstableRun:
-            continue
-        tried += 1
-        assert run.attrs["block_updates"] < SMALL_FACTOR * bound.block_updates, scene
-        assert run.nbytes < bound.bytes, scene
+            tried += 1
+            assert run.attrs["block_updates"] < SMALL_FACTOR * bound.block_updates, scene
+            assert run.nbytes < bound.bytes, scene
     assert tried > 5
 
 
@@ -81,3 +114,84 @@ def test_slipping_again_and_again_is_bounded():
     run = sp.simulate(scene)
     assert run.attrs["re_releases"] > 10_000
     assert run.attrs["block_updates"] < SMALL_FACTOR * bound_of(scene).block_updates
+
+
+PULSE = {"boundary": "displacement", "gamma": 0.65, "prestress": sp.Prestress(0.5, 0.5), "damping_ratio": 0.1}
+CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}
+
+
+def accuracy_for(config: dict, **changes) -> dict:
+    return accuracy_of(Configuration.model_validate(config | changes))
+
+
+@pytest.mark.parametrize("scene", [PULSE, CRACK], ids=["pulse", "crack"])
+def test_a_smaller_error_takes_a_finer_lattice_at_the_same_damping_ratio(scene):
+    plain = {key: value for key, value in scene.items() if key != "damping_ratio"} | {"duration": 1.0}
+    found = [sp.Scene(**plain, **sp.settings_for(error, **scene)) for error in (1e-2, 3e-3, 1e-3, 1e-4)]
+    spacings = [scene.dx for scene in found]
+    assert spacings == sorted(spacings, reverse=True)
+    # First order where it is fine: the front speed, of second order, does not set it.
+    assert spacings[2] / spacings[3] == pytest.approx(10.0, rel=tol.SHOWN_DIGITS)
+    assert [scene.damping_ratio for scene in found] == pytest.approx([0.1] * 4)
+    assert all(scene.max_step <= scene.largest_stable_step for scene in found)
+
+
+def test_the_spacing_follows_the_scenes_own_lengths():
+    spacing = lambda **change: sp.settings_for(1e-3, **PULSE | change)["dx"]  # noqa: E731
+    # Lengths in units of 1/sqrt(gamma) and W together are the same scene on another scale.
+    scaled = {"gamma": 0.65 / 16.0, "prestress": sp.Prestress(0.5, 0.5, 4.0)}
+    assert spacing(**scaled) == pytest.approx(4.0 * spacing(), rel=tol.SHOWN_DIGITS)
+    assert spacing(prestress=sp.Prestress(0.1, 0.5)) < spacing()
+    assert spacing(damping_ratio=1.0) < spacing()
+    assert spacing(fields=False) > spacing()
+    wide, bumped = (sp.Prestress(0.5, 0.5, 4.0, bumps=bumps) for bumps in ((), ((20.0, -0.2, 0.05),)))
+    assert spacing(prestress=bumped) < spacing(prestress=wide)
+    deep = CRACK | {"prestress": sp.Prestress(-10.0, 0.0)}
+    assert sp.settings_for(1e-2, **deep)["dx"] < sp.settings_for(1e-2, **CRACK)["dx"]
+
+
+def test_without_an_accuracy_every_block_is_what_it_was(config):
+    preset, accuracy = config["presets"][config["preset"]], accuracy_for(config)
+    assert accuracy == accuracy_for(config, accuracy=None) == preset | {"whole": True}
+    for simulation in config["simulations"].values():
+        block = resolve(simulation, config["model"], accuracy)
+        assert block["accuracy"] == {key: preset[key] for key in ("dx", "max_step", "order")}
+        assert promise_of(block) is None
+
+
+def test_with_an_accuracy_each_scene_has_its_own_spacing(config):
+    simulation = config["simulations"]["scaling_displacement"]
+    accuracy = accuracy_for(config, accuracy=1e-2)
+    scenes, _ = expand(promised(resolve(simulation, config["model"], accuracy)))
+    for scene in scenes:
+        expected = sp.settings_for(
+            1e-2, boundary=scene.boundary, prestress=scene.prestress, gamma=scene.gamma,
+            damping_ratio=0.1, fields="fields" in simulation["record"],
+        )  # fmt: skip
+        assert {key: getattr(scene, key) for key in expected} == pytest.approx(expected)
+    coarser, _ = expand(promised(resolve(simulation, config["model"], accuracy, 2.0)))
+    assert [scene.dx for scene in coarser] == pytest.approx([2.0 * scene.dx for scene in scenes])
+
+
+OWN = {"continuum_fixed_ratio": "dx", "burridge_knopoff_speed": "spacing", "continuum_fixed_beta": "beta"}
+
+
+@pytest.mark.parametrize(("name", "own"), OWN.items())
+def test_a_spacing_that_is_the_question_stays(config, name, own):
+    simulation = dict(config["simulations"][name])
+    assert own in simulation
+    if own == "beta":
+        simulation.pop("dx")
+    before, _ = expand(resolve(simulation, config["model"], accuracy_for(config)))
+    block = resolve(simulation, config["model"], accuracy_for(config, accuracy=1e-3))
+    after, _ = expand(promised(block))
+    assert [scene.dx for scene in after] == [scene.dx for scene in before]
+    assert math.isnan(promise_of(block))
+    assert all(a.max_step <= b.max_step for a, b in zip(after, before, strict=True))
+
+
+def test_the_textbook_scheme_promises_nothing(config):
+    model, accuracy = config["model"] | {"scheme": "fixed_step"}, accuracy_for(config, accuracy=1e-2)
+    block = resolve(config["simulations"]["steady_displacement"], model, accuracy)
+    with pytest.raises(ValueError, match=r"scheme: 'fixed_step'; allowed: 'localised' where accuracy"):
+        promised(block)

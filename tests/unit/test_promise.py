@@ -1,4 +1,4 @@
-"""What a promised accuracy covers, and the verdict of a grid study on it."""
+"""Grid studies, what a promised accuracy covers, and the verdict of a grid study on it."""
 
 import math
 
@@ -10,7 +10,7 @@ import slippulse as sp
 from slippulse.figures.shared.numbers import scene_numbers
 from slippulse.measure.promise import COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS
-from slippulse.measure.uncertainty import grid_tables
+from slippulse.measure.uncertainty import grid_study, grid_tables
 from slippulse.predict.measured import measured_table
 from slippulse.report.scene_page import scene_page
 
@@ -141,13 +141,24 @@ def test_the_numbers_of_a_scene_carry_the_verdict(tables, study):
 def test_the_page_of_a_scene_says_what_is_kept(tmp_path):
     picture = tmp_path / "one.png"
     picture.write_bytes(b"")
-    numbers = pd.DataFrame(
-        {
-            "quantity": ["a", "b", "c"], "label": ["a", "b", "c"], "value": 1.0, "uncertainty": 0.01,
-            "theory": math.nan, "promised": [0.01, 0.001, math.nan], "kept": ["true", "false", ""],
-        }
-    )  # fmt: skip
-    page = scene_page("one", "One", picture, numbers, {})
+    plain = {"quantity": [*"abc"], "label": [*"abc"], "value": 1.0, "uncertainty": 0.01, "theory": math.nan}
+    promise = {"promised": [0.01, 0.001, math.nan], "kept": ["true", "false", ""]}
+    page = scene_page("one", "One", picture, pd.DataFrame(plain | promise), {})
     for text in ("promised accuracy", "0.01, kept", "0.001, missed", "not covered"):
         assert text in page
-    assert "promised" not in scene_page("one", "One", picture, numbers.drop(columns=["promised", "kept"]), {})
+    assert "promised" not in scene_page("one", "One", picture, pd.DataFrame(plain), {})
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 3.5])
+@pytest.mark.parametrize("factors", [(2.0, 4.0), (1.5, 2.0)])
+def test_a_power_of_the_spacing_is_recovered(order, factors):
+    found = grid_study(tuple(3.0 + 0.2 * factor**order for factor in (1.0, *factors)), factors)
+    assert (found.observed_order, found.uncertainty) == pytest.approx((order, 0.2), rel=1e-9)
+    assert found.extrapolated == pytest.approx(3.0, rel=1e-12)
+
+
+def test_without_an_order_the_spread_is_the_uncertainty_and_a_missing_value_leaves_none():
+    found = grid_study((1.0, 1.1, 0.95), (2.0, 4.0))
+    assert np.isnan(found.observed_order) and found.extrapolated == 1.0
+    assert found.uncertainty == pytest.approx(0.15)
+    assert np.isnan(grid_study((1.0, np.nan, 1.0), (2.0, 4.0)).uncertainty)

@@ -1,17 +1,21 @@
-"""What each job made from what, by which configuration and sources: what is not as made by what is here now."""
+"""What each job made from what, by which configuration and sources, and what is not as made by what is here now."""
 
+import getpass
 import json
 import os
 import shutil
+import socket
 from pathlib import Path
 
 import pytest
+import yaml
 
 from slippulse.configuration.problems import ConfigError
 from slippulse.data import records
+from slippulse.data.alterations import changes
 from slippulse.data.files import write_text
-from slippulse.data.provenance import job_times
-from slippulse.data.records import Digests, Tree, digest_of, read_record, read_records, write_record
+from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
+from slippulse.data.records import Digests, Origin, Tree, digest_of, read_record, read_records, write_record
 from slippulse.steps.reach import Job, jobs_of, origins_of
 from slippulse.steps.targets import Plan
 
@@ -25,7 +29,6 @@ JOBS = [
 
 
 def run(folder: Path, jobs=JOBS) -> None:
-    """Every job, which writes what it is made from."""
     origins = origins_of(jobs)
     for job in jobs:
         origin = origins[job.outputs[0].removeprefix("results/")]
@@ -59,37 +62,30 @@ def record_of(results: Path, name: str, **change) -> None:
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
 
 
-ODD = ["", "{", "[]", "5", '{"step": 1}', "[" * 100_000]
+RECORD = f"records/{OTHER}.json"
+AFTER = {one: f"older than {other}, which it is made from" for one, other in ((TABLE, DATA), (PAGE, TABLE))}
 HARM = {
     "edited": (lambda folder: (folder / DATA).write_text("datA"), {DATA: "not what its job wrote"}),
     "emptied": (lambda folder: (folder / DATA).write_text(""), {DATA: "not what its job wrote"}),
     "removed": (lambda folder: (folder / DATA).unlink(), {DATA: "missing"}),
     "a folder": (lambda folder: ((folder / DATA).unlink(), (folder / DATA).mkdir()), {DATA: "missing"}),
     "a folder for a record": (
-        lambda folder: ((folder / f"records/{OTHER}.json").unlink(), (folder / f"records/{OTHER}.json").mkdir()),
-        {OTHER: "its record cannot be read"},
+        lambda folder: ((folder / RECORD).unlink(), (folder / RECORD).mkdir()), {OTHER: "its record cannot be read"},
     ),
     "other outputs": (lambda folder: record_of(folder, OTHER, outputs={}), {OTHER: "made by another rule"}),
     "another step": (lambda folder: record_of(folder, OTHER, step="measure"), {OTHER: "made by another rule"}),
     "other sources": (lambda folder: record_of(folder, OTHER, sources=""), {OTHER: "made by other sources"}),
-    "no record": (
-        lambda folder: (folder / f"records/{DATA}.json").unlink(),
-        {DATA: "no record", TABLE: f"older than {DATA}, which it is made from",
-         PAGE: f"older than {TABLE}, which it is made from"},
-    ),
+    "no record": (lambda folder: (folder / f"records/{DATA}.json").unlink(), {DATA: "no record"} | AFTER),
     "other data": (
-        lambda folder: record_of(folder, DATA, outputs={DATA: "0"}),
-        {DATA: "not what its job wrote", TABLE: f"older than {DATA}, which it is made from",
-         PAGE: f"older than {TABLE}, which it is made from"},
+        lambda folder: record_of(folder, DATA, outputs={DATA: "0"}), {DATA: "not what its job wrote"} | AFTER,
     ),
+    **{
+        f"record {text[:9]}": (
+            lambda folder, text=text: (folder / RECORD).write_text(text), {OTHER: "its record cannot be read"},
+        )
+        for text in ("", "{", "[]", "5", '{"step": 1}', "[" * 100_000)
+    },
 }  # fmt: skip
-HARM |= {
-    f"record {number}": (
-        lambda folder, text=text: (folder / f"records/{OTHER}.json").write_text(text),
-        {OTHER: "its record cannot be read"},
-    )
-    for number, text in enumerate(ODD)
-}
 
 
 @pytest.mark.parametrize("case", HARM)
@@ -202,11 +198,8 @@ def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
     held = plan.begin(plan.wanted(["all"]), results.parent / "locks")
     assert not (results / TABLE).exists() and (results / PAGE).exists()
     assert (results / DATA).stat().st_mtime <= (results / PAGE).stat().st_mtime < 2e9
-    said = capsys.readouterr().err
-    assert (
-        f"1 results are not as made by what is here now, as results/{TABLE}: not what its job wrote; removed"
-        in said
-    )
+    said, reason = capsys.readouterr().err, "not what its job wrote; removed"
+    assert f"1 results are not as made by what is here now, as results/{TABLE}: {reason}" in said
     assert f"1 files have a time in the future, as results/{DATA}" in said
     with pytest.raises(ConfigError, match="Another run is at work"):
         plan.begin([], results.parent / "locks")
@@ -217,22 +210,60 @@ def test_verification_compares_what_is_asked_for(plan, results, capsys):
     (results / OTHER).unlink()
     assert plan.verify(plan.wanted(["all"])) == 0
     assert "3 files are as made" in (said := capsys.readouterr().out) and "Not looked at: 1 files" in said
-    assert (
-        plan.verify(plan.wanted(["everything"])) == 1
-        and capsys.readouterr().out == f"results/{OTHER}: missing\n"
-    )
+    assert plan.verify(plan.wanted(["everything"])) == 1
+    assert capsys.readouterr().out == f"results/{OTHER}: missing\n"
 
 
 def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
     of = {"level": lambda wildcards: wildcards.name * 2, "step": "study"}
-    found = jobs_of(
-        "run",
-        ["texts", lambda wildcards: [f"results/{wildcards.name}"]],
-        ["results/{name}.csv"],
-        of,
-        {"name": "ab"},
-    )
-    assert [*found] == [
-        Job("study", ("texts", f"results/{name}"), (f"results/{name}.csv",), {"level": name * 2})
-        for name in "ab"
+    inputs = ["texts", lambda wildcards: [f"results/{wildcards.name}"]]
+    found = jobs_of("run", inputs, ["results/{name}.csv"], of, {"name": "ab"})
+    for name, job in zip("ab", found, strict=True):
+        assert job == ("study", ("texts", f"results/{name}"), (f"results/{name}.csv",), {"level": name * 2})
+
+
+def test_an_overlay_is_marked_value_by_value():
+    shipped = {"model": {"release": "total", "friction_ratio": 5.0}, "list": [1, 2], "gone": 1}
+    config = {"model": {"release": "elastic", "friction_ratio": 5.0}, "list": [1], "new": {"a": 1}}
+    assert changes(shipped, config) == [
+        {"key": "model.release", "shipped": "total", "here": "elastic"},
+        {"key": "list", "shipped": [1, 2], "here": [1]},
+        {"key": "gone", "shipped": 1, "here": None},
+        {"key": "new", "shipped": None, "here": {"a": 1}},
     ]
+    assert changes(shipped, shipped) == []
+
+
+def test_sources_are_the_library_and_the_workflow(project):
+    names = {str(path.relative_to(project)) for path in source_files(project)}
+    assert {"Snakefile", "src/slippulse/model/scene.py", "workflow/rules/common.smk"} <= names
+    assert not any("__pycache__" in name or name.startswith("tests") for name in names)
+
+
+def test_it_holds_everything_and_names_nobody(project, config, tmp_path):
+    results = tmp_path / "results"
+    results.mkdir()
+    for name, seconds in (("a.csv", 1.25), ("b.csv", 0.5)):
+        (results / name).write_text(name)
+        origin = Origin((name,), "simulate", "", "", frozenset())
+        write_record(origin, {"seconds": seconds}, results)
+    assert job_times(results) == {"simulate": 1.75}
+    facts = provenance(project, "", config | {"preset": "draft"}, config, results)
+    assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]
+    assert set(facts) == {
+        "paper", "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine",
+        "times",
+    }  # fmt: skip
+    text = json.dumps(facts | {"config": None})
+    host = socket.gethostname()
+    assert len(host) < 4 or host not in text
+    assert str(project) not in text and f'"{getpass.getuser()}"' not in text
+    assert machine_class()["cores"] >= 1
+
+
+def test_the_manifest_lists_every_output(tmp_path):
+    files = [str(tmp_path / "data/a.nc"), str(tmp_path / "claims.json")]
+    listed = yaml.safe_load(manifest(files, tmp_path, {"a": "A caption"}))
+    assert [entry["file"] for entry in listed["manifest"]] == ["claims.json", "data/a.nc"]
+    assert all(entry["comment"] for entry in listed["manifest"])
+    assert len(listed["paper"]["authors"]) == 4

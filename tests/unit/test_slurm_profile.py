@@ -12,34 +12,23 @@ RULE = re.compile(r"^rule (\w+):$(.*?)(?=^\S|\Z)", re.M | re.S)
 @pytest.fixture(scope="module")
 def rules(project) -> dict[str, str]:
     """The text of every rule that is written out, by its name."""
-    found = {}
-    for path in [project / "Snakefile", *sorted((project / "workflow/rules").glob("*.smk"))]:
-        found |= dict(RULE.findall(path.read_text(encoding="utf-8")))
-    return found
-
-
-@pytest.fixture(scope="module")
-def drawn(project) -> set[str]:
-    """Rules made in a loop: one a figure."""
-    figures = project / "src/slippulse/figures"
-    return {path.stem for pattern in ("fig*.py", "study_*.py") for path in figures.glob(pattern)}
+    paths = [project / "Snakefile", *(project / "workflow/rules").glob("*.smk")]
+    return dict(found for path in paths for found in RULE.findall(path.read_text(encoding="utf-8")))
 
 
 @pytest.fixture(scope="module")
 def profile(project) -> dict:
-    """The profile, parsed."""
-    text = (project / "workflow/profiles/slurm/config.yaml").read_text(encoding="utf-8")
-    return yaml.safe_load(text)
+    return yaml.safe_load((project / "workflow/profiles/slurm/config.yaml").read_text(encoding="utf-8"))
 
 
-def test_it_names_only_rules_that_exist(profile, rules, drawn):
+def test_it_names_rules_that_exist_and_every_job_asks_for_time_memory_and_cores(project, profile, rules):
+    # Rules made in a loop: one a figure.
+    figures = project / "src/slippulse/figures"
+    drawn = {path.stem for pattern in ("fig*.py", "study_*.py") for path in figures.glob(pattern)}
     assert {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"} <= set(rules)
     assert {"fig01_system_sketch", "study_barriers"} <= drawn
-    assert {*profile["set-resources"], *profile["groups"]} <= set(rules) | drawn
-
-
-def test_every_job_asks_for_time_memory_and_cores(profile, rules, drawn):
     defaults, own = profile["default-resources"], profile["set-resources"]
+    assert {*own, *profile["groups"]} <= set(rules) | drawn
     for name in set(rules) | drawn:
         asked = {**defaults, **own.get(name, {})}
         assert {"mem_mb", "runtime", "cpus_per_task"} <= set(asked), name

@@ -1,4 +1,4 @@
-"""A long run shows its share done, and stops within a second when it is asked to."""
+"""A long run shows what is done and stops when it is asked to; a lock is freed when its holder ends."""
 
 import io
 import os
@@ -10,6 +10,7 @@ import time
 import pytest
 
 import slippulse as sp
+from slippulse.data import lock
 from slippulse.simulation.simulate import bar
 
 LONG = (
@@ -28,7 +29,6 @@ RUNS = {
 
 @pytest.mark.parametrize("kind", ["one", "exact", pytest.param("sweep", marks=pytest.mark.slow)])
 def test_an_interrupt_stops_a_run_within_a_second(kind):
-    """Two are allowed here, since the machine may be busy."""
     process = subprocess.Popen(
         [sys.executable, "-c", LONG + RUNS[kind]], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env=os.environ, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
@@ -38,15 +38,9 @@ def test_an_interrupt_stops_a_run_within_a_second(kind):
     asked = time.monotonic()
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=30)
+    # A second is promised, and the machine may be busy.
     assert time.monotonic() - asked < 2.0
     assert process.returncode != 0 and "KeyboardInterrupt" in said
-
-
-def test_progress_is_reported_on_the_way():
-    shares = []
-    scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 400.0, 0.02, gamma=0.65, order=8, max_step=0.9)
-    sp.simulate(scene, progress=shares.append)
-    assert len(shares) > 2 and shares == sorted(shares) and shares[-1] <= 1.0
 
 
 def test_a_bar_shows_the_share_and_the_time_left():
@@ -62,3 +56,29 @@ def test_a_bar_shows_the_share_and_the_time_left():
 def test_a_short_run_draws_no_bar(capsys):
     sp.simulate(sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.1, gamma=0.65), progress=True)
     assert capsys.readouterr().err == ""
+
+
+def test_one_holds_it_at_a_time(tmp_path):
+    path = tmp_path / "new/run.lock"
+    held = lock.take(path)
+    assert held is not None and lock.take(path) is None and lock.main([str(path)]) == 1
+    held.close()
+    assert lock.main([str(path)]) == 0
+
+
+@pytest.mark.parametrize("end", ["terminate", "kill"])
+def test_who_waits_gets_it_when_the_holder_ends(tmp_path, end):
+    path = str(tmp_path / "setup.lock")
+    wait = [sys.executable, lock.__file__, path, sys.executable, "-c"]
+    first = subprocess.Popen(
+        [sys.executable, "-c", f"import time, {lock.__name__} as lock; held = lock.take({path!r});"
+         " print('held', flush=True); time.sleep(60)"],
+        stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert first.stdout.readline() == "held\n"
+    program = "print('mine'); raise SystemExit(7)"
+    second = subprocess.Popen([*wait, program], stdout=subprocess.PIPE, text=True)
+    assert "waiting for it" in second.stdout.readline()
+    getattr(first, end)()
+    first.wait()
+    assert second.communicate(timeout=30)[0] == "mine\n" and second.returncode == 7

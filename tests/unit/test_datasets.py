@@ -1,0 +1,250 @@
+"""Many scenes in one Dataset, by any scheme: the order, the threads, the way back, and files that are written whole."""
+
+import dataclasses
+import stat
+from functools import cache
+
+import numpy as np
+import pandas as pd
+import pytest
+import tolerances as tol
+import xarray as xr
+
+import slippulse as sp
+from slippulse.data.files import write_whole
+from slippulse.data.points import point
+from slippulse.data.store import load_dataset, save_dataset
+from slippulse.data.sweeps import FIELDS, FRONTS
+from slippulse.data.tables import load_table, save_table
+from slippulse.data.variables import VARIABLES
+from slippulse.simulation.simulate import run_sweep
+
+RECORDS = ("fronts", "fields", "samples")
+SCENES = [
+    sp.Scene("displacement", sp.Prestress(tau, 0.5), duration, dx, gamma=0.65, beta=0.1 * dx)
+    for tau, duration, dx in ((0.3, 2.0, 0.05), (0.5, 6.0, 0.02), (0.7, 1.0, 0.1), (-0.2, 4.0, 0.05))
+] + [
+    sp.Scene("stress", sp.Prestress(-0.5, 0.0), 4.0, 0.05),
+    sp.Scene("stress", sp.Prestress(0.5, 0.5, peak=0.9), 4.0, 0.05),
+]
+SAMPLES = [sp.Samples(np.linspace(0.0, scene.duration, 7), np.linspace(-1.0, 1.0, 5)) for scene in SCENES]
+
+
+@cache
+def sweep(threads: int = 1, record=RECORDS) -> xr.Dataset:
+    return run_sweep(SCENES, SAMPLES, record, threads)
+
+
+def test_equal_data_give_equal_bytes_whatever_the_number_of_threads_and_others_do_not(tmp_path):
+    other = sweep().copy(deep=True)
+    other["slip"][3] += 1e-12
+    for number, data in enumerate((sweep(1), sweep(2), sweep(5), other)):
+        save_dataset(data, tmp_path / f"{number}.nc")
+    one, two, three, other = ((tmp_path / f"{number}.nc").read_bytes() for number in range(4))
+    assert one == two == three != other
+
+
+def test_a_point_is_what_the_scene_alone_gives():
+    together = sweep(2)
+    for index, (scene, samples) in enumerate(zip(SCENES, SAMPLES, strict=True)):
+        alone, again = sp.simulate(scene, samples), point(together, index)
+        assert again.equals(alone)
+        np.testing.assert_equal(again.attrs, alone.attrs)
+        for name, value in alone.attrs.items():
+            assert type(again.attrs[name]) is type(value), name
+
+
+def test_only_what_is_asked_for_is_kept():
+    fields, whole = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
+    sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
+    for record, names in zip(RECORDS, (fields | {*FRONTS}, fields | {*FIELDS}, sampled), strict=True):
+        run = point(sweep(record=(record,)), 1)
+        assert set(run.variables) == names
+        assert all(run[name].variable.equals(whole[name].variable) for name in names), record
+
+
+def test_progress_counts_every_scene():
+    seen = []
+    run_sweep(SCENES, None, ("fronts",), 2, lambda done, total: seen.append((done, total)))
+    assert seen == [(done, len(SCENES)) for done in range(1, len(SCENES) + 1)]
+
+
+def test_a_scene_that_fails_ends_the_sweep_with_its_reason():
+    profile = sp.Prestress(0.2, 0.3)
+    broken = sp.Scene("stress", profile, 200.0, 0.1, beta=0.1, scheme="fixed_step", max_step=0.01)
+    object.__setattr__(broken, "max_step", 3.0)
+    with pytest.raises(sp.UnstableRun, match="unstable"):
+        run_sweep([*SCENES, broken], None, ("fronts",), 2)
+
+
+ONE = sp.Scene("displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, gamma=0.65, beta=0.005, max_step=0.4)
+
+
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+def test_samples_after_the_end_are_refused(scheme):
+    scene = dataclasses.replace(ONE, duration=1.0, scheme=scheme)
+    samples = sp.Samples([0.5, 1.0, 3.5], [0.0])
+    refusal = r"^samples\.times: 3\.5; allowed: up to the duration of the scene, 1$"
+    for call in (lambda: sp.simulate(scene, samples), lambda: sp.run_sweep([scene], [samples])):
+        with pytest.raises(ValueError, match=refusal):
+            call()
+
+
+def test_a_sample_is_the_state_of_a_run_that_ends_there():
+    """At rest where no block is near."""
+    times = np.array([0.0, 0.777, 2.5, 5.9])
+    positions = np.array([-900.0, -3.0, -0.52, 0.0, 0.07, 2.0, 900.0])
+    run = sp.simulate(ONE, sp.Samples(times, positions))
+    for s, time in enumerate(times[1:], start=1):
+        end = sp.simulate(dataclasses.replace(ONE, duration=float(time)))
+        blocks = end.sel(x=positions, method="nearest")
+        near = np.abs(blocks["x"].values - positions) < ONE.dx
+        for sampled, name in (("sample_slip", "slip"), ("sample_velocity", "slip_velocity")):
+            expected = np.where(near, blocks[name].values, 0.0)
+            assert run[sampled].values[s] == pytest.approx(expected, abs=tol.SAMPLE), (time, name)
+    assert not run["sample_slip"].values[0].any()
+    assert not run["sample_slip"].values[:, [0, -1]].any()
+
+
+@pytest.mark.parametrize("scheme", ["localised", "fixed_step"])
+def test_samples_do_not_change_the_run(scheme):
+    scene = dataclasses.replace(ONE, scheme=scheme)
+    plain = sp.simulate(scene)
+    sampled = sp.simulate(scene, sp.Samples(np.linspace(0.0, 6.0, 301), np.linspace(-5.0, 5.0, 51)))
+    assert sampled[list(plain.data_vars)].equals(plain)
+
+
+def test_mirrored_positions_have_mirrored_samples():
+    scene = dataclasses.replace(ONE, prestress=sp.Prestress(0.5, 0.5))
+    positions = np.array([-1.0251, -0.075, -0.025, 0.025, 0.075, 1.0251])
+    slip = sp.simulate(scene, sp.Samples(np.linspace(0.0, 6.0, 13), positions))["sample_slip"].values
+    assert np.array_equal(slip, slip[:, ::-1])
+
+
+def test_the_time_after_everything_stuck_is_the_final_state():
+    scene = sp.Scene("stress", sp.Prestress(-2.0, -2.0), 20.0, 0.1, beta=0.01)
+    run = sp.simulate(scene, sp.Samples([19.0, 20.0], [0.0]))
+    assert run.attrs["stopped_because"] == "everything is stuck"
+    assert (run["sample_slip"].values == float(run["slip"].sel(x=0.0))).all()
+
+
+def test_a_dataset_comes_back_as_it_was_and_opens_without_this_project(tmp_path):
+    before = sweep()
+    save_dataset(before, tmp_path / "run.nc")
+    xr.testing.assert_identical(load_dataset(tmp_path / "run.nc"), before)
+    with xr.open_dataset(tmp_path / "run.nc") as data:
+        assert data["slip"].size == int(data["row_size"].sum())
+
+
+def test_a_data_file_follows_the_conventions_it_names_and_every_variable_has_units_and_a_name():
+    data = sweep()
+    assert data.attrs["Conventions"].startswith("CF-") and data.attrs["featureType"] == "profile"
+    assert data["row_size"].attrs["sample_dimension"] == "block"
+    assert all(data.attrs[key] for key in ("title", "source", "references"))
+    for variable in (*sp.simulate(SCENES[0], SAMPLES[0]).variables.items(), *data.variables.items()):
+        name, attributes = variable[0], variable[1].attrs
+        assert attributes["units"] and name in VARIABLES, name
+        assert attributes["long_name"] not in ("", name.replace("_", " ")), name
+
+
+def test_the_table_of_columns_has_the_units_and_the_meaning_that_files_have(project):
+    rows = (project / "docs/columns.md").read_text(encoding="utf-8").replace("\\|", "|").splitlines()
+    for name, meaning in VARIABLES.items():
+        assert any(f"| `{name}` | {units} | {meaning} |" in rows for units in ("1", "count", "text")), name
+
+
+def test_a_table_has_nine_digits_and_no_index(tmp_path):
+    save_table(pd.DataFrame({"name": ["a"], "value": [np.pi], "missing": [np.nan]}), tmp_path / "t.csv")
+    assert (tmp_path / "t.csv").read_text() == "name,value,missing\na,3.14159265,\n"
+    assert load_table(tmp_path / "t.csv")["value"].tolist() == [3.14159265]
+
+
+@pytest.mark.parametrize("existing", [b"the old file", None])
+def test_a_writer_that_fails_leaves_the_folder_as_it_was(tmp_path, existing):
+    path = tmp_path / "data.nc"
+    if existing:
+        path.write_bytes(existing)
+
+    def fail(part):
+        part.write_bytes(b"half of the n")
+        raise RuntimeError("disk full")
+
+    with pytest.raises(RuntimeError, match="disk full"):
+        write_whole(path, fail)
+    assert [entry.read_bytes() for entry in tmp_path.iterdir()] == ([existing] if existing else [])
+
+
+def test_a_writer_sees_the_old_file_until_it_is_done_and_leaves_one_as_readable_as_any(tmp_path):
+    path = tmp_path / "deep/er/data.txt"
+    write_whole(path, lambda part: part.write_text("old"))
+
+    def write(part):
+        part.write_text("new")
+        assert path.read_text() == "old"
+        assert part.parent == path.parent and part.suffix == path.suffix
+
+    write_whole(path, write)
+    assert path.read_text() == "new"
+    (tmp_path / "plain.txt").touch()
+    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE((tmp_path / "plain.txt").stat().st_mode)
+
+
+HELD = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 9.0, 0.1, gamma=0.65, beta=0.01)
+EXACT = {
+    "displacement": HELD,
+    "asymmetric": dataclasses.replace(HELD, prestress=sp.Prestress(-0.5, 0.5), duration=5.0),
+    "stress": sp.Scene("stress", sp.Prestress(-0.75, 0.0, 2.0), 9.0, 0.1, beta=0.01),
+}
+
+
+def exactly(scene: sp.Scene, samples: sp.Samples | None = None) -> xr.Dataset:
+    return sp.simulate(dataclasses.replace(scene, scheme="continuum"), samples)
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_the_exact_scheme_is_the_exact_rupture(name):
+    """To which lattices tend: theory_exact/test_against_lattice.py."""
+    scene = EXACT[name]
+    run, x = exactly(scene), scene.dx * np.arange(-20, 30, 5)
+    found = sp.theory.Rupture(scene.prestress, scene.gamma, 0.1, duration=scene.duration)
+    at = run.sel(x=x, method="nearest")
+    assert at["x"].values == pytest.approx(x)
+    for field in ("release_time", "stick_time"):
+        assert at[field].values == pytest.approx(getattr(found, field)(x), nan_ok=True)
+    assert at["slip"].values == pytest.approx(found.slip(x, scene.duration))
+
+
+def test_it_is_the_same_dataset():
+    samples = sp.Samples(times=np.linspace(0.0, 8.0, 5), positions=np.linspace(-4.0, 4.0, 9))
+    lattice, exact = sp.simulate(HELD, samples), exactly(HELD, samples)
+    assert set(exact.variables) == set(lattice.variables)
+    for name in exact.variables:
+        assert exact[name].dims == lattice[name].dims and exact[name].attrs == lattice[name].attrs
+    missing = set(lattice.attrs) - set(exact.attrs)
+    assert all(name.endswith(("energy", "loss", "of_prestress")) for name in missing)
+    assert exact.attrs["scheme"] == "continuum" and exact.attrs["run_flags"] == ""
+    assert np.abs(exact.sample_slip - lattice.sample_slip).max() < 0.1 * lattice.sample_slip.max()
+
+
+def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
+    """A second nucleation whose waves hold a position that is about to stick."""
+    profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))
+    found = exactly(dataclasses.replace(HELD, prestress=profile, duration=16.0))
+    assert found.attrs["run_flags"] == "construction_ended" and found.attrs["limit_reason"]
+    assert found.attrs["limit_time"] <= found.attrs["duration"]
+    assert np.isnan(found.slip.values).any()
+
+
+def test_a_sweep_may_be_exact():
+    sweep = sp.run_sweep([dataclasses.replace(HELD, scheme="continuum")] * 2, record=("fronts", "fields"))
+    assert sweep.sizes["point"] == 2 and np.isfinite(sweep["first_stick_time"]).all()
+
+
+def test_a_scene_that_releases_nothing_is_an_empty_run():
+    scene = dataclasses.replace(HELD, prestress=sp.Prestress(0.5, 0.5, peak=0.9))
+    samples = sp.Samples([0.0, 1.0], [0.0, 1.0])
+    lattice, exact = sp.simulate(scene, samples), exactly(scene, samples)
+    assert exact.equals(lattice) and lattice.attrs["run_flags"] == "nothing_released"
+    for name in ("releases", "sticks", "stopped_because", "run_flags", "pulse_blocks"):
+        assert exact.attrs[name] == lattice.attrs[name]
+    assert np.isnan(exact.attrs["first_stick_time"]) and exact.attrs["end_time"] == scene.duration
