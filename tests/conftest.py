@@ -113,9 +113,8 @@ def paper_accuracy(shipped: dict) -> dict:
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory) -> Path:
     """A folder of all workers: what one has made the other reads."""
-    return (
-        Path(os.environ[UNTOUCHED]).parent if UNTOUCHED in os.environ else tmp_path_factory.mktemp("shared")
-    )
+    own = os.environ.get(UNTOUCHED)
+    return Path(own).parent if own else tmp_path_factory.mktemp("shared")
 
 
 @pytest.fixture(scope="session")

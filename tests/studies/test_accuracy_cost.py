@@ -22,7 +22,6 @@ def trade(study) -> pd.DataFrame:
 
 @pytest.mark.parametrize("preset", ["draft", "paper", "reference"])
 def test_no_setting_is_cheaper_and_better_than_a_preset(trade, preset):
-    """Nowhere less accurate and somewhere more."""
     (own,) = trade[trade["preset"] == preset].index
     cheaper = trade[(trade["scheme"] != "continuum") & (EQUAL * trade["work"] <= trade["work"][own])]
     errors = trade[JUDGED].clip(lower=NEGLIGIBLE)
@@ -39,7 +38,6 @@ def test_front_speed_is_set_by_the_order(trade):
 
 
 def test_transitions_are_set_by_the_spacing(trade):
-    """First order in dx, whatever the step."""
     rows = trade[(trade["order"] == 8) & (trade["step"] == 0.5)].sort_values("dx")
     ratio = rows["transition_time"].to_numpy()[1:] / rows["transition_time"].to_numpy()[:-1]
     assert np.all(np.abs(np.log2(ratio) - 1.0) < tol.ORDER_BAND)
@@ -54,7 +52,6 @@ def test_the_exact_solution_is_beside_the_lattices(trade):
 
 
 def test_the_textbook_scheme_does_not_converge_in_front_speed(trade):
-    """Halving its step makes the front speed worse as often as better."""
     rows = trade[trade["scheme"] == "fixed_step"].sort_values("step", ascending=False)
     assert (np.diff(rows["front_speed"]) > 0.0).any()
     assert rows["front_speed"].min() > 5e-4

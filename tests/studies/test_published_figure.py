@@ -34,8 +34,7 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     best = found["best"]
     assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
-    assert best["tau0"] == pytest.approx(truth[0], abs=2e-3)
-    assert best["gamma"] == pytest.approx(truth[1], abs=2e-3)
+    assert [best["tau0"], best["gamma"]] == pytest.approx(truth, abs=2e-3)
     low, high = best["regions"][0.68]["damping_ratio"]
     assert low < ratio < high
 
@@ -63,9 +62,7 @@ def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, pane
 def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel, part):
     profile = table[(table["part"] == part) & (table["release"] == "total")]
     rows = profile[profile["damping_ratio"] == profile["damping_ratio"].unique()[2]]
-    first = rows.iloc[0]
-    correction = rows["correction"].to_numpy()
-    weight = rows["weight"].to_numpy()
+    first, correction, weight = rows.iloc[0], rows["correction"].to_numpy(), rows["weight"].to_numpy()
     own = (weight * rows["pull"] ** 2).sum()
     for change in ((0.004, 0.0), (-0.004, 0.0), (0.0, 0.008), (0.0, -0.008)):
         trial = np.array([first["tau0"] + change[0], first["gamma"] + change[1]])
