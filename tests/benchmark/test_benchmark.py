@@ -13,8 +13,6 @@ from tests.benchmark import __main__ as benchmark
 from tests.benchmark import critical_path, stencils
 
 GAMMA, BETA, STEP = 0.3, 0.2, 0.4
-
-
 # A mode of a chain between fixed ends, at rest there, dx = 1.
 SINE = np.sin(np.pi * 7 * np.arange(50) / 49)
 STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
@@ -48,16 +46,14 @@ def test_plain_numpy_is_the_textbook_scheme():
     run = sp.simulate(scene)
     x = 0.1 * np.arange(-150, 151)
     slip = stencils.numpy_steps(scene.prestress(x), 320, 0.025, 0.1, 0.65, 0.01)
-    compared = np.interp(run["x"], x, slip)
-    assert compared == pytest.approx(run["slip"].values, abs=tol.TEXTBOOK_SLIP)
+    assert np.interp(run["x"], x, slip) == pytest.approx(run["slip"].values, abs=tol.TEXTBOOK_SLIP)
     assert run.attrs["sticks"] > 0
 
 
 def test_the_kernel_is_timed_with_everything_included():
     scene = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 5.0, 0.05, gamma=0.65, beta=0.005)
     rate, blocks = benchmark.kernel_rate(scene, 10.0)
-    assert rate > 0.0
-    assert 30 < blocks < 80
+    assert rate > 0.0 and 30 < blocks < 80
 
 
 @pytest.mark.slow

@@ -37,9 +37,8 @@ SWEEPS = {
 def test_each_run_is_in_one_chunk(chunks, runs):
     members = [list(runs_of(number, chunks, runs)) for number in range(1, chunks + 1)]
     assert sorted(run for chunk in members for run in chunk) == list(range(runs))
-    for chunk in members:
-        assert chunk == sorted(chunk)
-        assert len(chunk) in (runs // chunks, -(-runs // chunks))
+    assert all(chunk == sorted(chunk) for chunk in members)
+    assert {len(chunk) for chunk in members} <= {runs // chunks, -(-runs // chunks)}
 
 
 @pytest.mark.parametrize("inner", [8, 10, 20, 99, 100, 101])
@@ -67,10 +66,8 @@ def made(shipped, tmp_path_factory):
 
     def make(name: str, chunk: list[int] | None = None) -> list:
         part = {"chunk": chunk} if chunk else {}
-        blocks = {
-            factor: resolve(SWEEPS[name], shipped["model"], COARSE, factor) | part
-            for factor in (1.0, 1.5, 2.0)
-        }
+        plain = SWEEPS[name], shipped["model"], COARSE
+        blocks = {factor: resolve(*plain, factor) | part for factor in (1.0, 1.5, 2.0)}
         endings = (".nc", ".csv", "_study.csv", "_coarser.csv")
         files = [folder / f"{name}{chunk or ''}{ending}" for ending in endings]
         if not files[0].exists():
@@ -90,14 +87,11 @@ def made(shipped, tmp_path_factory):
 KINDS = ("data", "measurements", "uncertainties", "uncertainties/coarser")
 
 
+SLOW = [("stress", 5), ("displacement", 5), ("profiles", 2)]
+
+
 @pytest.mark.parametrize(
-    ("name", "chunks"),
-    [
-        ("displacement", 2),
-        pytest.param("stress", 5, marks=pytest.mark.slow),
-        pytest.param("displacement", 5, marks=pytest.mark.slow),
-        pytest.param("profiles", 2, marks=pytest.mark.slow),
-    ],
+    ("name", "chunks"), [("displacement", 2), *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW)]
 )
 def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
     whole = made(name)

@@ -65,12 +65,9 @@ def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
     compiled = {path.name for path in untouched_kernels.rglob("*.nbc")}
     assert len(compiled) == 2
     for scheme in SCHEMES:
-        accuracy = f"beta=0.01, scheme={scheme!r}, order=8"
-        run_with(
-            untouched_kernels,
-            "import slippulse as sp; sp.simulate("
-            f"sp.Scene('stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1, {accuracy}), sp.Samples([0.0, 1.0], [0.0, 0.5]))",
-        )
+        scene = f"'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1, beta=0.01, scheme={scheme!r}, order=8"
+        samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
+        run_with(untouched_kernels, f"import slippulse as sp; sp.simulate(sp.Scene({scene}), {samples})")
     assert {path.name for path in untouched_kernels.rglob("*.nbc")} == compiled
 
 

@@ -75,10 +75,8 @@ def test_what_is_covered(run, changed, quantity, covered):
 @pytest.fixture(scope="module")
 def tables(project):
     """Measured tables of one run of each boundary, at a spacing and at twice and four times it."""
-    settings = {
-        "share": SHARE, "front_window": 0.3, "steady_tolerance": 0.02, "still": 0.05, "trailing_times": [5.0],
-    }  # fmt: skip
-    out = []
+    settings = {"share": SHARE, "front_window": 0.3, "steady_tolerance": 0.02, "still": 0.05}
+    settings["trailing_times"], out = [5.0], []
     for dx in (0.05, 0.1, 0.2):
         scenes = [
             sp.Scene("displacement", sp.Prestress(0.5, 0.5), 30.0, dx, gamma=0.3, beta=0.1 * dx),
