@@ -34,7 +34,6 @@ READY, LONGEST_WAIT = "ready", 300.0
 
 
 def compile_into(folder: Path) -> None:
-    """Compile every kernel into an empty folder, in processes of their own."""
     program = "from slippulse.solver.compilation import compile_all; compile_all()"
     subprocess.run([sys.executable, "-c", program], env=os.environ | {SHARED: str(folder)}, check=True)
 
@@ -48,7 +47,6 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 def prepare(folder: Path) -> None:
-    """Compile, and let the workers begin, whatever became of it."""
     try:
         compile_into(folder / "untouched")
         shutil.copytree(folder / "untouched", folder / "shared", dirs_exist_ok=True)
@@ -57,7 +55,6 @@ def prepare(folder: Path) -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """A worker waits for the kernels, or after a while compiles them itself."""
     worker = hasattr(item.config, "workerinput") and UNTOUCHED in os.environ
     if worker and item.path.stem not in WITHOUT_KERNELS:
         ready, end = Path(os.environ[UNTOUCHED]).with_name(READY), time.monotonic() + LONGEST_WAIT
@@ -66,7 +63,6 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Remove the kernels of this session."""
     if UNTOUCHED in os.environ and not hasattr(session.config, "workerinput"):
         shutil.rmtree(Path(os.environ[UNTOUCHED]).parent)
 
@@ -88,7 +84,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def project() -> Path:
-    """The folder of the project."""
     return Path(__file__).resolve().parents[1]
 
 
@@ -100,13 +95,11 @@ def shipped(project: Path) -> dict:
 
 @pytest.fixture
 def config(shipped: dict) -> dict:
-    """The shipped configuration, a fresh copy."""
     return copy.deepcopy(shipped)
 
 
 @pytest.fixture(scope="session")
 def paper_accuracy(shipped: dict) -> dict:
-    """Order and step of the preset "paper"."""
     return {key: shipped["presets"]["paper"][key] for key in ("max_step", "order")}
 
 

@@ -19,7 +19,6 @@ STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
 
 
 def test_the_branch_free_step_is_a_taylor_step_of_order_four():
-    """Slip to order 5 and velocity to order 4 of the damped oscillator."""
     derivatives = [1.0, 2.0]
     for _ in range(4):
         derivatives.append(-(STIFFNESS + GAMMA) * derivatives[-2] - BETA * STIFFNESS * derivatives[-1])

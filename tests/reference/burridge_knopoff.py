@@ -42,12 +42,10 @@ class Chain:
         return np.diff(held, 2) - self.leaf * slip + self.pull
 
     def drag(self, velocity: np.ndarray) -> np.ndarray:
-        """Force of the dampers between neighbours."""
         held = np.concatenate([[0.0], velocity, [0.0]])
         return self.damping * np.diff(held, 2)
 
     def threshold_force(self, slip: np.ndarray, velocity: np.ndarray) -> np.ndarray:
-        """What is compared with the friction threshold."""
         return self.elastic(slip) + (self.drag(velocity) if self.release == "total" else 0.0)
 
     def rate(self, _time: float, state: np.ndarray) -> np.ndarray:
@@ -57,7 +55,6 @@ class Chain:
         return np.concatenate([np.where(self.sliding, velocity, 0.0), acceleration])
 
     def run(self, duration: float) -> "Chain":
-        """Advance to ``duration`` or until everything is stuck."""
         self._release(self.threshold_force(self.slip, self.velocity) >= 1.0, 0.0)
         time = 0.0
         while time < duration and self.sliding.any():
@@ -80,7 +77,6 @@ class Chain:
         return np.where(self.sliding, velocity, 1.0 - self.threshold_force(slip, velocity))
 
     def _first_event(self, path) -> float | None:
-        """When a margin first falls below 0 within the last step."""
         before = path.t_old
         for share in MESH:
             now = path.t_old + share * (path.t - path.t_old)
@@ -96,7 +92,6 @@ class Chain:
         return brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
 
     def _apply(self, time: float) -> None:
-        """Stick what has stopped and release what has reached the threshold."""
         state = np.concatenate([self.slip, self.velocity])
         slip_rate, velocity_rate = np.split(self.rate(time, state), 2)
         force_rate = self.threshold_force(slip_rate, velocity_rate) - self.pull

@@ -15,14 +15,12 @@ def second_difference(values: np.ndarray, dx: float) -> np.ndarray:
 
 
 def elastic_stress(run: xr.Dataset) -> np.ndarray:
-    """Stress of every block without the damping force."""
     leaf = run.attrs["gamma"] if run.attrs["boundary"] == "displacement" else 0.0
     slip = run["slip"].values
     return second_difference(slip, run.attrs["dx"]) - leaf * slip + run["prestress"].values
 
 
 def total_stress(run: xr.Dataset) -> np.ndarray:
-    """Stress of every block with the damping force."""
     drag = run.attrs["beta"] * second_difference(run["slip_velocity"].values, run.attrs["dx"])
     return elastic_stress(run) + drag
 

@@ -35,7 +35,6 @@ FAMILIES = {
     ],
 )
 def test_the_verdict_is_computed(monkeypatch, expected, found, verdict):
-    """Tolerance one per cent."""
 
     def measured(edge, window):
         if isinstance(found, Exception):

@@ -26,7 +26,6 @@ KNOWN = [
 
 
 def scene(number: int) -> dict:
-    """Keys of a random rupture, or of a known one."""
     if number < 0:
         return KNOWN[number]
     rng = np.random.default_rng(number)

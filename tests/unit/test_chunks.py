@@ -61,7 +61,6 @@ def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
 
 @pytest.fixture(scope="module")
 def made(shipped, tmp_path_factory):
-    """A function that makes all files of a sweep, or of one chunk of it, and returns their paths."""
     folder = tmp_path_factory.mktemp("chunks")
 
     def make(name: str, chunk: list[int] | None = None) -> list:

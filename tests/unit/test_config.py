@@ -22,7 +22,6 @@ SMALL_FACTOR = 3.0
 
 @pytest.fixture
 def scenes_of(shipped):
-    """A function that returns a shipped sweep and its scenes at preset paper, on its lattice or a coarser one."""
 
     def scenes(name: str, coarser: float = 1.0):
         sweep = resolve(shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"], coarser)

@@ -14,7 +14,6 @@ COMPILE_ALL = "from slippulse.solver.compilation import compile_all; compile_all
 
 
 def run_with(folder, program: str, **more: str) -> str:
-    """What a program prints with its kernels in a folder of its own."""
     environment = os.environ | {"SLIPPULSE_CACHE": str(folder)} | more
     return subprocess.check_output([sys.executable, "-c", program], env=environment, text=True).strip()
 
@@ -61,7 +60,6 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
 
 @pytest.mark.slow
 def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
-    """Another type of an argument would be compiled for once more."""
     compiled = {path.name for path in untouched_kernels.rglob("*.nbc")}
     assert len(compiled) == 2
     for scheme in SCHEMES:

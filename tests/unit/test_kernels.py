@@ -119,7 +119,6 @@ def test_a_block_is_released_when_its_stress_passes_the_threshold(height, speed,
 
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 def test_a_released_block_gets_every_derivative_of_its_neighbours_force(damping):
-    """Neighbours move by polynomials of the highest degree kept: their force at the release, to the last derivative."""
     top, now, dx = 5, 0.3, 0.5
     motion, own = arrays.make_motion(top + 1, 3), np.zeros(top + 3)
     motion.w[1:, [0, 2]] = np.random.default_rng(0).standard_normal((top, 2))

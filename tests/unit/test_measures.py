@@ -115,7 +115,6 @@ PULSE, X = LeadingPulse(10.0, 1.0, 4.0, 1.0, 8.0, 1.0), 0.01 * np.arange(1601)
 
 
 def fields(velocity: np.ndarray) -> xr.Dataset:
-    """A run with slip velocity at the end, at a spacing of 0.01."""
     zero = ("x", np.zeros(velocity.size))
     named = {"slip_velocity": ("x", velocity), "slip": zero, "slip_acceleration": zero}
     return xr.Dataset(named, {"x": 0.01 * np.arange(velocity.size)})

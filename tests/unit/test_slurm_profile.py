@@ -11,7 +11,6 @@ RULE = re.compile(r"^rule (\w+):$(.*?)(?=^\S|\Z)", re.M | re.S)
 
 @pytest.fixture(scope="module")
 def rules(project) -> dict[str, str]:
-    """The text of every rule that is written out, by its name."""
     paths = [project / "Snakefile", *(project / "workflow/rules").glob("*.smk")]
     return dict(found for path in paths for found in RULE.findall(path.read_text(encoding="utf-8")))
 

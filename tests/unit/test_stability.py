@@ -44,7 +44,6 @@ def spectral_radius(a, b, c, d) -> float:
 
 
 def beyond_the_bound(scheme: str, factor: float, **values) -> sp.Scene:
-    """A scene with its step at ``factor`` times the bound, which a Scene refuses above 1."""
     scene = sp.Scene(scheme=scheme, max_step=1e-3, **values)
     object.__setattr__(scene, "max_step", factor * scene.largest_stable_step)
     return scene

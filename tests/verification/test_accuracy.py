@@ -53,7 +53,6 @@ def pulse(accuracy, level, gamma, ratio, width, release):
 
 
 def crack(accuracy, level, ratio, width):
-    """The same under a stress boundary with level 0 on the right."""
     profile = sp.Prestress(level, 0.0, width)
     exact = theory.ArrestingCrack(profile, ratio)
     duration = 1.15 * exact.share_time(SHARE)
@@ -64,7 +63,6 @@ def crack(accuracy, level, ratio, width):
 
 
 def free_front(accuracy, level, ratio):
-    """The same with positive levels."""
     speed, profile = theory.front_speed(level, ratio), sp.Prestress(level, level)
     scene = scene_of(accuracy, ratio, 20.0, boundary="stress", prestress=profile)
     return scene, {"front_speed_left": speed, "front_speed_right": speed}

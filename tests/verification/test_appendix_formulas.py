@@ -17,7 +17,6 @@ from slippulse.theory import Layer, damage_zone_stress_drop, front_speed_undampe
 
 
 def symbol(k: complex, v: float, b: float) -> complex:
-    """M(k)."""
     return 1.0 - 4.0 * np.sin(k / 2.0) ** 2 * (1.0 + 1j * b * v * k) / (v * k) ** 2
 
 
@@ -124,7 +123,6 @@ def relative(one, other) -> float:
 
 
 def second_difference(u: np.ndarray) -> np.ndarray:
-    """On a ring."""
     return np.roll(u, 1) - 2.0 * u + np.roll(u, -1)
 
 

@@ -35,13 +35,11 @@ def run_of(name: str, beta: float, release: str, **accuracy):
 
 @cache
 def chain_of(name: str, beta: float, release: str) -> Chain:
-    """The reference, integrated once a case."""
     _, gamma, profile = PROFILES[name]
     return Chain(profile(np.arange(-REACH, REACH + 1.0)), gamma, beta, release).run(DURATION)
 
 
 def differences(run, chain: Chain) -> dict[str, float]:
-    """Largest difference of each quantity over the blocks that both have; both must have the same events."""
     blocks = np.round(run["x"].values).astype(int)
     kept = np.abs(blocks) <= REACH
     out = {}
@@ -70,7 +68,6 @@ def test_every_event_and_every_slip_agrees(case):
 
 
 def random_scenes(count: int):
-    """Uneven profiles whose blocks are released and stick in no simple order."""
     random = np.random.default_rng(1)
     for _ in range(count):
         gamma, beta = float(random.uniform(0.05, 1.5)), float(random.choice([0.0, 0.05, 0.2]))

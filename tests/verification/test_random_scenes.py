@@ -27,7 +27,6 @@ seen: collections.Counter = collections.Counter()
 
 
 def real(low: float, high: float, *extremes: float) -> st.SearchStrategy[float]:
-    """A number of an interval, or one of the extremes."""
     anywhere = st.floats(low, high, allow_subnormal=False)
     return st.one_of(st.sampled_from(extremes), anywhere) if extremes else anywhere
 
@@ -41,7 +40,6 @@ BUMP = st.tuples(real(-15.0, 15.0), real(-2.0, 1.5), real(0.5, 3.0))
 
 @st.composite
 def random_scenes(draw) -> sp.Scene:
-    """A valid scene of a few thousand block updates to some millions."""
     dx = draw(st.sampled_from([0.1, 0.2, 0.37, 1.0]))
     boundary = draw(st.sampled_from(["displacement", "stress"]))
     exponent = draw(st.one_of(real(-1.0, 1.0), real(-6.0, 1.0)))

@@ -53,7 +53,6 @@ def test_beyond_the_critical_rate_strengthening_the_nucleation_alone_may_stick(a
 
 @pytest.mark.parametrize("options", [{}, {"order": 8, "half_lattice": False}, {"scheme": "fixed_step"}])
 def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
-    """Those that know the term and those that leave it out."""
     plain, least = run(0.0, duration=9.0, **options), run(1e-300, duration=9.0, **options)
     for name in ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration"):
         assert plain[name].equals(least[name])
