@@ -55,12 +55,10 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     ("scene", "flags"),
     [
         # A pulse of few blocks.
-        (displacement(0.3, 20.0, 0.4), "unresolved_pulse"),
-        (displacement(0.3, 20.0, 0.05), ""),
+        (displacement(0.3, 20.0, 0.4), "unresolved_pulse"), (displacement(0.3, 20.0, 0.05), ""),
         (displacement(0.3, 20.0, 0.4, resolved_blocks=1), ""),
         # Under a stress boundary the Gaussian must be resolved.
-        (stress(-0.5, 0.0, 4.0, 0.2), "unresolved_pulse"),
-        (stress(-0.5, 0.0, 4.0, 0.125), ""),
+        (stress(-0.5, 0.0, 4.0, 0.2), "unresolved_pulse"), (stress(-0.5, 0.0, 4.0, 0.125), ""),
         # Level -100: the pre-stress is positive over a seventh of the Gaussian's width on each side.
         (stress(-100.0, 0.0, 4.0, 0.1, beta=0.01, friction_ratio=60.0), "unresolved_pulse"),
         (stress(-100.0, 0.0, 4.0, 0.005, beta=5e-4, friction_ratio=60.0), ""),
@@ -68,8 +66,7 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
         (displacement(0.01, 60.0, 0.1, beta=0.01), "died_out"),
         (displacement(0.01, 60.0, 0.1, right=0.5, beta=0.01), "died_out"),
         # An arrest without pre-stress to drive it on.
-        (displacement(-0.5, 60.0, 0.02, beta=0.01), ""),
-        (displacement(0.0, 60.0, 0.02, beta=0.01), ""),
+        (displacement(-0.5, 60.0, 0.02, beta=0.01), ""), (displacement(0.0, 60.0, 0.02, beta=0.01), ""),
         # The textbook scheme runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps.
         *(
             (displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=step), flags)
@@ -81,7 +78,7 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
             for ratio, flags in ((0.0, "reverse_sliding"), (0.2, "reverse_sliding"), (0.3, ""), (5.0, ""))
         ),
     ],
-)
+)  # fmt: skip
 def test_flags(scene, flags):
     run = sp.simulate(scene)
     assert flags in run.attrs["run_flags"].split(",")
@@ -91,8 +88,8 @@ def test_flags(scene, flags):
     if scene.prestress.left == -1.5:
         assert run.attrs["friction_ratio_needed"] >= 0.25
     if scene.duration == 60.0:
-        driven = scene.prestress.right == 0.5
-        assert run.attrs["stopped_because"] == ("duration reached" if driven else "everything is stuck")
+        end = "duration reached" if scene.prestress.right == 0.5 else "everything is stuck"
+        assert run.attrs["stopped_because"] == end
 
 
 def test_strict_raises_where_a_flag_would_be_set():

@@ -45,14 +45,10 @@ def random_scenes(draw) -> sp.Scene:
     exponent = draw(st.one_of(real(-1.0, 1.0), real(-6.0, 1.0)))
     gamma = 10.0**exponent if boundary == "displacement" else 0.0
     left = draw(LEVELS)
-    profile = sp.Prestress(
-        left=left,
-        right=draw(st.one_of(st.just(left), LEVELS)),
-        width=max(dx, draw(real(0.1, 5.0))),
-        peak=draw(st.sampled_from([1.0, 1.5, 1.0, 0.99])),
-        steps=tuple(draw(st.lists(STEP, max_size=2, unique_by=lambda step: step[0]))),
-        bumps=tuple(draw(st.lists(BUMP, max_size=2))),
-    )
+    right, width = draw(st.one_of(st.just(left), LEVELS)), max(dx, draw(real(0.1, 5.0)))
+    peak = draw(st.sampled_from([1.0, 1.5, 1.0, 0.99]))
+    steps = tuple(draw(st.lists(STEP, max_size=2, unique_by=lambda step: step[0])))
+    profile = sp.Prestress(left, right, width, peak, steps, tuple(draw(st.lists(BUMP, max_size=2))))
     ratio, order, scheme = draw(RATIOS), draw(st.sampled_from(ORDERS)), draw(st.sampled_from([*LATTICES]))
     bound = largest_step(scheme, order, ratio, gamma * dx**2)
     duration, release = draw(st.one_of(real(0.5, 3.0), real(5.0, 10.0))), draw(st.sampled_from(RELEASES))
