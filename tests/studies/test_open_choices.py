@@ -17,10 +17,8 @@ ARRESTS = {0.9: (8.96, 5.64), 0.95: (21.8, 12.6), 0.99: (41.0, 24.1)}
 
 @pytest.mark.slow
 def test_known_cases(project, shipped):
-    sweeps = {
-        name: resolve(shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"])
-        for name in open_choices.NEEDS["sweeps"]
-    }
+    settings, names = (shipped["model"], shipped["presets"]["paper"]), open_choices.NEEDS["sweeps"]
+    sweeps = {name: resolve(shipped["simulations"][name], *settings) for name in names}
     lists = given({"lists": [project / path for path in open_choices.NEEDS["lists"]]})[1]
     table = open_choices.table({}, lists, {"sweeps": sweeps})
     for quantity in ("time", "length"):

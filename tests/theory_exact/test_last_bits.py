@@ -53,18 +53,15 @@ def scene(number: int) -> dict:
 def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarray]:
     """Every method of a rupture, at positions, and at a time that is or was its end."""
     found = {
-        **{
-            name: getattr(rupture, name)(x)
-            for name in ("release_time", "stick_time", "final_slip", "horizon")
-        },
-        **{
-            name: getattr(rupture, name)
-            for name in ("transition_time", "transition_length", "largest_velocity")
-        },
+        name: getattr(rupture, name)(x) for name in ("release_time", "stick_time", "final_slip", "horizon")
+    }
+    found |= {
+        name: getattr(rupture, name) for name in ("transition_time", "transition_length", "largest_velocity")
+    }
+    found |= at(rupture, x, time) | {
         "first_stick": (rupture.first_stick or (np.nan, np.nan))[1],
         "limit": (rupture.limit.x, rupture.limit.time) if rupture.limit else (np.nan, np.nan),
         "ends": [(end.x, end.time) for pair in rupture.front_ends for end in pair],
-        **at(rupture, x, time),
     }
     return {name: np.asarray(value, dtype=float) for name, value in found.items()}
 

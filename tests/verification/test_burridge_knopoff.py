@@ -18,13 +18,8 @@ PROFILES = {
     "stress, one-way": ("stress", 0.0, sp.Prestress(-0.5, 0.0)),
     "stress, two points": ("stress", 0.0, sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0)))),
 }
-
-
-CASES = [
-    (name, beta, release)
-    for name in PROFILES
-    for beta, release in ((0.0, "total"), (0.3, "total"), (0.3, "elastic"))
-]
+RULES = ((0.0, "total"), (0.3, "total"), (0.3, "elastic"))
+CASES = [(name, *rule) for name in PROFILES for rule in RULES]
 
 
 def run_of(name: str, beta: float, release: str, **accuracy):
