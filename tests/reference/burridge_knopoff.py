@@ -88,7 +88,7 @@ class Chain:
 
     def _zero(self, path, block: int, before: float, now: float) -> float:
         """When one block's margin passes 0; one released at the start of the step has velocity 0 there."""
-        margin = lambda time: self._margins(path(time))[block]  # noqa: E731
+        margin = lambda time: self._margins(path(time))[block]
         return brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
 
     def _apply(self, time: float) -> None:

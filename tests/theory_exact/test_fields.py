@@ -68,7 +68,7 @@ def test_velocity_is_riemanns_integral(name):
     profile, gamma, ratio = SCENES[name]
     early = sp.theory.Fronts(profile, ratio, "total", 8.0)
     rupture = Rupture(profile, gamma, ratio, "total", 8.0)
-    arrival = lambda x: float(rupture.release_time(x))  # noqa: E731
+    arrival = lambda x: float(rupture.release_time(x))
     for y, time in ((0.3, 1.5), (1.0, 3.0), (-0.8, 2.5)):
         left = brentq(lambda x, y=y, t=time: t - arrival(x) - (y - x), -3.4, y, xtol=1e-13)
         right = brentq(lambda x, y=y, t=time: t - arrival(x) - (x - y), y, 4.5, xtol=1e-13)
@@ -138,8 +138,8 @@ def test_transition_in_uniform_prestress(tau0, known):
     """By gamma as 1/sqrt(gamma), with damping too; soft leaf springs are as quick to solve as stiff ones."""
     time, rate = uniform_transition_time(tau0, 1.0), np.sqrt(1.0 - tau0**2)
     assert time / np.pi == pytest.approx(known, abs=5e-4)
-    integrand = lambda x, t: j0(np.sqrt(max((t - rate * x) ** 2 - x**2, 0.0)))  # noqa: E731
-    velocity = lambda t: quad(integrand, 0.0, t / (1.0 + rate), args=(t,))[0]  # noqa: E731
+    integrand = lambda x, t: j0(np.sqrt(max((t - rate * x) ** 2 - x**2, 0.0)))
+    velocity = lambda t: quad(integrand, 0.0, t / (1.0 + rate), args=(t,))[0]
     assert time == pytest.approx(brentq(velocity, 2.0, 5.0), abs=1e-8)
     damped = uniform_transition_time(tau0, 1.0, 0.1)
     assert uniform_transition_time(tau0, 4.0, 0.1) == pytest.approx(0.5 * damped)

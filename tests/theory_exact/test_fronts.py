@@ -26,7 +26,7 @@ def test_the_interpolated_front_law_is_the_front_law(ratio, release):
 def test_arrival_times_are_integrals_of_the_slowness():
     profile = sp.Prestress(0.25, 0.6, 0.8, steps=((3.0, 0.4),), bumps=((-2.0, 0.3, 0.5),))
     rupture = Rupture(profile, 0.55, 0.1, "total", 8.0)
-    rate = lambda x: 1.0 / front_speed(min(float(profile(x)), 1.0 - 1e-15), 0.1) if x else 0.0  # noqa: E731
+    rate = lambda x: 1.0 / front_speed(min(float(profile(x)), 1.0 - 1e-15), 0.1) if x else 0.0
     for x, *ends, mark in ((-3.0, -3.0, 0.0, -2.0), (4.0, 0.0, 4.0, 3.0)):
         exact = quad(rate, *ends, points=[mark], epsabs=1e-12, epsrel=1e-11, limit=200)[0]
         assert float(rupture.release_time(x)) == pytest.approx(exact, rel=RELATIVE)
@@ -38,7 +38,7 @@ def test_the_earlier_front_counts_where_two_meet():
     start, edge = (brentq(lambda x: float(profile(x)) - 1.0, *ends, xtol=1e-14) for ends in ((4, 6), (6, 8)))
     assert rupture.release_time([6.0, edge]) == pytest.approx(0.0, abs=1e-12)
     (join,) = rupture.stretches[0].joins
-    rate = lambda x: float(slowness(profile(np.asarray(x)), 0.1))  # noqa: E731
+    rate = lambda x: float(slowness(profile(np.asarray(x)), 0.1))
     times = [quad(rate, *ends, epsabs=1e-11)[0] for ends in ((0.0, join), (join, start))]
     assert times == pytest.approx([float(rupture.release_time(join))] * 2, rel=1e-7)
 
@@ -48,7 +48,7 @@ def test_velocity_vanishes_on_a_slow_front(gamma, ratio):
     """The integral equation of the free boundary, by adaptive quadrature."""
     rupture = Rupture(ASYMMETRIC, gamma, ratio, "total", 4.0)
     assert rupture.limit is None
-    arrival = lambda x: float(rupture.release_time(x))  # noqa: E731
+    arrival = lambda x: float(rupture.release_time(x))
     for x in (-3.0, -2.2, -1.7):
         time = arrival(x)
         entry = brentq(lambda e, x=x, t=time: arrival(e) + e - t - x, x + 0.05, 2.0, xtol=1e-13)

@@ -136,7 +136,7 @@ def test_a_smaller_error_takes_a_finer_lattice_at_the_same_damping_ratio(scene):
 
 
 def test_the_spacing_follows_the_scenes_own_lengths():
-    spacing = lambda **change: sp.settings_for(1e-3, **PULSE | change)["dx"]  # noqa: E731
+    spacing = lambda **change: sp.settings_for(1e-3, **PULSE | change)["dx"]
     # Lengths in units of 1/sqrt(gamma) and W together are the same scene on another scale.
     scaled = {"gamma": 0.65 / 16.0, "prestress": sp.Prestress(0.5, 0.5, 4.0)}
     assert spacing(**scaled) == pytest.approx(4.0 * spacing(), rel=tol.SHOWN_DIGITS)

@@ -165,7 +165,7 @@ def test_an_equation_is_judged_at_spacing_zero_and_one_run_that_is_off_fails_it_
     claim = exact(evidence(lambda level, factor: level * (1.0 + 0.002 * factor)))
     assert claim == claim | {"verdict": YES, "runs": 4, "left_out": 0}
     assert claim["deviation"] < 1e-9 and claim["uncertainty"] / claim["predicted"] == pytest.approx(0.002)
-    off = lambda level, factor: level * (1.0 + 1e-4 * factor + 0.05 * (level == 0.6))  # noqa: E731
+    off = lambda level, factor: level * (1.0 + 1e-4 * factor + 0.05 * (level == 0.6))
     claim = exact(evidence(off))
     assert claim["verdict"] == NO and claim["predicted"] == 0.6
     assert claim["deviation"] == pytest.approx(0.05, rel=0.01)

@@ -45,7 +45,7 @@ def test_the_symbol_does_not_wind_around_zero(v, b):
 def test_the_factor_by_cauchys_integral(v):
     """ln M_+(0) by adaptive quadrature of the formula as printed, against the code's own."""
     b = 0.3
-    phase = lambda z: float(np.angle(symbol(z, v, b))) / z  # noqa: E731
+    phase = lambda z: float(np.angle(symbol(z, v, b))) / z
     edges = np.concatenate([[1e-9, 0.5], np.arange(1.0, 400.0) * 2.0 * np.pi])
     integral = sum(quad(phase, lo, hi, epsabs=1e-13)[0] for lo, hi in itertools.pairwise(edges))
     # Beyond the last edge the mean of -b 4 sin^2(z/2)/(v z) is -2 b/(v z).

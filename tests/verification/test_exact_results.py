@@ -172,7 +172,7 @@ class EndingTail(sp.Prestress):
 
 def test_the_arrest_of_a_tail_that_ends():
     """t = T(3) + 3 - x_minus, the last characteristic entering where the tail ends."""
-    slowness = lambda x: 1.0 / sp.theory.front_speed(1.0 - 0.5 * x / TAIL_LENGTH, TAIL_RATIO)  # noqa: E731
+    slowness = lambda x: 1.0 / sp.theory.front_speed(1.0 - 0.5 * x / TAIL_LENGTH, TAIL_RATIO)
     assert quad(slowness, 0.0, TAIL_LENGTH)[0] + TAIL_LENGTH - X_MINUS == pytest.approx(ARREST, abs=1e-4)
     gaps, tail = [], EndingTail(TAIL_LEVEL, 0.0)
     for dx in (0.04, 0.02):
