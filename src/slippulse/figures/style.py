@@ -155,6 +155,13 @@ def _save_png(canvas: FigureCanvasAgg, path: Path, made_by: str | None) -> None:
     text, dpi = PngInfo(), canvas.figure.dpi
     if made_by:
         text.add_text("Comment", made_by)
-    picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-    few = picture.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    few.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)
+    # One number a pixel. Most are white: colour 0, which need not be looked for.
+    pixels = np.asarray(canvas.buffer_rgba()).view(np.uint32)[..., 0]
+    ink = pixels != 0xFFFFFFFF
+    drawn = Image.fromarray(pixels[ink].view(np.uint8).reshape(1, -1, 4)).convert("RGB")
+    few = drawn.quantize(255, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    colours = np.zeros(pixels.shape, np.uint8)
+    colours[ink] = np.asarray(few)[0] + 1
+    picture = Image.fromarray(colours, "P")
+    picture.putpalette([255, 255, 255, *(few.getpalette() or ())])
+    picture.save(path, format="png", dpi=(dpi, dpi), pnginfo=text)
