@@ -22,9 +22,14 @@ SLIGHT = 1e-6
 BAND = 1.5
 
 
+def read_text(path: str | Path):
+    """A YAML file, by the parser in C: ten times as fast."""
+    return yaml.load(Path(path).read_text(encoding="utf-8"), yaml.CSafeLoader)
+
+
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
     """Claims, algebra and findings, the claims with tolerances of the configuration; ValueError for an unknown one."""
-    texts = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    texts = read_text(path)
     claims = texts["claims"]
     for id, other in tolerances.items():
         if id not in claims:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from PIL import Image
 
-from ..claims.reading import Ledger
+from ..claims.reading import Ledger, read_text
 from ..data.prose import fill
 from .claims_page import shown
 from .html import page
-from .texts import answer, judged_lines, parameters, read_captions, read_text
+from .texts import answer, judged_lines, parameters, read_captions
 
 # Where a reader goes first, and what else there is.
 FIRST = {

@@ -10,12 +10,12 @@ import jupytext
 import pandas as pd
 from PIL import Image
 
-from ..claims.reading import Ledger, coverage
+from ..claims.reading import Ledger, coverage, read_text
 from ..data.alterations import changes
 from ..data.numerals import FILTERS, percent
 from ..data.prose import fill
 from .tables import alteration_note, errata, verdicts
-from .texts import Caption, answer, judged_lines, parameters, read_captions, read_errata, read_text
+from .texts import Caption, answer, judged_lines, parameters, read_captions, read_errata
 
 # The report and what it refers to for more; each is NAME.md.
 DOCUMENTS = ("replication", "supplement")

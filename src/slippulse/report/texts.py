@@ -5,9 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
 
-import yaml
-
-from ..claims.reading import Ledger
+from ..claims.reading import Ledger, read_text
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import setting
 
@@ -53,11 +51,6 @@ def read_errata(path: str | Path) -> list[dict[str, str]]:
     """The errata, mappings with the keys `ERRATUM`; one that is not whole is refused as a caption is."""
     entries = {f"entry {i}": entry for i, entry in enumerate(read_text(path), start=1)}
     return [*_whole(path, entries, ERRATUM).values()]
-
-
-def read_text(path: str | Path):
-    """A YAML file."""
-    return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
 
 
 def _whole(path: str | Path, entries: dict[str, dict], keys: Collection[str]) -> dict[str, dict]:

@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-import yaml
-
 from ..claims.evidence import Evidence
 from ..claims.paper import all_claims, findings, finite
-from ..claims.reading import read_entries
+from ..claims.reading import read_entries, read_text
 from ..data.files import write_json, write_text
 from ..report.claims_page import claims_page
 from .inputs import given
@@ -20,7 +18,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     Settings: claims (tolerances in place of those with the texts), measure, published, damping_ratio, altered.
     """
     texts = read_entries(files["texts"], settings["claims"])
-    sentences = yaml.safe_load(Path(files["statements"]).read_text(encoding="utf-8"))["statements"]
+    sentences = read_text(files["statements"])["statements"]
     evidence = Evidence(given(files)[1], texts["claims"], settings["measure"]["steady_tolerance"])
     claims = all_claims(evidence, settings["published"], sentences)
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import yaml
 
+from ..claims.reading import read_text
 from ..data.files import write_text
 from ..report.document import write_html, write_pdf
 from ..report.manuscript import DOCUMENTS, Inputs, execute, names_for
-from ..report.texts import read_text
 from .inputs import given
 
 FILES = ("report/templates/report.html", "report/templates/report.css", "report/templates/report.typ")
