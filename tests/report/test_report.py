@@ -63,7 +63,7 @@ def test_all_carry_the_digest_of_their_configuration_and_their_version(pages, pd
 
 def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(pages, report):
     pictures = re.findall(
-        r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img src="data:image/webp;base64,([^"]+)"[^>]*></a>',
+        r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img src="data:image/png;base64,([^"]+)"[^>]*></a>',
         "".join(pages),
     )
     assert sorted(name for name, _, _ in pictures) == sorted(report.inputs.figures)

@@ -5,9 +5,7 @@ import re
 import tempfile
 from base64 import b64encode
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from io import BytesIO
 from itertools import count
 from pathlib import Path
 
@@ -48,24 +46,18 @@ def as_page(html: str) -> str:
     text = re.sub("<table", lambda _: region.format(next(numbers)), text).replace(
         "</table>", "</table></div>"
     )
-    with ThreadPoolExecutor() as pool:
-        pictures = pool.map(_as_webp, [figure[2] for figure in FIGURE.findall(text)])
-        # A click on a figure opens its picture, at its own size.
-        text = FIGURE.sub(
-            lambda it: f'{it[1]}<a href="../figures/{it[2]}.png"><img {next(pictures)}{it[4]}</a>', text
-        )
-    return head + opening + text
+    # A click on a figure opens its picture, at its own size.
+    return head + opening + FIGURE.sub(_enlarging, text)
 
 
-def _as_webp(path: str) -> str:
-    """A picture with the same pixels in two thirds of the bytes, and its size, which no page waits for."""
-    content = BytesIO()
+def _enlarging(figure: re.Match) -> str:
+    """A figure with its picture inside, and the size of that, which no page waits for."""
+    start, name, path, rest = figure.groups()
+    content = b64encode(Path(path).read_bytes()).decode()
     with Image.open(path) as picture:
-        # Higher settings take longer and gain nothing.
-        picture.convert("RGB").save(content, format="WEBP", lossless=True, method=2, quality=75)
-        width, height = picture.size
-    address = "data:image/webp;base64," + b64encode(content.getvalue()).decode("ascii")
-    return f'src="{address}" width="{width}" height="{height}"'
+        size = 'width="{}" height="{}"'.format(*picture.size)
+    image = f'<img src="data:image/png;base64,{content}" {size}'
+    return f'{start}<a href="../figures/{name}.png">{image}{rest}</a>'
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
