@@ -76,6 +76,7 @@ rule write_report:
         html=expand("results/manuscript/{document}.html", document=DOCUMENTS),
         pdf=expand("results/manuscript/{document}.pdf", document=DOCUMENTS),
         verdicts="results/manuscript/verdicts.yaml",
+    priority: 1
     params:
         figures=list(NEEDS),
         config=config,
