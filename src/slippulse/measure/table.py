@@ -48,7 +48,7 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
         row |= {
-            "largest_velocity": float(np.max(run["slip_velocity"])),
+            "largest_velocity": float(np.max(run["slip_velocity"].values)),
             "pulse_front": pulse.front,
             "pulse_width": pulse.width,
             "pulse_peak_velocity": pulse.peak_velocity,
