@@ -42,8 +42,9 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
     if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:
         row |= transition_stress(run, settings["share"])
     row["first_stick_time"] = run.attrs["first_stick_time"]
-    for time in settings["trailing_times"]:
-        row[f"trailing_edge_{time:g}"] = float(position_at(run, time, "right", "stick_time"))
+    times = settings["trailing_times"]
+    edges = position_at(run, times, "right", "stick_time").tolist()
+    row |= {f"trailing_edge_{time:g}": edge for time, edge in zip(times, edges, strict=True)}
     pulse = None
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
