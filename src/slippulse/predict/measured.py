@@ -41,7 +41,7 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
     """
     rows = []
     for index in range(sweep.sizes["point"]):
-        run = point(sweep, index)
+        run = point(sweep, index, indexes=False)
         row, pulse = measure_run(run, settings)
         if pulse is not None:
             row["pulse_state"] = pulse_state(run, pulse)
