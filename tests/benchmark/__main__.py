@@ -204,7 +204,8 @@ def main(config_path: str, folder: str) -> None:
 
 if __name__ == "__main__":
     if len(sys.argv) != 3:
-        sys.exit("usage: python -m tests.benchmark CONFIGURATION FOLDER")
+        print("usage: python -m tests.benchmark CONFIGURATION FOLDER", file=sys.stderr)
+        sys.exit(2)
     try:
         main(*sys.argv[1:])
     except ConfigError as error:
