@@ -23,18 +23,11 @@ DONE, CONTINUE, GROW, UNSTABLE, ALL_STUCK = 0, 1, 2, 3, 4
 
 # Records whose fields are attributes, for kernels and for Python alike. One dtype object for each kind: numba knows it
 # again by its address, and would find the type of a copy anew in each call.
-# pending_step: the step whose viscous loss still lacks the part of the dissipation at its end. rate_time: when the loss
-# to rate strengthening was last added, its rate then, and the derivative of that.
-_TIMES = ("time", "first_stick_time", "pending_step", "rate_time", "rate", "rate_change")
-_SUMS = ("viscous_loss", "stick_loss", "min_velocity", "min_stuck_stress")
-_UPDATES = ("steps", "block_updates", "event_updates", "samples_taken")
-_EVENTS = ("releases", "re_releases", "sticks", "first_stuck_block")
-TALLY = np.dtype(
-    (
-        np.record,
-        [(name, np.float64) for name in _TIMES + _SUMS] + [(name, np.int64) for name in _UPDATES + _EVENTS],
-    )
-)
+# pending_step: the step whose viscous loss still lacks the part of the dissipation at its end.
+_FLOATS = "time first_stick_time pending_step viscous_loss stick_loss min_velocity min_stuck_stress"
+_COUNTS = "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
+_FIELDS = [(name, np.float64) for name in _FLOATS.split()] + [(name, np.int64) for name in _COUNTS.split()]
+TALLY = np.dtype((np.record, _FIELDS))
 COUNT = np.dtype((np.record, [("n", np.int64)]))
 # Sums over the events of a step of k, k s and k s^2: the event at time s changes dD/dt, D the dissipation, by k.
 KINKS = np.dtype((np.record, [("k", np.float64), ("ks", np.float64), ("kss", np.float64)]))

@@ -57,7 +57,7 @@ def stop(own, w, offset, block, now, top):
 
 
 @inner(inline=True)
-def spread(difference, medium, left, right, stick, alpha, top):
+def spread(difference, medium, left, right, stick, top):
     """Derivatives of what an event changes, from those of its block, over ``left`` and ``right`` sliding blocks."""
     rows, own = difference.rows, difference.own
     for k in range(2, top + 1):
@@ -66,15 +66,9 @@ def spread(difference, medium, left, right, stick, alpha, top):
         far = k - 2 if medium.damping != 0.0 else (k - 2) // 2
         for p in blocks(CENTRE - min(left, far), CENTRE + min(right, far) + 1):
             rows[k, p] = derivative(rows, k, p, medium.per_dx2, medium.leaf, medium.damping)
-        if alpha != 0.0:
-            strengthen(rows, k, CENTRE - min(left, far), CENTRE + min(right, far) + 1, alpha)
+        if medium.alpha != 0.0:
+            strengthen(rows, k, CENTRE - min(left, far), CENTRE + min(right, far) + 1, medium.alpha)
         rows[k, CENTRE] = own[k] + (0.0 if stick else rows[k, CENTRE])
-
-
-@inner()
-def strengthened_spread(difference, medium, left, right, stick, top):
-    """The same where friction depends on slip rate, out of the way of other runs."""
-    spread(difference, medium, left, right, stick, medium.alpha, top)
 
 
 @inner(inline=True)
@@ -143,10 +137,7 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
         if not middle:
             neighbours += velocity_at(w, block - 1, top, now)
         kink = -difference.own[2] * neighbours
-    if medium.alpha == 0.0:
-        spread(difference, medium, left, right, stick, 0.0, top)
-    else:
-        strengthened_spread(difference, medium, left, right, stick, top)
+    spread(difference, medium, left, right, stick, top)
     if stick:
         # `stop` has changed it already.
         for k in range(2, top + 1):

@@ -48,51 +48,39 @@ def take_samples(recorder, motion, tally, start, end, order):
         tally.samples_taken += 1
 
 
+@inner()
+def dissipation_by_rate(medium, w, segments):
+    """D = alpha dx sum of v_i^2 over all segments, and dD/dt."""
+    square, product = 0.0, 0.0
+    for r in range(segments.count.n):
+        s, p = motion_of(w, segments.starts[r], segments.ends[r])
+        # The block at x = 0 has no mirror image.
+        once = 0.5 if medium.mirror and segments.starts[r] == 1 else 0.0
+        square += s - once * w[1, 1] * w[1, 1]
+        product += p - once * w[1, 1] * w[2, 1]
+    scale = (2.0 if medium.mirror else 1.0) * medium.alpha * medium.dx
+    return scale * square, 2.0 * scale * product
+
+
 @inner(inline=True)
 def dissipation(medium, motion, segments):
-    """Viscous dissipation D, beta dx sum ((v_{i+1} - v_i)/dx)^2 over all segments, and dD/dt."""
-    square, product = 0.0, 0.0
+    """D = beta dx sum ((v_{i+1} - v_i)/dx)^2 over all segments and what rate strengthening adds, and dD/dt."""
+    square, product, rate, change = 0.0, 0.0, 0.0, 0.0
     for r in range(segments.count.n):
         start = segments.starts[r]
         left = 1 if medium.mirror and start == 1 else start - 1
         s, p = stretching(motion.w, left, segments.ends[r])
         square += s
         product += p
+    if medium.alpha != 0.0:
+        rate, change = dissipation_by_rate(medium, motion.w, segments)
     scale = (2.0 if medium.mirror else 1.0) * medium.beta / medium.dx
-    return scale * square, 2.0 * scale * product
-
-
-@inner()
-def note_rate_loss(medium, motion, segments, tally):
-    """Add what rate strengthening has taken since the last call, at the ends of a step: D = alpha dx sum v^2.
-
-    Fourth order in the step h: h (D_0 + D_1)/2 + h^2 (D_0' - D_1')/12. No event changes D', for its block is at rest.
-    """
-    square, product = 0.0, 0.0
-    for r in range(segments.count.n):
-        s, p = motion_of(motion.w, segments.starts[r], segments.ends[r])
-        # The block at x = 0 has no mirror image.
-        once = 0.5 if medium.mirror and segments.starts[r] == 1 else 0.0
-        square += s - once * motion.w[1, 1] * motion.w[1, 1]
-        product += p - once * motion.w[1, 1] * motion.w[2, 1]
-    scale = (2.0 if medium.mirror else 1.0) * medium.alpha * medium.dx
-    rate, change, h = scale * square, 2.0 * scale * product, tally.time - tally.rate_time
-    tally.viscous_loss += 0.5 * h * (tally.rate + rate) + h * h * (tally.rate_change - change) / 12.0
-    tally.rate_time, tally.rate, tally.rate_change = tally.time, rate, change
-
-
-@inner()
-def note_kink(kinks, medium, kink, s):
-    """Add an event at s, where the sum over neighbours of dv da jumps by ``kink``."""
-    k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
-    kinks.k += k
-    kinks.ks += k * s
-    kinks.kss += k * s * s
+    return scale * square + rate, 2.0 * scale * product + change
 
 
 @inner()
 def viscous_loss(h, rate, change, kinks):
-    """Viscous loss of a step h, without the term h D_1/3, which is added when D_1 is known.
+    """Viscous loss of a step h, rate strengthening's included, without h D_1/3, which is added when D_1 is known.
 
     Third order in h from the dissipation D_0 and its derivative D_0' at the start and D_1 at the end, which is the next
     start since velocities are continuous: h (2 D_0 + D_1)/3 + h^2 D_0'/6. An event at s that changes D' by k adds

@@ -92,25 +92,24 @@ def may_stop(after, now, tangent):
 @inner(inline=True)
 def velocity_after(out, w, first, last, step, order):
     """Velocity of blocks first..last-1 a time ``step`` later, and how many of them may stop on the way."""
-    weight = step / order
-    for i in blocks(first, last):
-        out[i] = w[order, i] + weight * w[order + 1, i]
-    k = order - 1
+    k = order
+    if order % 2 == 1:
+        for i in blocks(first, last):
+            out[i] = w[order + 1, i]
+    else:
+        weight = step / order
+        for i in blocks(first, last):
+            out[i] = w[order, i] + weight * w[order + 1, i]
+        k = order - 1
     while k > 3:
         nest(out, w, k, step / k, step / (k - 1), first, last)
         k -= 2
     count = np.int64(0)
     half, third = step / 2.0, step / 3.0
-    if k == 3:
-        for i in blocks(first, last):
-            after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
-            out[i] = after
-            count += may_stop(after, w[1, i], step * w[2, i])
-    else:
-        for i in blocks(first, last):
-            after = w[1, i] + step * (w[2, i] + half * out[i])
-            out[i] = after
-            count += may_stop(after, w[1, i], step * w[2, i])
+    for i in blocks(first, last):
+        after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
+        out[i] = after
+        count += may_stop(after, w[1, i], step * w[2, i])
     return count
 
 
@@ -123,20 +122,12 @@ def advance_slip(w, velocity, first, last, step, order):
         nest(inner, w, k, step / (k + 1), step / k, first, last)
         k -= 2
     half, third, fourth, fifth = step / 2.0, step / 3.0, step / 4.0, step / 5.0
-    if k == 4:
-        for i in blocks(first, last):
-            rest = w[2, i] + third * (w[3, i] + fourth * (w[4, i] + fifth * inner[i]))
-            increment = step * (w[1, i] + half * rest)
-            w[2, i] = increment
-            w[0, i] += increment
-            w[1, i] = velocity[i]
-    else:
-        for i in blocks(first, last):
-            rest = w[2, i] + third * (w[3, i] + fourth * inner[i])
-            increment = step * (w[1, i] + half * rest)
-            w[2, i] = increment
-            w[0, i] += increment
-            w[1, i] = velocity[i]
+    for i in blocks(first, last):
+        rest = w[3, i] + fourth * (w[4, i] + fifth * inner[i] if k == 4 else inner[i])
+        increment = step * (w[1, i] + half * (w[2, i] + third * rest))
+        w[2, i] = increment
+        w[0, i] += increment
+        w[1, i] = velocity[i]
 
 
 @inner(inline=True)

@@ -5,9 +5,6 @@ is its own dense output: the stress of a stuck neighbour and the velocity of a s
 time since the step began, and the next event is the first root of either (`foresight`). What an event changes is added
 to the polynomials within its reach (`events`). Only the segments of sliding blocks and their neighbours are touched;
 everything else is at rest and its derivatives are zero.
-
-What paid for narrow pulses: events inside the step, and the difference that an event makes instead of a new expansion
-around it. What did not: passes written by hand for order 4, ending steps at events.
 """
 
 import math
@@ -18,15 +15,7 @@ from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
 from .jit import entry, inner
-from .notes import (
-    dissipation,
-    note_kink,
-    note_rate_loss,
-    note_release,
-    note_stick,
-    take_samples,
-    viscous_loss,
-)
+from .notes import dissipation, note_release, note_stick, take_samples, viscous_loss
 from .segments import holds, release_block, stick_block
 from .stencils import (
     advance_slip,
@@ -45,7 +34,7 @@ BLOW_UP = 100.0
 
 @inner(inline=True)
 def derivatives(medium, motion, segments, alpha, top):
-    """Fill w[2..top] with the time derivatives of slip on all segments; ``alpha`` is the rate strengthening."""
+    """Fill w[2..top] with the time derivatives of slip on all segments."""
     w, mirror = motion.w, medium.mirror
     for r in range(segments.count.n):
         a, b = segments.starts[r], segments.ends[r]
@@ -66,10 +55,9 @@ def derivatives(medium, motion, segments, alpha, top):
 
 
 @inner()
-def strengthened_derivatives(medium, motion, segments, tally, top):
-    """The same where friction depends on slip rate, out of the way of other runs; and the loss to it."""
+def strengthened_derivatives(medium, motion, segments, top):
+    """The same where friction depends on slip rate, out of the way of other runs."""
     derivatives(medium, motion, segments, medium.alpha, top)
-    note_rate_loss(medium, motion, segments, tally)
 
 
 @inner(inline=True)
@@ -120,7 +108,10 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h, to
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     if stick:
         tally.min_velocity = min(tally.min_velocity, speed)
-    note_kink(changed.kinks, medium, kink, event.time)
+    k, s = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx), event.time
+    changed.kinks.k += k
+    changed.kinks.ks += k * s
+    changed.kinks.kss += k * s * s
     n = changed.count.n
     changed.first[n], changed.last[n], changed.stuck[n] = first, last, block if stick else -1
     changed.count.n = n + 1
@@ -184,15 +175,15 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
     size = motion.tau.shape[0]
     same = SIMULTANEOUS * limits.largest_step
     tally, moved, forecast, changed = history.tally, scratch.moved, scratch.forecast, scratch.changed
-    kinks = changed.kinks
+    kinks, lossy = changed.kinks, medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.steps):
         t = tally.time
         if medium.alpha == 0.0:
             derivatives(medium, motion, segments, 0.0, top)
         else:
-            strengthened_derivatives(medium, motion, segments, tally, top)
+            strengthened_derivatives(medium, motion, segments, top)
         rate, change = 0.0, 0.0
-        if medium.beta > 0.0:
+        if lossy:
             rate, change = dissipation(medium, motion, segments)
             tally.viscous_loss += tally.pending_step * rate / 3.0
             tally.pending_step = 0.0
@@ -233,7 +224,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
                 return UNSTABLE
         take_samples(recorder, motion, tally, t, end, order)
 
-        if medium.beta > 0.0:
+        if lossy:
             tally.viscous_loss += viscous_loss(h, rate, change, kinks)
             tally.pending_step = h
         updates = 0
