@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from slippulse.measure.fronts import longest_wait
+from slippulse.measure.fronts import arrival
 from slippulse.measure.pulses import LeadingPulse, leading_pulse
 from slippulse.measure.regime import REGIMES, classify
 from slippulse.measure.shape import far_field, half_width, lattice_noise, sliding_at_once
@@ -182,9 +182,9 @@ def test_the_longest_wait_on_the_way():
     """Blocks at -1, -2, ... released at 1, 2, 5, 6 and 20: the last is beyond the distance asked for."""
     x = np.arange(-5.0, 1.0)
     run = xr.Dataset({"release_time": ("x", [20.0, 6.0, 5.0, 2.0, 1.0, 0.0])}, coords={"x": x})
-    assert longest_wait(run, 4.0, "left") == 3.0
-    assert longest_wait(run, 5.0, "left") == 14.0
-    assert np.isnan(longest_wait(run, 6.0, "left"))
+    assert arrival(run, 4.0, "left")[1] == 3.0
+    assert arrival(run, 5.0, "left")[1] == 14.0
+    assert np.isnan(arrival(run, 6.0, "left")[1])
 
 
 @pytest.mark.parametrize(

@@ -31,17 +31,8 @@ def position_at(run: xr.Dataset, time, side: str = "right", edge: str = "release
     return np.where(time < latest[0], np.nan, np.interp(time, latest[last], distances[last]))
 
 
-def arrival(run: xr.Dataset, distance: float, side: str = "right") -> float:
-    """Time at which the front on one side reaches a distance; NaN if it never does."""
-    return _on_the_way(run, distance, side)[0]
-
-
-def longest_wait(run: xr.Dataset, distance: float, side: str = "right") -> float:
-    """Longest time between two blocks of a front on its way to a distance; NaN if it never gets there."""
-    return _on_the_way(run, distance, side)[1]
-
-
-def _on_the_way(run: xr.Dataset, distance: float, side: str) -> tuple[float, float]:
+def arrival(run: xr.Dataset, distance: float, side: str = "right") -> tuple[float, float]:
+    """Time at which the front on one side reaches a distance, and its longest between two blocks on the way; or NaN."""
     times, distances = path(run, side)
     if times.size == 0 or distances[-1] < distance:
         return np.nan, np.nan

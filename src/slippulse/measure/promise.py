@@ -52,8 +52,6 @@ def covers(run: Mapping, quantity: str, fraction: float) -> bool:
 def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction: float) -> pd.DataFrame:
     """A grid study with two more columns: `promised` (NaN where nothing is) and `kept` ("true", "false" or "").
 
-    Parameters
-    ----------
     study : as `grid_tables` has it
     measured : the table at the finest spacing
     promise : largest relative uncertainty; NaN for a spacing of its own, which promises nothing

@@ -11,23 +11,14 @@ NAN = float("nan")
 
 
 class LeadingPulse(NamedTuple):
-    """The pulse behind the right front, at the end of a run.
+    """The pulse behind the right front, at the end of a run."""
 
-    Attributes
-    ----------
-    front : distance of the front from x = 0, between blocks
-    speed : speed of the front
-    width : distance from the front to where blocks stick; NaN when nothing has stuck behind it
-    peak_velocity, peak_distance : largest slip velocity, from a parabola through three blocks, and where it is
-    slip : slip of the blocks that stuck last, halfway between the trailing edge and the nucleation at the nearest
-    """
-
-    front: float
-    speed: float
-    width: float
-    peak_velocity: float
+    front: float  # distance from x = 0, between blocks
+    speed: float  # of the front
+    width: float  # distance from the front to where blocks stick; NaN when nothing has stuck behind it
+    peak_velocity: float  # largest slip velocity, from a parabola through three blocks
     peak_distance: float
-    slip: float
+    slip: float  # of the blocks that stuck last, halfway between the trailing edge and the nucleation at the nearest
 
 
 def leading_pulse(run: xr.Dataset, window: float) -> LeadingPulse:

@@ -21,10 +21,8 @@ UNDECIDED = "undecided"
 def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str, float | str]:
     """Classify a run by its slip velocity at the end, and at two thirds of its duration.
 
-    Parameters
-    ----------
-    run : one run with samples of slip velocity over time and position; how it ends is taken from the blocks themselves
-        where their slip velocity at the end is there, since samples may miss what is narrow or far
+    run : with samples of slip velocity over time and position; how it ends is taken from the blocks themselves where
+        their slip velocity at the end is there, since samples may miss what is narrow or far
     still : a velocity below this fraction of the largest one now (or, for arrest, of the largest one sampled) is rest
     steady_tolerance : a largest velocity that changes less than this fraction over the last third is steady; a front
         this fraction slower than the waves still keeps up with them

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..model.prestress import prestress_balance_position, prestress_from
-from .fronts import arrival, longest_wait, path, position_at
+from .fronts import arrival, path, position_at
 
 NAN = float("nan")
 # A left front that spends more than this fraction of T_trans between two blocks is held up by the lattice, not by the
@@ -55,10 +55,10 @@ def transition_stress(run: xr.Dataset, fraction: float) -> dict[str, float | str
     "resolved", "stalled" where the lattice held the left front up on its way, or "not reached".
     """
     distance = abs(prestress_balance_position(prestress_from(run.attrs)))
-    time = arrival(run, fraction * distance, "left")
+    time, longest_wait = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
     arrest = float(np.max(times)) if times.size else NAN
-    waited = longest_wait(run, fraction * distance, "left") / time
+    waited = longest_wait / time
     state = "not reached" if np.isnan(waited) else "stalled" if waited > STALL else "resolved"
     right = NAN if np.isnan(time) else float(position_at(run, time, "right"))
     return {

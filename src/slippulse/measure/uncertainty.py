@@ -13,20 +13,12 @@ ORDERS = (0.5, 6.0)
 
 
 class GridStudy(NamedTuple):
-    """What three spacings say about one number.
+    """What three spacings say about one number."""
 
-    Attributes
-    ----------
-    value : at the finest spacing
-    extrapolated : at spacing 0, by the observed order; the finest value where there is none
-    observed_order : NaN where the three values do not follow a power of the spacing
-    uncertainty : |value - extrapolated|, or the spread of the three where there is no order
-    """
-
-    value: float
-    extrapolated: float
-    observed_order: float
-    uncertainty: float
+    value: float  # at the finest spacing
+    extrapolated: float  # at spacing 0, by the observed order; the finest value where there is none
+    observed_order: float  # NaN where the three values do not follow a power of the spacing
+    uncertainty: float  # |value - extrapolated|, or the spread of the three where there is no order
 
 
 def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
@@ -66,8 +58,6 @@ def grid_tables(
 ) -> pd.DataFrame:
     """A grid study of every measured number of a sweep.
 
-    Parameters
-    ----------
     tables : measured tables at the finest, the middle and the coarsest spacing, rows in the same order
     factors : of `grid_study`
     keys : columns that name a point rather than measure it

@@ -19,14 +19,10 @@ ROUNDS, PARTS = 4, 32
 def largest_step(
     scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
 ) -> float:
-    """Largest stable time step in units of dx.
+    """Largest stable time step in units of dx: "continuum" takes none.
 
-    Parameters
-    ----------
-    scheme : "localised", "fixed_step", or "continuum", which takes no steps
-    order : order of the Taylor step (used by "localised" alone)
-    damping_ratio : beta/dx, >= 0
-    gamma_dx2 : gamma dx^2, >= 0 (0 under a stress boundary)
+    order : of the Taylor step, used by "localised" alone
+    damping_ratio, gamma_dx2 : beta/dx and gamma dx^2 (0 under a stress boundary), >= 0
     alpha_dx : alpha dx, the rate strengthening of friction; below 0 as 0, since slip that grows by itself may grow
 
     A mode of the lattice has stiffness s + gamma dx^2 and damping rate b s + alpha dx, s in [0, 4], in units of dx.

@@ -26,19 +26,10 @@ def solve_scene(
 ) -> LatticeRun:
     """Solve a scene exactly in the limit dx -> 0 at its damping ratio; dx is where it is sampled.
 
-    Parameters
-    ----------
-    scene : with scheme "continuum"
-    samples : where and when slip and slip velocity are wanted on the way
-    progress : called once, before it begins
+    ``progress`` is called once, before it begins. Where the construction ends before the scene does, what it cannot
+    tell is NaN and the numbers say where and why (``limit_position``, ``limit_time``, ``limit_reason``).
 
-    Where the construction ends before the scene does, what it cannot tell is NaN and the numbers say where and why
-    (``limit_position``, ``limit_time``, ``limit_reason``).
-
-    Raises
-    ------
-    ValueError
-        If `Rupture` refuses the scene, or dx is too small for its fronts.
+    Raises ValueError: if `Rupture` refuses the scene, or dx is too small for its fronts.
     """
     if progress is not None:
         progress(0.0)

@@ -33,24 +33,14 @@ def simulate(
     scene : the scene
     samples : where and when to record slip and slip velocity during the run; nothing when left out
     progress : called with the fraction of the duration done; True draws a bar with the time that is left
-    strict : raise instead of flagging a run that meets the reverse-sliding threshold or does not resolve its pulse
+    strict : raise UnresolvedRun where a run would be flagged
 
-    Returns
-    -------
-    Dataset over x with prestress, release_time, stick_time, slip, slip_velocity and slip_acceleration at the end.
-    Attributes: every scene parameter, steps, block_updates, event_updates (blocks that events changed), energy
-    balance and energy_residual, min_velocity, re_releases, flags ("" or a comma-separated list), versions.
+    Returns a Dataset over x with prestress, release_time, stick_time, slip, slip_velocity and slip_acceleration at the
+    end. Attributes: every scene parameter, steps, block_updates, event_updates (blocks that events changed), energy
+    balance and energy_residual, min_velocity, re_releases, run_flags ("" or a comma-separated list), versions.
 
-    Raises
-    ------
-    TypeError
-        When an argument is of another type, in one line.
-    ValueError
-        When a sample is after the end, in one line.
-    UnstableRun
-        When slip velocity is not finite or beyond anything the pre-stress can drive.
-    UnresolvedRun
-        With ``strict``, when a flag is set.
+    Raises TypeError: if an argument is of another type; ValueError: if a sample is after the end; UnstableRun: if slip
+    velocity is not finite or beyond anything the pre-stress can drive.
     """
     _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
     _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
@@ -62,8 +52,15 @@ def simulate(
     if isinstance(progress, bool):
         progress = bar() if progress else None
     data = described(dataset_of(scene, samples, _run(scene, samples, progress)))
-    if strict and (flags := data.attrs["run_flags"]):
-        raise UnresolvedRun(f"the run is flagged: {flags} ({_describe_flags(scene, data.attrs)})")
+    numbers = data.attrs
+    if strict and numbers["run_flags"]:
+        raise UnresolvedRun(
+            f"the run is flagged: {numbers['run_flags']} (lowest stress of a stuck block"
+            f" {numbers['min_stuck_stress']:.4g}, reverse sliding at {scene.reverse_threshold:.4g}; blocks in the"
+            f" narrowest pulse {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
+            f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g}, allowed"
+            f" {ENERGY_RESIDUAL:g})"
+        )
     return data
 
 
@@ -85,15 +82,10 @@ def run_sweep(
     threads : how many run at once; the result does not depend on it
     progress : called with (done, all) after each scene; of a single one, with the fraction done as it goes
 
-    Returns
-    -------
-    Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous ragged
-    arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
+    Returns a Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous
+    ragged arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
 
-    Raises
-    ------
-    ValueError
-        One line naming the argument and what is allowed.
+    Raises ValueError: naming the argument and what is allowed.
     """
     listed = isinstance(scenes, Sequence) and scenes and all(isinstance(scene, Scene) for scene in scenes)
     _require(bool(listed), "scenes", scenes, "a list of Scenes, at least one")
@@ -136,16 +128,6 @@ def bar(stream=None) -> Callable[[float], None]:
             shown.close()
 
     return draw
-
-
-def _describe_flags(scene: Scene, numbers: dict) -> str:
-    """The figures behind the flags, in one line."""
-    return (
-        f"lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, reverse sliding at"
-        f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse {numbers['pulse_blocks']}, needed"
-        f" {scene.resolved_blocks}; smallest velocity {numbers['min_velocity']:.3g}; energy residual"
-        f" {numbers['energy_residual']:.2g}, allowed {ENERGY_RESIDUAL:g}"
-    )
 
 
 def _run(scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None) -> LatticeRun:

@@ -112,7 +112,7 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
     crack = crack_of(UNEVEN, max(DAMPING_RATIOS))
     time, distance = crack.share_time(FRACTION), abs(crack.balance_position)
     data = run(UNEVEN, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
-    late, short = arrival(data, FRACTION * distance, "left") / time, path(data, "left")[1][-1] / distance
+    late, short = arrival(data, FRACTION * distance, "left")[0] / time, path(data, "left")[1][-1] / distance
     found.append(costs(data) | {"share_time": abs(late - 1.0), "arrest_position": abs(short - 1.0)})
     out = {name: float(np.max([entry[name] for entry in found if name in entry])) for name in QUANTITIES}
     return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
