@@ -10,8 +10,8 @@ from ..model.prestress import Prestress
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, slip_velocity
 from ..theory.front_law import front_speed
+from ..theory.part import roots_between
 from ..theory.pulse import paper_transition_displacement
-from ..theory.roots import roots_between
 
 NEEDS = {
     "lists": ["manuscript/open_choices.yaml"],

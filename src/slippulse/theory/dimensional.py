@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number
+from ..model.checks import check_choice, check_number
 from .domains import check_domains, of_one_shape
 
 # So that no product overflows.
@@ -75,10 +75,6 @@ class Layer:
         factor = 2.0 if boundary == "displacement" else 1.0
         return factor * self.thickness * self.friction_drop / self.modulus
 
-    def velocity_scale(self, boundary: str) -> float:
-        """U/T (m/s)."""
-        return self.slip_scale(boundary) / self.time_scale
-
     def prestress(self, shear_stress: float) -> float:
         """Non-dimensional pre-stress (tau/sigma_n - mu_k)/(mu_s - mu_k) of a shear stress (Pa)."""
         check_number("shear_stress", shear_stress)
@@ -90,7 +86,7 @@ class Layer:
 
         The paper prints half of this (section IV A).
         """
-        return self.velocity_scale("displacement") / float(np.sqrt(self.gamma))
+        return self.slip_scale("displacement") / self.time_scale / float(np.sqrt(self.gamma))
 
     def printed_peak_velocity(self) -> float:
         """Peak slip velocity (m/s) as printed in section IV A of the paper."""
@@ -125,11 +121,9 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     if isinstance(rock_shear_modulus, float | np.ndarray):
         # To rounding the same.
         rock_shear_modulus = np.where(rock_shear_modulus == np.inf, LARGEST, rock_shear_modulus)
-    slip, zone, rock, thickness, beyond = of_one_shape(
-        slip=as_numbers("slip", slip, at_least=-LARGEST, at_most=LARGEST),
-        shear_modulus=as_numbers("shear_modulus", shear_modulus, **POSITIVE),
-        rock_shear_modulus=as_numbers("rock_shear_modulus", rock_shear_modulus, **POSITIVE),
-        thickness=as_numbers("thickness", thickness, **POSITIVE),
-        rock_thickness=as_numbers("rock_thickness", rock_thickness, at_least=0.0, at_most=LARGEST),
-    )
+    least = {"slip": -LARGEST, "rock_thickness": 0.0}
+    given = {"slip": slip, "shear_modulus": shear_modulus, "rock_shear_modulus": rock_shear_modulus}
+    given |= {"thickness": thickness, "rock_thickness": rock_thickness}
+    domains = {key: POSITIVE | ({"at_least": least[key]} if key in least else {}) for key in given}
+    slip, zone, rock, thickness, beyond = of_one_shape(domains, **given)
     return zone * slip / (thickness + zone / rock * beyond)

@@ -1,16 +1,18 @@
 """What arguments of formulas may be."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from ..model.checks import check_number
+from ..model.checks import as_numbers, check_number
 
 # Beyond this damping ratio, with tau_0 as near 1 as floating point comes, products of speed and damping would overflow.
 DOMAINS: dict[str, dict[str, Any]] = {
     "tau0": {"above": 0.0, "below": 1.0},
     "gamma": {"above": 0.0},
     "dx": {"above": 0.0},
+    "speed": {"above": 1.0, "at_most": 1e100},
     "damping_ratio": {"at_least": 0.0, "at_most": 1e100},
 }
 
@@ -21,8 +23,9 @@ def check_domains(**values: Any) -> None:
         check_number(key, value, **DOMAINS[key])
 
 
-def of_one_shape(**arrays: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Arrays broadcast to each other."""
+def of_one_shape(domains: Mapping[str, dict] = DOMAINS, **values: Any) -> tuple[np.ndarray, ...]:
+    """Arrays of the values, broadcast to each other; refused outside their domains."""
+    arrays = {key: as_numbers(key, value, **domains.get(key, {})) for key, value in values.items()}
     try:
         return np.broadcast_arrays(*arrays.values())
     except ValueError:

@@ -81,9 +81,7 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
-    stiffness, y, time = of_one_shape(
-        gamma=as_numbers("gamma", gamma, at_least=0.0), y=as_numbers("y", y), time=as_numbers("time", time)
-    )
+    stiffness, y, time = of_one_shape({"gamma": {"at_least": 0.0}}, gamma=gamma, y=y, time=time)
     released = fronts.curve.arrival(y) < time
     past = Past(fronts.curve, stiffness[released], y[released], time[released])
     if not np.all(past.left.known & past.right.known):

@@ -8,7 +8,7 @@ wider than the layer of damped or lattice waves at its tip, a few blocks unless 
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number, check_runaway
+from ..model.checks import check_choice, check_number, check_runaway
 from ..model.scene import RELEASES
 from .domains import DOMAINS, check_domains, of_one_shape
 from .pulse import SteadyPulse, front_speed_undamped, pulse_behind_front
@@ -45,10 +45,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
     """
     check_choice("release", release, RELEASES)
-    tau, ratio = of_one_shape(
-        tau0=as_numbers("tau0", tau0, **DOMAINS["tau0"]),
-        damping_ratio=as_numbers("damping_ratio", damping_ratio, **DOMAINS["damping_ratio"]),
-    )
+    tau, ratio = of_one_shape(tau0=tau0, damping_ratio=damping_ratio)
     out = np.array(front_speed_undamped(tau))
     damped = ratio > 0.0
     near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
@@ -76,10 +73,7 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     Raises ValueError: outside the domain.
     """
     check_choice("release", release, RELEASES)
-    speeds, ratio = of_one_shape(
-        speed=as_numbers("speed", speed, above=1.0, at_most=1e100),
-        damping_ratio=as_numbers("damping_ratio", damping_ratio, **DOMAINS["damping_ratio"]),
-    )
+    speeds, ratio = of_one_shape(speed=speed, damping_ratio=damping_ratio)
     excess = speeds - 1.0
     out = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
     damped = ratio > 0.0
@@ -154,7 +148,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     check_number("gamma", gamma, at_least=0.0)
     check_number("beta", beta, above=0.0)
     springs = (np.sqrt(float(gamma)) * beta * (1.0 - tau0) / tau0) ** 2
-    # v > 1 as it stands: 1/(1 - tau) > 1 + springs.
+    # v > 1.
     if not springs < tau0 / (1.0 - tau0):
         raise ValueError(
             f"tau0: {tau0!r}; allowed: values whose front outruns the waves at gamma = {gamma:g}, beta = {beta:g}"
@@ -168,16 +162,9 @@ def steady_pulse(
 ) -> SteadyPulse:  # fmt: skip
     """Steady pulse in uniform pre-stress behind a front whose speed is given, or follows from the damping ratio.
 
-    Parameters
-    ----------
-    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
-    beta : damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
-    speed : front speed, > 1, or
-    damping_ratio, release : of `front_speed`, where the speed is left out
-    rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
+    Parameters and source of `pulse_behind_front`; damping_ratio, release of `front_speed`, where speed is left out.
 
     Raises ValueError: outside the domain.
-    Source: `pulse_behind_front`.
     """
     if (damping_ratio is None) == (speed is None):
         raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")

@@ -205,7 +205,7 @@ class Rupture:
         return self._points(tuple(fields), x[None, :], time[:, None])
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
-        x, time = of_one_shape(x=as_numbers("x", x), time=as_numbers("time", time))
+        x, time = of_one_shape(x=x, time=time)
         if np.any(time > self.duration * (1.0 + SAME)):
             raise ValueError(f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}")
         time = np.minimum(time, self.duration)
