@@ -9,7 +9,7 @@ import pytest
 import tolerances as tol
 from numpy.polynomial.polynomial import polyfromroots
 
-from slippulse.solver import arrays, events, foresight, polynomials, segments, stencils
+from slippulse.solver import arrays, events, foresight, segments, stencils
 
 
 @cache
@@ -29,7 +29,7 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
     pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
     roots = [inside, -random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0), pair, pair.conjugate()]
     coefficients = sign * np.real(polyfromroots(roots))
-    found = from_python(polynomials.crossing)(coefficients, 5, lower * h, h)
+    found = from_python(foresight.crossing)(coefficients, 5, lower * h, h)
     assert found == pytest.approx(inside, abs=tol.ROOT)
 
 
@@ -39,7 +39,7 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
     ids=["zero slope", "at the end"],
 )
 def test_crossing_finds_a_root_that_is_hard_to_find(coefficients, root, accuracy):
-    found = from_python(polynomials.crossing)(np.array(coefficients), len(coefficients) - 1, 0.0, 1.0)
+    found = from_python(foresight.crossing)(np.array(coefficients), len(coefficients) - 1, 0.0, 1.0)
     assert found == pytest.approx(root, abs=accuracy)
 
 
@@ -87,8 +87,8 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
     random = np.random.default_rng(0)
     for _ in range(2000):
         coefficients = np.array([random.uniform(0.1, 1), random.uniform(-3, -1), *random.uniform(-1, 1, 3)])
-        if from_python(polynomials.polynomial)(coefficients, 4, 1.0) < 0.0:
-            root = from_python(polynomials.crossing)(coefficients, 4, 0.0, 1.0)
+        if from_python(foresight.polynomial)(coefficients, 4, 1.0) < 0.0:
+            root = from_python(foresight.crossing)(coefficients, 4, 0.0, 1.0)
             for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
                 assert stop(coefficients, h) in ((), (pytest.approx(root, abs=1e3 * tol.ROOT),))
 

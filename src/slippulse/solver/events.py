@@ -9,11 +9,20 @@ the order of the step, so the few blocks within reach change exactly as in a new
 import numpy as np
 
 from .arrays import CENTRE, COLUMNS
-from .foresight import find_sticks, foresee_releases, forget_sticks
+from .foresight import RECIPROCAL, find_sticks, foresee_releases, forget_sticks
 from .jit import inner
-from .polynomials import RECIPROCAL, taylor_shift
 from .segments import sliding_beside
 from .stencils import blocks, derivative, strengthen
+
+
+@inner()
+def taylor_shift(derivatives, lowest, last, top, s):
+    """Replace derivatives lowest..last of a polynomial by those a time s later; ``top`` is the highest."""
+    for m in range(lowest, last + 1):
+        value = derivatives[top]
+        for j in range(top - 1, m - 1, -1):
+            value = derivatives[j] + s * RECIPROCAL[j - m + 1] * value
+        derivatives[m] = value
 
 
 @inner(inline=True)

@@ -135,7 +135,7 @@ class FixedStepLattice(Lattice):
 
     localised = False
 
-    def _call(self, limits: Limits) -> int:
+    def _advance(self, limits: Limits) -> int:
         return advance_fixed(self.medium, self.motion, self.sliding, self.history, self.recorder, limits)
 
 

@@ -2,15 +2,80 @@
 
 import math
 
+import numpy as np
+
 from .arrays import REACH, Event
 from .jit import inner
-from .polynomials import RECIPROCAL, crossing, highest_possible, polynomial, slope, turning_point
 
+# 1/j, for Taylor polynomials in derivatives.
+RECIPROCAL = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
 # How many times within a step a stress is evaluated, besides where its slope changes sign.
 LOOKS = 4
 # A velocity this little below zero at the instant of a stick is the rounding of the root, not another stick; a stress
 # this little above the threshold may be on its way down.
 ROUNDING = 1e-12
+
+
+@inner()
+def polynomial(coefficients, degree, h):
+    """Value at h of a polynomial, lowest power first."""
+    value = coefficients[degree]
+    for k in range(degree - 1, -1, -1):
+        value = coefficients[k] + h * value
+    return value
+
+
+@inner()
+def crossing(coefficients, degree, lower, upper):
+    """Root of a polynomial that changes sign between two times: Newton steps from the secant root, kept by bisection.
+
+    The sign at ``lower`` tells the direction; the one at ``upper`` may be lost to rounding, then ``upper`` is the root.
+    """
+    start = polynomial(coefficients, degree, lower)
+    end = polynomial(coefficients, degree, upper)
+    rising = start < 0.0
+    root = 0.5 * (lower + upper)
+    if (end > 0.0) == rising and end != start:
+        root = lower + (upper - lower) * start / (start - end)
+    # Newton's steps converge quadratically: after one of 1e-9 the root is exact to rounding.
+    close = 1e-9 * upper
+    for _ in range(100):
+        value = coefficients[degree]
+        change = 0.0
+        for k in range(degree - 1, -1, -1):
+            change = value + root * change
+            value = coefficients[k] + root * value
+        if (value > 0.0) == rising:
+            upper = root
+        else:
+            lower = root
+        candidate = root - value / change if change != 0.0 else upper
+        if abs(candidate - root) <= close or upper - lower <= close:
+            return min(max(candidate, lower), upper)
+        root = candidate if lower < candidate < upper else 0.5 * (lower + upper)
+    return root
+
+
+@inner()
+def turning_point(coefficients, slopes, degree, lower, upper):
+    """Where a polynomial turns, at the one change of sign of its slope between two times; else ``upper``.
+
+    Coefficients of its slope are left in ``slopes``.
+    """
+    for k in range(degree):
+        slopes[k] = (k + 1) * coefficients[k + 1]
+    if polynomial(slopes, degree - 1, lower) * polynomial(slopes, degree - 1, upper) < 0.0:
+        return crossing(slopes, degree - 1, lower, upper)
+    return upper
+
+
+@inner()
+def highest_possible(coefficients, degree, h):
+    """An upper bound of a polynomial between 0 and h."""
+    value = 0.0
+    for k in range(degree, 0, -1):
+        value = h * (max(coefficients[k], 0.0) + value)
+    return coefficients[0] + value
 
 
 @inner(inline=True)
@@ -74,16 +139,13 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h, to
 
 
 @inner(inline=True)
-def next_event(segments, forecast, mirror):
+def next_event(segments, forecast):
     """The first event foreseen; its time is inf where there is none."""
     block, earliest, stick = -1, math.inf, False
-    release = forecast.release
     for r in range(segments.count.n):
-        left, right = segments.starts[r] - 1, segments.ends[r]
-        if not (mirror and left == 0) and release[left] < earliest:
-            block, earliest = left, release[left]
-        if release[right] < earliest:
-            block, earliest = right, release[right]
+        for edge in (segments.starts[r] - 1, segments.ends[r]):
+            if forecast.release[edge] < earliest:
+                block, earliest = edge, forecast.release[edge]
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] < earliest:
             block, earliest, stick = forecast.stick_block[q], forecast.stick_time[q], True
@@ -107,14 +169,13 @@ def simultaneous(segments, forecast, mirror, block, latest):
 
 
 @inner()
-def due_releases(segments, forecast, mirror, latest, due):
+def due_releases(segments, forecast, latest, due):
     """Fill ``due`` with the stuck neighbours of the segments that are released until ``latest``. Returns how many."""
     count = 0
     for r in range(segments.count.n):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
             joined = count > 0 and due[count - 1] == edge
-            outside = mirror and edge == 0
-            if forecast.release[edge] <= latest and not joined and not outside and count < due.shape[0]:
+            if forecast.release[edge] <= latest and not joined and count < due.shape[0]:
                 due[count] = edge
                 count += 1
     return count
@@ -132,10 +193,11 @@ def foresee_stick(coefficients, slopes, degree, after, now, h):
         if polynomial(coefficients, degree, turn) >= -ROUNDING:
             return math.inf
         return crossing(coefficients, degree, now, turn)
-    if before <= ROUNDING and slope(coefficients, degree, now) > 0.0:
-        # Released at this very instant: the zero at the start is its release, not a stick.
+    if before <= ROUNDING:
         turn = turning_point(coefficients, slopes, degree, now, h)
-        return crossing(coefficients, degree, turn, h)
+        if polynomial(slopes, degree - 1, now) > 0.0:
+            # Released at this very instant: the zero at the start is its release, not a stick.
+            return crossing(coefficients, degree, turn, h)
     return crossing(coefficients, degree, now, h) if before > 0.0 else now
 
 

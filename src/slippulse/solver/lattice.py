@@ -123,14 +123,7 @@ class Lattice:
         self.recorder = self.recorder._replace(blocks=self._sampled_blocks(size))
         self.scratch = arrays.make_scratch(size, self.scene.order)
 
-    def _advance(self, steps: int) -> int:
-        scene = self.scene
-        step = scene.max_step * scene.dx
-        largest = self.largest_force * self.growth
-        limits = arrays.Limits(scene.order, step, scene.duration, largest, steps)
-        return self._call(limits)
-
-    def _call(self, limits: arrays.Limits) -> int:
+    def _advance(self, limits: arrays.Limits) -> int:
         """Call the kernel; returns why it stopped."""
         state = (self.medium, self.motion, self.segments, self.scratch, self.history, self.recorder)
         return taylor.advance(*state, limits)
@@ -147,13 +140,16 @@ class Lattice:
         Raises UnstableRun: when slip velocity is not finite or beyond anything the pre-stress can drive, or time no
         longer advances.
         """
+        scene = self.scene
+        step = scene.max_step * scene.dx
         while True:
             before = float(self.tally.time)
             n = self.segments.count.n
             sliding = int(np.sum(self.segments.ends[:n] - self.segments.starts[:n]))
             updated = max(sliding, 1) if self.localised else self.size
             steps = int(min(max(CALL_WORK / updated, 10), self.call_steps))
-            status = self._advance(steps)
+            largest = self.largest_force * self.growth
+            status = self._advance(arrays.Limits(scene.order, step, scene.duration, largest, steps))
             if status == arrays.GROW:
                 self._grow()
             elif status == arrays.UNSTABLE:
@@ -161,8 +157,8 @@ class Lattice:
                 raise self._unstable(self.tally.time, reason)
             elif status != arrays.CONTINUE:
                 return status
-            elif self.tally.time - before < steps * taylor.SIMULTANEOUS * self.scene.max_step * self.scene.dx:
+            elif self.tally.time - before < steps * taylor.SIMULTANEOUS * step:
                 reason = "it no longer advances, blocks stick and are released over and over at one instant"
                 raise self._unstable(before, reason)
             if progress is not None:
-                progress(float(min(1.0, self.tally.time / self.scene.duration)))
+                progress(float(min(1.0, self.tally.time / scene.duration)))

@@ -86,12 +86,11 @@ def numbers_of(lattice: Lattice, status: int) -> dict:
 def kept_blocks(lattice: Lattice) -> np.ndarray:
     """Mask of the blocks that are kept: those released and a margin; without ghosts."""
     blocks = np.arange(lattice.size) + lattice.first_block
-    keep = (blocks >= 0) if lattice.mirror else np.ones(blocks.size, dtype=bool)
-    keep[0] = keep[-1] = False
     released = blocks[np.isfinite(lattice.history.release_time)]
-    if not released.size:
-        return keep & (np.abs(blocks) <= MARGIN)
-    return keep & (blocks >= released.min() - MARGIN) & (blocks <= released.max() + MARGIN)
+    first, last = (released.min(), released.max()) if released.size else (0, 0)
+    keep = (blocks >= first - MARGIN) & (blocks <= last + MARGIN) & ((blocks >= 0) | (not lattice.mirror))
+    keep[0] = keep[-1] = False
+    return keep
 
 
 def assemble(lattice: Lattice, status: int) -> LatticeRun:

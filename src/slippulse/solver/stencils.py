@@ -37,33 +37,23 @@ def elastic(w, strain, tau, i, per_dx, leaf):
 @inner(inline=True)
 def first_acceleration(w, strain, tau, first, last, per_dx, leaf, damping):
     """Acceleration of each block: strain difference, leaf spring, pre-stress, damping."""
-    if damping == 0.0:
-        for i in blocks(first, last):
-            w[2, i] = elastic(w, strain, tau, i, per_dx, leaf)
-    else:
-        for i in blocks(first, last):
-            w[2, i] = elastic(w, strain, tau, i, per_dx, leaf) + damping * second_difference(w, 1, i)
+    for i in blocks(first, last):
+        force = elastic(w, strain, tau, i, per_dx, leaf)
+        w[2, i] = force + damping * second_difference(w, 1, i) if damping != 0.0 else force
 
 
 @inner(inline=True)
 def derivative(w, k, i, per_dx2, leaf, damping):
     """Time derivative k of the slip of block i from the two before it."""
-    return (
-        per_dx2 * second_difference(w, k - 2, i)
-        - leaf * w[k - 2, i]
-        + damping * second_difference(w, k - 1, i)
-    )
+    elastic = per_dx2 * second_difference(w, k - 2, i) - leaf * w[k - 2, i]
+    return elastic + damping * second_difference(w, k - 1, i) if damping != 0.0 else elastic
 
 
 @inner(inline=True)
 def next_derivative(w, k, first, last, per_dx2, leaf, damping):
     """Time derivative k of slip from the two before it."""
-    if damping == 0.0:
-        for i in blocks(first, last):
-            w[k, i] = per_dx2 * second_difference(w, k - 2, i) - leaf * w[k - 2, i]
-    else:
-        for i in blocks(first, last):
-            w[k, i] = derivative(w, k, i, per_dx2, leaf, damping)
+    for i in blocks(first, last):
+        w[k, i] = derivative(w, k, i, per_dx2, leaf, damping)
 
 
 @inner()

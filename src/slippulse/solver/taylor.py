@@ -149,7 +149,7 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
     """At the end of a step that ended early: release and hold all blocks that are due until ``latest``."""
     forecast, tally = scratch.forecast, history.tally
     due = scratch.changed.first
-    n_due = due_releases(segments, forecast, medium.mirror, latest, due)
+    n_due = due_releases(segments, forecast, latest, due)
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] <= latest:
             block = forecast.stick_block[q]
@@ -208,7 +208,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
 
         early = False
         while True:
-            event = next_event(segments, forecast, medium.mirror)
+            event = next_event(segments, forecast)
             if event.time == math.inf:
                 break
             early = changed.count.n == MOST_EVENTS or simultaneous(
