@@ -7,7 +7,7 @@ import xarray as xr
 from slippulse.measure.fronts import arrival
 from slippulse.measure.pulses import LeadingPulse, leading_pulse
 from slippulse.measure.regime import REGIMES, classify
-from slippulse.measure.shape import far_field, half_width, lattice_noise, sliding_at_once
+from slippulse.measure.table import far_field, half_width, lattice_noise, sliding_at_once
 from slippulse.measure.transition import STALL, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene

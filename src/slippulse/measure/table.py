@@ -1,4 +1,4 @@
-"""Every number of one run."""
+"""Every number of one run, that of the shape of its pulse among them."""
 
 from collections.abc import Mapping
 
@@ -7,9 +7,8 @@ import xarray as xr
 
 from ..model.prestress import prestress_from
 from .fronts import front_speed, position_at
-from .pulses import LeadingPulse, acceleration_amplitude, leading_pulse, slip_variation
+from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify
-from .shape import far_field, half_width, lattice_noise, sliding_at_once
 from .transition import transition_displacement, transition_stress
 
 # What names a run rather than measures it; enough to have its scene back (`Scene.from_attributes`).
@@ -19,6 +18,11 @@ PARAMETERS = (
     "block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases",
     "end_time", "rate_strengthening",
 )  # fmt: skip
+# Fewer sliding blocks show no waves of the lattice.
+FEWEST = 12
+# Beyond this many widths of the Gaussian the pre-stress is that of the side, to rounding of what is shown.
+FAR = 6.0
+NAN = float("nan")
 
 
 def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
@@ -66,3 +70,72 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
         if run.attrs["boundary"] == "stress":
             row |= far_field(run)
     return row, pulse
+
+
+def half_width(run: xr.Dataset, pulse: LeadingPulse) -> float:
+    """Breadth of the slip velocity at half its peak, on the right; NaN where it does not fall to half on both sides."""
+    fields = comoving(run, pulse)
+    xi, velocity = fields["xi"], fields["slip_velocity"]
+    top, half = int(np.argmax(velocity)), 0.5 * float(np.max(velocity))
+    below = velocity < half
+    behind, ahead = np.flatnonzero(below[:top]), np.flatnonzero(below[top:])
+    if not behind.size or not ahead.size:
+        return NAN
+    i, j = int(behind[-1]), top + int(ahead[0])
+    left = np.interp(half, velocity[[i, i + 1]], xi[[i, i + 1]])
+    right = np.interp(half, velocity[[j, j - 1]], xi[[j, j - 1]])
+    return float(right - left)
+
+
+def lattice_noise(run: xr.Dataset) -> float:
+    """Power that a fourth difference passes, which is waves of a few blocks, over that of slip velocity on the right.
+
+    Over the blocks that slide, without the two at each end, where the velocity has corners.
+    """
+    x, velocity = run.variables["x"].values, run.variables["slip_velocity"].values
+    moving = velocity[(x >= 0.0) & (velocity > 0.0)]
+    if moving.size < FEWEST:
+        return NAN
+    # Gain 1 for waves of two blocks, sin^4(pi/n) for waves of n.
+    short = np.diff(moving, 4)[2:-2] / 16.0
+    return float(np.sum(short**2) / np.sum(moving**2))
+
+
+def sliding_at_once(run: xr.Dataset) -> float:
+    """Largest number of blocks on the right that slide at once, over the second half of a run."""
+    start = 0.5 * run.attrs["end_time"]
+    chosen = (run.variables["x"].values > 0.0) & np.isfinite(run.variables["release_time"].values)
+    release, stick = run.variables["release_time"].values[chosen], run.variables["stick_time"].values[chosen]
+    # The number rises at a release only, so that it is largest right after one, or at the start. NaN is sorted last.
+    times = np.append(start, release[release > start])
+    released, stuck = (np.searchsorted(np.sort(when), times, side="right") for when in (release, stick))
+    return float(np.max(released - stuck))
+
+
+def far_field(run: xr.Dataset) -> dict[str, float]:
+    """Change of the right pulse far from nucleation, where the pre-stress is uniform, over the last third of a run.
+
+    Of a run with samples: profile_change (largest difference of the velocity profile from itself moved at the wave
+    speed, over its largest velocity), energy_change (relative change of kinetic plus strain energy) and strain_left
+    (largest strain left where it entered, over the largest strain); NaN where nothing slides there at two thirds.
+    """
+    steps = [abs(position) for position, _ in prestress_from(run.attrs).steps]
+    start = max([FAR * run.attrs["width"], *steps])
+    times, x = run.variables["sample_time"].values, run.variables["sample_position"].values
+    early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
+    moved = float(times[-1] - times[early])
+    velocity, slip = run.variables["sample_velocity"].values, run.variables["sample_slip"].values
+    far = x >= start
+    if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
+        return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
+    strain = np.gradient(slip[:, far], x[far], axis=1)
+    energies = [np.trapezoid(0.5 * (velocity[i][far] ** 2 + strain[i] ** 2), x[far]) for i in (early, -1)]
+    inside = far & (x + moved <= x[-1])
+    later = np.interp(x[inside] + moved, x, velocity[-1])
+    entered = x[far] <= start + run.attrs["width"]
+    changed = np.max(np.abs(later - velocity[early][inside]))
+    return {
+        "profile_change": float(changed / np.max(velocity[early][far])),
+        "energy_change": float(energies[1] / energies[0] - 1.0),
+        "strain_left": float(np.max(np.abs(strain[-1][entered])) / np.max(np.abs(strain[-1]))),
+    }
