@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,8 +14,6 @@ import numpy as np
 
 from .checks import check_kind, check_number, short_repr
 from .roots import root_between
-
-EPSILON = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -101,7 +100,7 @@ class Prestress:
         for _, group in groupby(sorted(parts, key=lambda part: part[:3]), key=lambda part: part[:3]):
             tau = tau + sum(values for *_, values in group)
         # The far tail of a bump leaves the peak within rounding of the threshold, which it is meant to meet.
-        return np.where(np.abs(tau - 1.0) <= 4.0 * EPSILON, 1.0, tau) if self.bumps else tau
+        return np.where(np.abs(tau - 1.0) <= 4.0 * sys.float_info.epsilon, 1.0, tau) if self.bumps else tau
 
     def integral(self, lower: float, upper: float) -> float:
         """Integral of tau from ``lower`` to ``upper``, in closed form between the steps.

@@ -12,11 +12,9 @@ RECORDS = ("fronts", "fields", "samples")
 
 @dataclass
 class Samples:
-    """Where and when slip and slip velocity are recorded, of the nearest block.
+    """Where and when slip and slip velocity are recorded, of the nearest block; ValueError for other arrays than these.
 
-    times, positions : arrays of one dimension; times increase from 0 or later to the duration of the scene at most
-
-    Raises ValueError: if they are no such arrays.
+    times, positions : of one dimension; times increase from 0 or later to the duration of the scene at most
     """
 
     times: np.ndarray

@@ -47,13 +47,16 @@ def largest_step(
 @np.errstate(over="ignore", invalid="ignore")
 def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
-    derivatives = _derivatives(order, modes + gamma_dx2, damping_ratio * modes + drag)
+    stiffness, damping = modes + gamma_dx2, damping_ratio * modes + drag
+    # Time derivatives of slip of each mode, each a combination of slip and velocity at the start.
+    derivatives = [np.outer(start, np.ones_like(modes)) for start in np.eye(2)]
+    for _ in range(order):
+        derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
     allowed = 1.0 + (WEAK_GROWTH if order in WEAK_ORDERS else ROUNDING)
 
     def unstable(steps: np.ndarray) -> np.ndarray:
-        largest = _amplifications(steps, derivatives)
         # Not a number is not stable.
-        return ~(np.max(largest, axis=-1) <= allowed)
+        return ~(np.max(_amplifications(steps, np.array(derivatives)), axis=-1) <= allowed)
 
     # From small steps on, a few at a time: the first that is unstable is what counts.
     smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
@@ -72,14 +75,6 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
         first = int(np.argmax(np.append(unstable(parts[1:-1]), True)))
         lower, upper = parts[first], parts[first + 1]
     return float(lower)
-
-
-def _derivatives(order: int, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
-    """Time derivatives of slip of each mode, each a combination of slip and velocity at the start."""
-    derivatives = [np.outer(start, np.ones_like(stiffness)) for start in np.eye(2)]
-    for _ in range(order):
-        derivatives.append(-stiffness * derivatives[-2] - damping * derivatives[-1])
-    return np.array(derivatives)
 
 
 def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from .exact_transition import Fronts
 
 
 class ArrestingCrack:
-    """Gamma = 0, tau = 0 far to the right and negative far to the left: the crack whose left front slows for ever.
+    """The crack whose left front slows for ever, without leaf springs.
 
     du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const, both from 0 where a
     front outruns the waves. Where tau < 0 the left front is slower than the waves and, with no fracture energy, slip,
@@ -25,8 +25,7 @@ class ArrestingCrack:
     damping_ratio : beta/dx, from 0 to 1e6
     release : "total" or "elastic"
 
-    Raises ValueError: outside these ranges, or if the levels are otherwise; of every method: outside the ranges that
-    it states.
+    Raises ValueError: outside these ranges; of every method, outside those that it states.
     """
 
     def __init__(self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total") -> None:
@@ -74,10 +73,7 @@ class ArrestingCrack:
         return 0.5 * self.prestress.integral(self.zero, 4.0 * self.far)
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
-        """The pulse far to the right: x - t of each characteristic and du/dt on it, from the front backwards.
-
-        count : characteristics from each of three parts, 2 to 10000
-        """
+        """x - t of characteristics far to the right and du/dt on them, ``count`` (2 to 10000) of each third."""
         check_number("count", count, whole=True, at_least=2, at_most=10_000)
         right, left = np.linspace(2.0 * self.far, 0.0, count), np.linspace(0.0, self.zero, count)[1:]
         entries = np.concatenate([right, left])

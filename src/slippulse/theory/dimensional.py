@@ -24,8 +24,7 @@ class Layer:
     static_friction, kinetic_friction : mu_s > mu_k >= 0
     normal_stress : sigma_n (Pa), > 0
 
-    Raises ValueError: outside these ranges; its methods too, at a number that is not finite, a speed outside 1e-100
-    to 1e100 or a pre-stress outside (0, 1).
+    Raises ValueError: outside these ranges; its methods, for a speed outside 1e-100 to 1e100 too.
     Source: sections II and IV A and appendix B of the paper.
     """
 
@@ -109,12 +108,11 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
 
     Parameters
     ----------
-    slip : delta (m), a number or an array of them, as the others; up to 1e100, as they, which are 1e-100 at least
+    slip : delta (m), a number or an array, as the others, which are 1e-100 at least, and all 1e100 at most
     shear_modulus, rock_shear_modulus : G of the damage zone, and G_r of the host rock (Pa), infinite for a rigid one
     thickness, rock_thickness : H of the damage zone, and H_r of the rock beyond it, to the displacement (m), 0 too
 
-    Returns G delta / (H + (G/G_r) H_r) in Pa, a float or an array; G delta / H when G << G_r.
-
+    Returns G delta / (H + (G/G_r) H_r) in Pa, a float or an array.
     Raises ValueError: outside these ranges.
     Source: section IV C 2 of the paper.
     """

@@ -26,10 +26,9 @@ class Fronts:
     prestress : a profile with tau(0) = 1 and one nucleation point
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
     reach : how far from x = 0 times are wanted (units of H), >= 1e-9
-    gamma : elasticity ratio, >= 0, whose waves the panels resolve, which are then no shorter than that asks for
+    gamma : elasticity ratio, >= 0, whose waves the panels resolve
 
     Attribute ends: by side, -1 or 1, the distance where tau turns negative and the front slow; inf beyond ``reach``.
-
     Raises ValueError: outside these ranges; if the profile does not nucleate at x = 0 alone; or if a side needs more
     than 20000 panels.
     """
@@ -43,7 +42,6 @@ class Fronts:
         starts = nucleations(prestress)
         if len(starts) > 1 or starts[0][0] != starts[0][1]:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
-        self.prestress = prestress
         right, end, _ = law.rightwards(0.0, 0.0, float(reach), np.inf)
         left, start = right, end
         if not prestress.symmetric:
@@ -67,15 +65,11 @@ class Fronts:
 
 
 def slip_velocity(fronts: Fronts, gamma, y, time):
-    """du/dt at points behind the fronts and before anything sticks.
+    """du/dt at points behind the fronts and before anything sticks; a float, or an array where the others broadcast.
 
-    Parameters
-    ----------
     fronts : the fronts of the scene
     gamma : elasticity ratio, >= 0, whose waves the panels of the fronts must resolve; 0 under a stress boundary
     y, time : the points, finite; 0 where no front has been
-
-    Returns a float, or an array where gamma, y and time are arrays that broadcast.
 
     Raises ValueError: outside these ranges, or if a point's past leaves the part that outruns the waves.
     Source: Riemann's solution (`riemann`).
@@ -107,8 +101,7 @@ def exact_transition_displacement(
 
     Parameters
     ----------
-    prestress : a symmetric profile, tau(0) = 1, positive everywhere
-    gamma : elasticity ratio, > 0
+    prestress, gamma : a symmetric profile, tau(0) = 1, positive everywhere; elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
 
     Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front needs more than
@@ -134,12 +127,7 @@ def exact_transition_displacement(
 def uniform_transition_time(
     tau0: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> float:
-    """T_trans in uniform pre-stress, nucleated at one point.
-
-    Parameters
-    ----------
-    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
-    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
+    """T_trans in uniform pre-stress, nucleated at one point; parameters as of `lattice_front_speed`.
 
     Raises ValueError: outside the domain.
     Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v: with q = sqrt(gamma) t/(1 + 1/v) it is

@@ -34,12 +34,10 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
 
     Parameters
     ----------
-    tau0 : float or array, pre-stress ahead of the front, in (0, 1)
-    damping_ratio : float or array, broadcast with tau0: beta/dx, from 0 to 1e100
+    tau0, damping_ratio : floats or arrays, broadcast: pre-stress ahead, in (0, 1), and beta/dx, from 0 to 1e100
     release : "total" or "elastic", whether the stress that is compared with the threshold includes the damping force
 
     Returns a float or an array, in wave speeds, >= 1 (1 where the excess is below rounding).
-
     Raises ValueError: outside the domain.
     Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0 the paper's
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
@@ -65,12 +63,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
 def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     """Pre-stress into which a steady front runs at ``speed``: the inverse of `front_speed`.
 
-    Parameters
-    ----------
-    speed, damping_ratio : floats or arrays, broadcast, > 1 and <= 1e100 (wave speeds), and from 0 to 1e100
-    release : "total" or "elastic"
-
-    Raises ValueError: outside the domain.
+    Raises ValueError: for a speed (wave speeds) outside 1 to 1e100, or as `front_speed`.
     """
     check_choice("release", release, RELEASES)
     speeds, ratio = of_one_shape(speed=speed, damping_ratio=damping_ratio)
@@ -90,8 +83,7 @@ def lattice_front_speed(
 
     Parameters
     ----------
-    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
-    dx : block spacing (units of H), > 0; 1 is the Burridge-Knopoff model
+    tau0, gamma, dx : pre-stress, in (0, 1), elasticity ratio, > 0, and block spacing (units of H), > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
     rate_strengthening : alpha, of a term -alpha du/dt; as dx -> 0 it no longer matters
 
@@ -114,7 +106,9 @@ def lattice_front_speed(
     if springs <= 1e30 and 1.0 - tau0 < NEARLY_ONE_WITH_SPRINGS and damping_ratio > 0.0:
         speed = front_speed(tau0, damping_ratio, release)
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
-            return _nearly_free(speed, springs, damping_ratio if release == "total" else 0.0)
+            # To first order in g/v^2, whose factor is 1/24 without damping and 1/6, by quadrature, for b v >> 1.
+            strength = damping_ratio * speed if release == "total" else 0.0
+            return speed * (1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0))
     ratio = np.array([float(damping_ratio)])
     low, least = 0.0, 1.0
     if springs <= 1e30:
@@ -136,9 +130,7 @@ def lattice_front_speed(
 
 
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
-    """Front speed in the continuum, dx -> 0 at fixed beta > 0, under the rule as printed ("elastic").
-
-    tau0 is in (0, 1), gamma >= 0, and 0 leaves the leaf springs out.
+    """Front speed as dx -> 0 at fixed beta > 0, under the rule as printed ("elastic"), for 0 < tau0 < 1 and gamma >= 0.
 
     Raises ValueError: outside these ranges, or where the front would not outrun the waves.
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y below the real axis,
@@ -199,15 +191,6 @@ def _least_prestress(
     else:
         return found
     return first, float(np.exp(levels[at]))
-
-
-def _nearly_free(speed: float, springs: float, damping: float) -> float:
-    """A fast front's speed with leaf springs, from that without, to first order in g/v^2.
-
-    The factor of g/v^2 is 1/24 without damping, from the closed form, and 1/6 for b v >> 1, found by quadrature.
-    """
-    strength = damping * speed
-    return speed * (1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0))
 
 
 def slowest(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:

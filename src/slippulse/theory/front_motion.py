@@ -52,13 +52,11 @@ def steady_front(
     Parameters
     ----------
     speed : in wave speeds, > 1 and <= 1e100
-    damping_ratio : beta/dx, 0 to 100
-    springs : gamma dx^2, 0 to 100
+    damping_ratio, springs : beta/dx and gamma dx^2, 0 to 100
     release : "total" or "elastic"
     blocks : kept behind the front, 10 to 500; many more than b v/(v^2 - 1), the layer through which damping looks ahead
 
     Raises ValueError: outside these ranges.
-    Source: module docstring.
     """
     check_number("speed", speed, above=1.0, at_most=1e100)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=100.0)
@@ -81,8 +79,7 @@ def steady_front(
     step = expm(system / (speed * SUBSTEPS))
     period = np.linalg.matrix_power(step, SUBSTEPS)
     # A period later each block is one farther behind, and a block at rest leads.
-    shift = np.eye(count, k=-1)
-    shift = np.block([[shift, np.zeros((count, count))], [np.zeros((count, count)), shift]])
+    shift = np.kron(np.eye(2), np.eye(count, k=-1))
     state = np.linalg.solve(np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size])
     states = [np.append(state, 1.0)]
     for _ in range(SUBSTEPS):
@@ -103,15 +100,8 @@ def steady_front(
 
 
 def admissibility_table(speeds, ratios, springs, release: str = "total") -> list[dict]:
-    """One row for each speed, ratio and gamma dx^2: the pre-stress, the largest stress ahead before the release, the
-    first rest behind the front in blocks, and whether the front is admissible.
-
-    Parameters
-    ----------
-    speeds, ratios, springs : values of v, beta/dx and gamma dx^2, as in `steady_front`; arrays or lists
-    release : "total" or "elastic"
-
-    Raises ValueError: outside their ranges.
+    """One row for each of speeds, ratios and springs, arrays of arguments of `steady_front`: the pre-stress, the
+    largest stress ahead before the release, the first rest behind the front in blocks, and whether it is admissible.
     """
     given = {"springs": springs, "ratios": ratios, "speeds": speeds}
     rows = []

@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import check_kind, check_number, check_runaway
+from ..model.checks import check_choice, check_kind, check_number, check_runaway
 from ..model.prestress import Prestress
 from ..model.roots import root_between
+from ..model.scene import RELEASES
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel
-from .slowness import check_law, slowness
+from .slowness import LARGEST_RATIO, slowness
 
 # Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
 RESOLVED = 1e-10
@@ -82,7 +83,12 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
 
 def _crossings(prestress, left: float, right: float, level: float, value: float) -> tuple[bool, list[float]]:
     """Whether an interval begins with the pre-stress at a value or above, and where that changes; it touches twice."""
-    x = _samples(prestress, left, right)
+    # Positions that show each change of sign, and both ends; far outside everything a side has its last level.
+    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+    x = np.concatenate([centre + width * fine for centre, width in _gaussians(prestress)])
+    first = left if np.isfinite(left) else min(float(x.min()), right) - 1.0
+    last = right if np.isfinite(right) else max(float(x.max()), left) + 1.0
+    x = np.unique(np.concatenate([x[(x > left) & (x < right)], [first, last]]))
 
     def excess(position: float) -> float:
         return float(analytic(prestress, level, np.asarray(position))) - value
@@ -105,16 +111,6 @@ def _gaussians(prestress: Prestress) -> list[tuple[float, float]]:
     return [(0.0, prestress.width), *((centre, width) for centre, _, width in prestress.bumps)]
 
 
-def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
-    """Positions that show each change of sign within an interval, its finite ends among them."""
-    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
-    x = np.concatenate([centre + width * fine for centre, width in _gaussians(prestress)])
-    # Far outside everything a side has its last level.
-    first = left if np.isfinite(left) else min(float(x.min()), right) - 1.0
-    last = right if np.isfinite(right) else max(float(x.max()), left) + 1.0
-    return np.unique(np.concatenate([x[(x > left) & (x < right)], [first, last]]))
-
-
 class FrontLaw:
     """What makes panels where a front outruns the waves."""
 
@@ -124,7 +120,8 @@ class FrontLaw:
     ) -> None:  # fmt: skip
         check_kind("prestress", prestress, Prestress)
         check_number("gamma", gamma, at_least=0.0)
-        check_law(damping_ratio, release)
+        check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+        check_choice("release", release, RELEASES)
         check_number("refinement", refinement, whole=True, at_least=1, at_most=FINEST)
         check_number("rate_strengthening", alpha)
         check_runaway(gamma, alpha)

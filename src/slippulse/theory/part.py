@@ -70,11 +70,8 @@ class Part:
 
     def field(self, name: str, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """A field at points that slide."""
-        return (
-            self.velocity(x, time)
-            if name == "slip_velocity"
-            else getattr(self.past(x, time), name)(self.rest)
-        )
+        past = self.past(x, time)
+        return past.slip_velocity() if name == "slip_velocity" else getattr(past, name)(self.rest)
 
     @cached_property
     def edge(self) -> Edge:
@@ -100,8 +97,7 @@ class Part:
         """Stick times at positions, found without help from others."""
         out = np.full(x.shape, np.nan)
         release = self.curve.arrival(x)
-        step = SCAN / self.rate if self.rate > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
-        step = step / self.refinement
+        step = (SCAN / self.rate if self.rate > 0.0 else SCAN_WITHOUT_SPRINGS * self.until) / self.refinement
         alive = np.flatnonzero(release < self.until)
         # The last two times and velocities of each: a velocity that turns may have been below 0 in between.
         times = np.stack([release, release], axis=1)
@@ -291,10 +287,8 @@ class Part:
             narrower = 1.0 if values[n] > best * (1.0 + 1e-10) else 0.4
             if values[n] > best:
                 best, centre, at = float(values[n]), grid_x[keep][n], fraction[keep][n]
-            near = np.clip(centre + reach_x * around, x[0], x[-1])
-            grid_x, fraction = np.meshgrid(
-                near, np.clip(at + reach_fraction * around, 0.0, 1.0), indexing="ij"
-            )
+            near, part = np.clip(centre + reach_x * around, x[0], x[-1]), at + reach_fraction * around
+            grid_x, fraction = np.meshgrid(near, np.clip(part, 0.0, 1.0), indexing="ij")
             reach_x, reach_fraction = narrower * reach_x, narrower * reach_fraction
         return best
 
@@ -306,7 +300,6 @@ def roots_between(function: Callable, lower, upper, at_lower, at_upper, xtol: fl
     function(x, which) has the values at x of those numbered by which; all are flat arrays.
 
     Raises ValueError: if the signs at both ends of one are equal.
-
     Source: Chandrupatla's method, which is Brent's without branches; begun by a secant.
     """
     if np.any(at_lower * at_upper > 0.0):

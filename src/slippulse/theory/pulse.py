@@ -71,7 +71,7 @@ def pulse_behind_front(
 
     tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
     beta, speed : damping, >= 0 (0 is the limit dx -> 0 at any damping ratio), and front speed, > 1
-    rate_strengthening : alpha, of a term -alpha du/dt, between -alpha_c and alpha_c (`critical_rate_strengthening`)
+    rate_strengthening : alpha, of a term -alpha du/dt, at most `critical_rate_strengthening` in size
 
     Raises ValueError: outside the domain.
     Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of
@@ -130,9 +130,8 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """The paper's pulse, tau0 in (0, 1), gamma > 0: undamped, v = 1/sqrt(1 - tau_0^2), peak velocity 1/sqrt(gamma).
+    """The paper's undamped pulse, tau0 in (0, 1), gamma > 0: v = 1/sqrt(1 - tau_0^2), peak velocity 1/sqrt(gamma).
 
-    Raises ValueError: outside the domain.
     Source: section III A and appendix C of the paper.
     """
     check_domains(tau0=tau0)
@@ -142,7 +141,6 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
     """T_trans = pi/sqrt(gamma), L_trans = 2 T_trans/sqrt(1 - tau_0^2): displacement boundary, 0 < tau0 < 1, gamma > 0.
 
-    Raises ValueError: outside the domain.
     Source: section III B of the paper. It neglects the elastic coupling and the Gaussian at nucleation.
     """
     check_domains(tau0=tau0, gamma=gamma)
@@ -151,10 +149,6 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 
 
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
-    """The paper's T_trans = |x_minus| and L_trans = 2 |x_minus|, stress boundary, front speeds taken as 1.
-
-    Raises ValueError: as `prestress_balance_position`.
-    Source: section III C of the paper.
-    """
+    """The paper's T_trans = |x_minus| and L_trans = 2 |x_minus|, stress boundary, front speeds taken as 1 (III C)."""
     distance = abs(prestress_balance_position(prestress))
     return distance, 2.0 * distance

@@ -219,11 +219,9 @@ def barrier_depth(
 
     Parameters
     ----------
-    tau0 : pre-stress in which the pulse is steady, from 1e-4 to 1, with a front no faster than 5000
+    tau0, gamma : pre-stress, from 1e-4 to 1, whose front is no faster than 5000, and elasticity ratio, > 0
     tau_barrier : pre-stress of the barrier, from -1e6 to -tau0/200
-    gamma : elasticity ratio, > 0
-    damping_ratio : beta/dx, from 0 to 1e100
-    release : "total" or "elastic"
+    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
 
     Raises ValueError: outside the domain.
     Source: the free boundary behind a front at constant speed, in the continuum limit.
@@ -254,11 +252,7 @@ def barrier_depth(
 
 
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
-    """The later estimate of the depth, (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
-
-    Raises ValueError: if tau0 is not in (0, 1), tau_barrier not <= -1e-100 or gamma not >= 1e-100.
-    Source: the authors' public code of later work.
-    """
+    """The estimate (2/gamma) ln((tau_barrier - tau_0)/tau_barrier) of the authors' public code of later work."""
     check_domains(tau0=tau0)
     check_number("tau_barrier", tau_barrier, at_most=-SMALLEST)
     check_number("gamma", gamma, at_least=SMALLEST)

@@ -10,8 +10,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from ..model.checks import check_choice, check_number
-from ..model.scene import RELEASES
 from .curve import by_powers, power_basis
 from .front_law import in_chunks, slowest
 
@@ -30,7 +28,6 @@ LARGEST_RATIO = 1e6
 
 def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     """1/v of a front into pre-stress tau, to 1e-11 (1e-8 next to tau = 1): 0 where tau >= 1, 1 where tau <= 0."""
-    check_law(damping_ratio, release)
     tau = np.clip(np.asarray(tau, dtype=float), 0.0, 1.0)
     if damping_ratio == 0.0:
         return np.sqrt((1.0 - tau) * (1.0 + tau))
@@ -53,12 +50,6 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     # And that of the last may be one, where the first terms in 1/v are better.
     near = (1.0 - tau < NEARLY_ONE) & ((release == "total") | (damping_ratio < 1e3))
     return np.where(near, slowest(np.where(near, tau, 1.0), damping_ratio, release), out).reshape(shape)
-
-
-def check_law(damping_ratio: float, release: str) -> None:
-    """Refuse what `slowness` has no law for: a ratio outside 0 to 1e6, or another release rule."""
-    check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
-    check_choice("release", release, RELEASES)
 
 
 @lru_cache(maxsize=32)
