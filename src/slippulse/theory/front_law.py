@@ -113,7 +113,11 @@ def lattice_front_speed(
     low, least = 0.0, 1.0
     if springs <= 1e30:
         # Mostly the slowest front is that of the least pre-stress; and above that of the slowest there is one speed.
-        low = _slowest_front(springs, drag)
+        slow = max(1.0, np.sqrt(4.0 + springs) / np.pi)
+        if drag < 0.0:
+            # Behind a slower one slip runs away.
+            slow = max(slow, (1.0 + SLOWEST_MARGIN) / np.sqrt(1.0 - 0.25 * drag**2 / springs))
+        low = float(np.log(slow - 1.0)) if slow > 1.0 else SLOWEST
         least = float(np.exp(log_prestress(np.exp([low]), ratio, springs, release, drag)[0]))
         if tau0 <= least:
             low, least = _least_prestress(low, ratio[0], springs, release, drag)
@@ -163,14 +167,6 @@ def steady_pulse(
     if speed is None:
         speed = float(front_speed(tau0, damping_ratio, release))
     return pulse_behind_front(tau0, gamma, beta, speed, rate_strengthening)
-
-
-def _slowest_front(springs: float, drag: float) -> float:
-    """ln(v - 1) of the slowest front that is faster than the waves and behind which slip does not run away."""
-    slowest = max(1.0, np.sqrt(4.0 + springs) / np.pi)
-    if drag < 0.0:
-        slowest = max(slowest, (1.0 + SLOWEST_MARGIN) / np.sqrt(1.0 - 0.25 * drag**2 / springs))
-    return float(np.log(slowest - 1.0)) if slowest > 1.0 else SLOWEST
 
 
 def _least_prestress(

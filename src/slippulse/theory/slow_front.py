@@ -68,24 +68,20 @@ def advance(
             stop, corrections = 0.5 * (start + stop), 0
             continue
         x, slope = solved
-        found = _first_event(x, slope, mark, limit=1.2 if corrections else 1.0)
-        if found is None:
+        # The first parameter on the chunk, or a little beyond it, where the front stops or meets the mark.
+        limit = 1.2 if corrections else 1.0
+        found = [(s, "dead") for s in _roots_on(slope, limit)]
+        if np.isfinite(mark):
+            found += [(s, "mark") for s in _roots_on(x - mark, limit)]
+        if not found:
             return front.panel(k, start, stop, x, slope), None
-        s, event = found
+        s, event = min(found)
         # The chunk is made again to end there: beyond it the solution may mean nothing.
         if corrections and (abs(s - 1.0) < 1e-9 or (corrections > 5 and abs(s - 1.0) < 1e-6)):
             return front.panel(k, start, stop, x, slope, mark if event == "mark" else None), event
         stop = start + 0.5 * (stop - start) * (1.0 + s)
         corrections += 1
     return None, "unresolved"
-
-
-def _first_event(x: np.ndarray, slope: np.ndarray, mark: float, limit: float) -> tuple[float, str] | None:
-    """The first parameter on the chunk, or up to a limit beyond it, where the front stops or meets the mark."""
-    found = [(s, "dead") for s in _roots_on(slope, limit)]
-    if np.isfinite(mark):
-        found += [(s, "mark") for s in _roots_on(x - mark, limit)]
-    return min(found, default=None)
 
 
 def _roots_on(values: np.ndarray, limit: float) -> list[float]:
