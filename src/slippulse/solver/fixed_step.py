@@ -11,9 +11,8 @@ from ..model.scene import Scene
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
 from .jit import entry, inner
 from .lattice import Lattice
-from .notes import note_release, note_stick
 from .run import LatticeRun, run_scene
-from .taylor import BLOW_UP
+from .taylor import BLOW_UP, note_release, note_stick
 
 
 @inner()

@@ -56,20 +56,17 @@ def energies(lattice: Lattice, totals: dict) -> dict:
     return parts | {"energy_residual": abs(work - sum(stored)) / largest if largest else 0.0}
 
 
-def stress(lattice: Lattice) -> np.ndarray:
-    """Stress of every block at the end, damping included where the release rule includes it; without ghosts."""
-    medium, motion = lattice.medium, lattice.motion
-    dx, u, v = medium.dx, motion.w[0], motion.w[1]
-    elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(u, 2) / dx**2
-    found = (motion.tau - medium.leaf * u)[1:-1] + elastic
-    return found + medium.beta * np.diff(v, 2) / dx**2 if medium.total else found
-
-
 def numbers_of(lattice: Lattice, status: int) -> dict:
     """Energies, counters and extremes of a run."""
     totals = dict(zip(TALLY.names or (), lattice.tally.tolist(), strict=True))
-    stuck_stress = stress(lattice)[~lattice.sliding[1:-1]]
-    lowest = float(min(totals["min_stuck_stress"], np.min(stuck_stress, initial=np.inf)))
+    medium, motion = lattice.medium, lattice.motion
+    dx, u, v = medium.dx, motion.w[0], motion.w[1]
+    # Of every block but the ghosts, damping included where the release rule includes it.
+    elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(u, 2) / dx**2
+    stress = (motion.tau - medium.leaf * u)[1:-1] + elastic
+    if medium.total:
+        stress += medium.beta * np.diff(v, 2) / dx**2
+    lowest = float(np.min(stress[~lattice.sliding[1:-1]], initial=totals["min_stuck_stress"]))
     first_stuck = (totals["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
     return energies(lattice, totals) | {
         "end_time": totals["time"],

@@ -25,20 +25,11 @@ def second_difference(w, k, i):
 
 
 @inner(inline=True)
-def elastic(w, strain, tau, i, per_dx, leaf):
-    """Stress of block i less kinetic friction, without damping.
-
-    The elastic force is taken from the strain rather than from second differences of slip, which cancel when slip
-    is large (gamma -> 0).
-    """
-    return per_dx * (strain[i] - strain[i - ONE]) - leaf * w[0, i] + tau[i]
-
-
-@inner(inline=True)
 def first_acceleration(w, strain, tau, first, last, per_dx, leaf, damping):
     """Acceleration of each block: strain difference, leaf spring, pre-stress, damping."""
     for i in blocks(first, last):
-        force = elastic(w, strain, tau, i, per_dx, leaf)
+        # Second differences of slip would cancel where slip is large (gamma -> 0).
+        force = per_dx * (strain[i] - strain[i - ONE]) - leaf * w[0, i] + tau[i]
         w[2, i] = force + damping * second_difference(w, 1, i) if damping != 0.0 else force
 
 
@@ -71,15 +62,6 @@ def nest(inner, w, k, weight, lower_weight, first, last):
 
 
 @inner(inline=True)
-def may_stop(after, now, tangent):
-    """Whether a velocity is below 0 after a step, not a number, or slowing down so as to pass 0 within it.
-
-    One that dips below 0 and returns is seen by its tangent at the start.
-    """
-    return (not (after >= 0.0)) | (now + tangent < 0.0)
-
-
-@inner(inline=True)
 def velocity_after(out, w, first, last, step, order):
     """Velocity of blocks first..last-1 a time ``step`` later, and how many of them may stop on the way."""
     k = order
@@ -99,7 +81,8 @@ def velocity_after(out, w, first, last, step, order):
     for i in blocks(first, last):
         after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
         out[i] = after
-        count += may_stop(after, w[1, i], step * w[2, i])
+        # Below 0 after the step, or no number; one that dips below 0 and returns is seen by its tangent at the start.
+        count += (not (after >= 0.0)) | (w[1, i] + step * w[2, i] < 0.0)
     return count
 
 
