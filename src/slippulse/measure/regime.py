@@ -27,14 +27,12 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     steady_tolerance : a largest velocity that changes less than this fraction over the last third is steady; a front
         this fraction slower than the waves still keeps up with them
 
-    Returns `regime`, one of REGIMES, and the numbers it is decided by.
-
-    The rule. *Arrested*: no release in the last tenth of the duration, or what still slides has less than ``still``
-    of the largest velocity sampled. Otherwise a side *runs* if its front keeps up with the waves over the last
-    third, or, where neither does, if blocks on it slide at ``still`` or more of the largest velocity now. *Two-way*:
-    both sides run; *one-way*: one. *Crack-like*: the nucleation point slides at ``still`` or more of the largest
-    velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or *decaying* by the change of its largest
-    velocity over the last third.
+    Returns `regime`, one of REGIMES, and the numbers it is decided by. *Arrested*: no release in the last tenth of the
+    duration, or what still slides has less than ``still`` of the largest velocity sampled. Otherwise a side *runs* if
+    its front keeps up with the waves over the last third, or, where neither does, if blocks on it slide at ``still`` or
+    more of the largest velocity now. *Two-way*: both sides run; *one-way*: one. *Crack-like*: the nucleation point
+    slides at ``still`` or more of the largest velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or
+    *decaying* by the change of its largest velocity over the last third.
     """
     times, velocity = run.variables["sample_time"].values, run.variables["sample_velocity"].values
     before = velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))]

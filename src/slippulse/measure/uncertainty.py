@@ -56,13 +56,11 @@ def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
 def grid_tables(
     tables: Sequence[pd.DataFrame], factors: Sequence[float], keys: Sequence[str]
 ) -> pd.DataFrame:
-    """A grid study of every measured number of a sweep.
+    """A grid study of every measured number of a sweep, as a long table.
 
     tables : measured tables at the finest, the middle and the coarsest spacing, rows in the same order
     factors : of `grid_study`
     keys : columns that name a point rather than measure it
-
-    Returns a long table: the keys and `point`, then quantity, value, extrapolated, observed_order, uncertainty.
     """
     finest = tables[0]
     rows = []

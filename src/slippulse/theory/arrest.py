@@ -22,8 +22,7 @@ class ArrestingCrack:
     Parameters
     ----------
     prestress : a profile, tau(0) = 1, level 0 far to the right and negative far to the left
-    damping_ratio : beta/dx, from 0 to 1e6
-    release : "total" or "elastic"
+    damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
 
     Raises ValueError: outside these ranges; of every method, outside those that it states.
     """

@@ -67,7 +67,6 @@ class Fronts:
 def slip_velocity(fronts: Fronts, gamma, y, time):
     """du/dt at points behind the fronts and before anything sticks; a float, or an array where the others broadcast.
 
-    fronts : the fronts of the scene
     gamma : elasticity ratio, >= 0, whose waves the panels of the fronts must resolve; 0 under a stress boundary
     y, time : the points, finite; 0 where no front has been
 

@@ -30,14 +30,13 @@ SCAN, NARROWINGS = 64, 6
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
-    """Exact speed of a steady front into pre-stress tau_0, leaf springs left out (gamma dx^2 << 1).
+    """Exact speed (wave speeds) of a steady front into pre-stress tau_0, leaf springs left out (gamma dx^2 << 1).
 
     Parameters
     ----------
     tau0, damping_ratio : floats or arrays, broadcast: pre-stress ahead, in (0, 1), and beta/dx, from 0 to 1e100
     release : "total" or "elastic", whether the stress that is compared with the threshold includes the damping force
 
-    Returns a float or an array, in wave speeds, >= 1 (1 where the excess is below rounding).
     Raises ValueError: outside the domain.
     Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0 the paper's
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
