@@ -1,7 +1,5 @@
 """Figure 1: the layer on its rigid substrate, both conditions at the top, and the strip that is integrated."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -23,7 +21,7 @@ RED, MUTED = "#c00000", "0.25"
 HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Displacement over the height since the start, as each condition is reduced with, and the strip's width.
 
     Under an imposed stress the mean over the height stands for the interface; with the top held the displacement falls

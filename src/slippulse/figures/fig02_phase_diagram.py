@@ -1,7 +1,5 @@
 """Figure 2: which regime a rupture ends in, by boundary and by both levels of the pre-stress."""
 
-from collections.abc import Mapping
-
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
@@ -40,7 +38,7 @@ MARK: Look = {"color": BLACK, "markersize": 4.0, "markeredgewidth": 0.6}
 DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regimes_stress": 5}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The study of the planes, and some runs of the sweeps (role run), those with leaf springs at the largest gamma.
 
     Regime is the one at the end of the run, exact_regime the one that it ends in by exact theory.
@@ -89,7 +87,7 @@ def tint(colour: str) -> tuple[float, ...]:
     return tuple(1.0 - 0.35 * (1.0 - part) for part in to_rgb(colour))
 
 
-def draw_plane(axes: Axes, rows: pd.DataFrame, names: Mapping[str, str]) -> None:
+def draw_plane(axes: Axes, rows: pd.DataFrame, names: dict[str, str]) -> None:
     """The regimes as areas, and as lines where one level is 0, with their names, those of mirrored ones once."""
     text: Look = {"ha": "center", "va": "center", "fontsize": 8.0, "zorder": 4.0, "linespacing": 1.0}
     for (role, _), part in rows.groupby(["role", "series"], sort=False):

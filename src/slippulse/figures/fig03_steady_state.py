@@ -1,7 +1,5 @@
 """Figure 3: slip velocity of the steady pulses, both boundary conditions, with theory."""
 
-from collections.abc import Mapping
-
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -17,7 +15,7 @@ NEEDS = {
 }
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Slip velocity of the pulses of both sweeps in the frame of its largest value, as `pulse_table` has it."""
     return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
 

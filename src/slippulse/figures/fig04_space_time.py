@@ -1,7 +1,5 @@
 """Slip velocity over time and position: a crack that becomes two pulses, and one that becomes one."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -25,7 +23,7 @@ NEEDS = {
 PANELS = {"displacement": "a", "stress": "b"}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The first run of both sweeps (panel: the boundary), as `run_rows` has it, and further roles.
 
     Exact_front and exact_trailing; measured, paper and last_release (the transition: its time, positions of the left
@@ -100,7 +98,7 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_transition(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> None:
+def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     """Exact edges, arrows of T_trans and L_trans, the paper's estimate and the last release on the left."""
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:

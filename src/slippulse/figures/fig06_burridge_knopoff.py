@@ -1,6 +1,5 @@
 """Figure 6: the onset of pulses as blocks and springs, from runs at dx = 1."""
 
-from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -38,7 +37,7 @@ TITLES = {
 }
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """State of the blocks at a few instants of the first run of each sweep, one row a panel, instant and block.
 
     X is the position at rest, arresting_block the first one that the left front never releases, scale the drawn

@@ -1,7 +1,6 @@
 """One scene: slip velocity over time and position, the profile at the end, and its numbers beside theory."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
@@ -74,7 +73,7 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_space_time(figure: SubFigure, roles: Mapping[str, pd.DataFrame]) -> None:
+def draw_space_time(figure: SubFigure, roles: dict[str, pd.DataFrame]) -> None:
     """Pre-stress and map, under title and parameters."""
     profile, axes = figure.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
     draw_profile(profile, roles["prestress"])

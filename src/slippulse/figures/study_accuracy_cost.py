@@ -1,7 +1,5 @@
 """Error against work for every scheme, order, step and spacing, and how the textbook front locks on its step."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -20,7 +18,7 @@ MARKERS = dict(zip(ORDER_COLOURS, "osD^P>", strict=True))
 SIZES = {1.0: 4.0, 0.5: 2.8, 0.25: 1.8}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The rows of the study; the exact solution, which does no work on a lattice, is not drawn."""
     study = tables["accuracy_cost"]
     return study[study["scheme"] != "continuum"]

@@ -1,7 +1,5 @@
 """The arrest that never comes: the left front under a stress boundary against the exact theory."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.artist import Artist
@@ -25,7 +23,7 @@ PALE: Look = {"linewidth": 3.0, "alpha": 0.35}
 OPEN: Look = {"markerfacecolor": "white"}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The left front's path, its last release, and when it has covered the fraction of the way that counts as arrest.
 
     In units of |x_minus|: roles path (simulated at the finest spacing) and exact_path (time, to_go), and run (dx,

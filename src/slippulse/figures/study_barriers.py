@@ -1,6 +1,6 @@
 """How deep a steady pulse enters negative pre-stress: exact, on lattices, and by the later estimate."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
@@ -25,7 +25,7 @@ GAMMA = 0.65
 LEVELS = (0.2, 0.5, 0.8)
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The lattices of the study, with interpolated maps and curves of exact depths and of the estimate.
 
     Part "depth" as in the study; part "fine" exact at gamma = 1 on a fine grid; part "curve" exact and paper (the later

@@ -1,7 +1,5 @@
 """A whole rupture, exact and on lattices: velocity, fronts, trailing edge and slip, and how their difference falls."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -78,7 +76,7 @@ def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> No
         axes.plot(line[across[0]], line[across[1]], style, color=colour, gid=gid, **look)
 
 
-def _draw_differences(axes: Axes, rows: pd.DataFrame, others: Mapping[str, str]) -> None:
+def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) -> None:
     """The largest and the smallest difference of each scene; its others lie between them."""
     drawn = []
     for scene, colour in SCENES.items():

@@ -1,7 +1,5 @@
 """The transition against the paper's predictions and against the exact theory, and what the predictions leave out."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -24,7 +22,7 @@ KINDS = {"displacement": ("o", BLUE, r"$\Gamma = 1$"), "stress": ("s", ORANGE, r
 QUANTITIES = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """T_trans and L_trans of runs, predicted and exact (roles sweep, refinement), and the study (role gaussian)."""
     sources = ("transition", "paper_transition", "exact_transition")
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]

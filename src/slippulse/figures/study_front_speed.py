@@ -1,7 +1,5 @@
 """What selects the front speed: pre-stress and beta/dx, leaf springs at coarse spacing; so refine at fixed beta/dx."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -28,7 +26,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P")
 COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx", "springs", "held", "fixed"]
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Simulated speeds with theory joined to each, and lines of theory.
 
     Role theory is the study front_law; role simulation has speed, theory (but for refined), undamped (the paper's

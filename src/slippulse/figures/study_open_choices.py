@@ -1,7 +1,5 @@
 """Every claim that is judged by numbers, at each choice that the paper leaves open: a specification curve."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
@@ -29,7 +27,7 @@ MARKERS: dict[str, Look] = {
 APART = {"elastic": -0.17, "total": 0.17}
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """A row of each claim at each combination, or at the one that there is.
 
     Over is deviation over tolerance, choice what matters most, release the rule, solution exact or lattice.

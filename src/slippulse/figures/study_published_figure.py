@@ -1,7 +1,5 @@
 """Which parameters the published space-time figure was made with, and how surely its readings tell."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -25,7 +23,7 @@ NAMES = {
 }  # fmt: skip
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The study with interpolated curves of the best trials.
 
     By release rule part "curve" (damping_ratio, dx, tau0, gamma, their errors, chi2) and part "best" (one row a

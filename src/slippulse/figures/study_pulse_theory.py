@@ -1,7 +1,5 @@
 """The steady pulse against damping: the paper's formulas, the damped theory, simulations, and their limit dx -> 0."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -21,7 +19,7 @@ REFINED = {name: f"pulse_{name}" for name in QUANTITIES} | {"front_speed": "fron
 MARKERS = ("o", "s", "^", "D")
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Peak velocity, width and slip of each simulated pulse with theory, and theory over the damping ratio.
 
     Role simulation has value, theory and paper, theory over_paper, refined value over dx, and theory: the limit.

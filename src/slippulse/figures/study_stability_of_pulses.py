@@ -1,6 +1,5 @@
 """Pulses sent from one pre-stress into another: held displacement settles, imposed stress grows, decays or keeps."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -22,7 +21,7 @@ POINTS, MARKED, ROUNDING = 100, 5, 2e-9
 LEAST = 0.03
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Slip left behind over the distance from the step (Gamma = 1), largest velocity over time (Gamma = 0).
 
     Of each level beyond the step role exact (as the study has it) and lattice (x: distance beyond the step, slip), and

@@ -1,7 +1,5 @@
 """The regime that a rupture ends in, however long it takes: from the exact solution, for the class of a finite run."""
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 import pandas as pd
 
@@ -12,7 +10,7 @@ from ..theory.front_law import front_speed
 from .numbers import level, ratio
 
 
-def predictions(scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
+def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
     """exact_regime of each run. Settings: still, as `final_regime` takes it."""
     return pd.DataFrame({"exact_regime": [_regime(scene, settings["still"]) for scene in scenes]})
 

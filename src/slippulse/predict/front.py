@@ -1,6 +1,5 @@
 """The speed of both fronts of each run: the paper's, the exact one, and that of a lattice with leaf springs."""
 
-from collections.abc import Mapping, Sequence
 from functools import cache
 
 import numpy as np
@@ -15,7 +14,7 @@ from .numbers import NAN, SIDES, level, or_nan, ratio
 COARSE = 1e-3
 
 
-def predictions(scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
+def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
     """paper_front_speed_SIDE, exact_front_speed_SIDE (no leaf springs), lattice_front_speed_SIDE (with, at this dx)."""
     out: dict[str, np.ndarray] = {}
     for side in SIDES:
@@ -32,7 +31,7 @@ def predictions(scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
     return pd.DataFrame(out)
 
 
-def exact_speeds(scenes: Sequence[Scene], side: str) -> np.ndarray:
+def exact_speeds(scenes: list[Scene], side: str) -> np.ndarray:
     """Speed of the front of each scene without leaf springs; NaN where none outruns the waves."""
     levels = np.array([level(scene, side) for scene in scenes])
     ratios = np.array([ratio(scene) for scene in scenes])

@@ -1,7 +1,5 @@
 """Every number of every run of a sweep, one row a run, with what takes theory to say of its pulse and transition."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -26,7 +24,7 @@ CHANGE, WIDTH_BLOCKS = 0.05, 3.0
 THICKEST_LAYER = 0.125
 
 
-def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
+def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
     """Measure every run of a sweep.
 
     Parameters

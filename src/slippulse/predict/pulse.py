@@ -1,7 +1,5 @@
 """The right pulse of each run under a displacement boundary, by the paper's formulas and with damping."""
 
-from collections.abc import Mapping, Sequence
-
 import numpy as np
 import pandas as pd
 
@@ -11,7 +9,7 @@ from .front import exact_speeds
 from .numbers import NAN, known, level
 
 
-def predictions(scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
+def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
     """paper_pulse_SIZE (undamped) and exact_pulse_SIZE: width, slip, peak_velocity, acceleration."""
     pairs = zip(scenes, exact_speeds(scenes, "right"), strict=True)
     return pd.DataFrame([_pulse(scene, speed) for scene, speed in pairs])

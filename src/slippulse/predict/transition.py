@@ -1,6 +1,5 @@
 """When and where the rupture of each run turns into pulses: the first stick, or the arrest of the left front."""
 
-from collections.abc import Mapping, Sequence
 from functools import cache, partial
 
 import pandas as pd
@@ -13,7 +12,7 @@ from ..theory.exact_transition import exact_transition_displacement
 from .numbers import NAN, known, level, or_nan, ratio
 
 
-def predictions(scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
+def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
     """exact_transition_time and _length; of a displacement boundary exact_first_stick_time; of a stress boundary
     exact_balance_distance, and exact_largest_velocity and exact_half_width of the far pulse.
 

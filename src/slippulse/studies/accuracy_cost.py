@@ -5,7 +5,6 @@ sampled at the spacing of the textbook scheme.
 """
 
 import math
-from collections.abc import Mapping
 from functools import cache
 from itertools import product
 
@@ -46,7 +45,7 @@ QUANTITIES = (
 )  # fmt: skip
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Run the scenes at every setting, and both schemes against their step.
 
     Returns rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work

@@ -1,7 +1,5 @@
 """The exact path of the left front that slows for ever under a stress boundary."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -15,7 +13,7 @@ NEEDS = {"sweeps": ["arrest"]}
 TO_GO = np.append(np.geomspace(1.0, 1e-4, 200)[1:], 1e-6)
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """When which fraction of the way is still to go, for each damping ratio; time in units of |x_minus|."""
     parts = {}
     for scene in expand(settings["sweeps"]["arrest"])[0]:

@@ -1,7 +1,6 @@
 """Pulses sent into barriers: how deep they come, at several spacings, and past which barriers."""
 
 import math
-from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
@@ -33,7 +32,7 @@ TAIL, WIDTH = 5.0, 1.0
 CROSSINGS = 4.0
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Exact depths, lattice depths at each spacing, and barriers shorter and longer than the depth.
 
     Returns rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1; it scales like 1/sqrt(gamma))

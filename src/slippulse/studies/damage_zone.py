@@ -1,7 +1,5 @@
 """A fault with a compliant damage zone: its stress drop, and the displacement before and after slip."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -13,7 +11,7 @@ NEEDS = {"settings": ["figures.fig07_damage_zone"]}
 ROCK, SLIP, IMPOSED, STIFFNESS_RATIO = 1.6, 1.1, 1.9, 0.2
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Curves of the stress drop, and one example of the displacement over the height.
 
     Returns role curve: thickness_ratio (H_r/H), stiffness_ratio (G/G_r), stress_drop (over G delta/H); roles before and

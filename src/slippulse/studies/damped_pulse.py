@@ -1,7 +1,5 @@
 """The exact steady pulse with damping as curves over the damping ratio, and its limit as the spacing goes to 0."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -17,7 +15,7 @@ QUANTITIES = ("peak_velocity", "width", "slip")
 DAMPING = np.linspace(0.0, 1.0, 61) ** 2
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Peak velocity, width and slip.
 
     Returns left (the level), damping_ratio and value: role curve (in units of the paper's formulas) and limit (dx -> 0

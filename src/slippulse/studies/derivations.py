@@ -1,7 +1,7 @@
 """Exact numbers that the derivations of the report quote: of the published scene, and of small scenes of their own."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -34,7 +34,7 @@ STEP = 1e-3
 FOLLOWED = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Evaluate the theory.
 
     Returns quantity, x (position, for the three that are tabulated over positions), value (NaN where theory has no

@@ -1,7 +1,5 @@
 """Whole ruptures, exact and on lattices: edges, slip, a map of slip velocity, and how their difference falls."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -23,7 +21,7 @@ SHOWN = 0.04
 EDGES = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
 
 
-def table(data: Mapping[str, xr.Dataset], tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
     """Exact curves, marks of a lattice, two halves of a map, and the differences.
 
     Returns scene and role: scene (boundary, left, right, gamma, damping_ratio), exact and lattice (position, release,

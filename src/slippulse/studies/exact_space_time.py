@@ -1,7 +1,5 @@
 """Exact fronts and trailing edges of the two runs of the space-time figure."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -14,7 +12,7 @@ NEEDS = {"sweeps": ["space_time_displacement", "space_time_stress"]}
 FRACTIONS = 1.0 - np.linspace(1.0, 0.0, 121)[:-1] ** 3
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """When each position is released, and when it sticks, in the continuum limit.
 
     Returns simulation, position, release_time, stick_time (NaN where it slides on)

@@ -1,7 +1,5 @@
 """The front law on a grid, for the scripts of the explorer: speeds found in it by cubics are exact to 1e-4."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -15,7 +13,7 @@ EXCESS = np.linspace(-8.0, 12.0, 61)
 SCALE, LARGEST_RATIO, RATIOS = 0.005, 5.0, 33
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """The pre-stress at which a front has a speed.
 
     Returns one row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)),

@@ -1,7 +1,7 @@
 """The edges of the solver's domain: one row an edge, with what should happen and what did."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -61,7 +61,7 @@ class Edge(NamedTuple):
     scene: dict[str, Any]
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Run every edge.
 
     Returns one row an edge: family, value, quantity, should, tolerance, expected, measured, error, verdict, message

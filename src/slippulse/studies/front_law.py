@@ -1,7 +1,5 @@
 """Exact front speeds as curves: over the pre-stress, over the leaf springs, and over the spacing."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -27,7 +25,7 @@ REFINED = "left == 0.5 and beta <= 0.1"
 LINE = ["release", "left", "gamma", "held", "fixed"]
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Speeds of theory alone.
 
     Returns panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over springs =

@@ -1,7 +1,5 @@
 """Exact transitions over the pre-stress, without damping: nucleated at a point, and with a Gaussian peak of W = 1."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -14,7 +12,7 @@ LEVELS = np.concatenate([np.linspace(0.1, 0.25, 7), np.linspace(0.3, 0.9, 13)]).
 GAMMAS = (0.01, 0.1, 0.65)
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """T_trans sqrt(gamma)/pi at Gamma = 1; no gamma in uniform pre-stress, where it does not depend on it."""
     rows = [(left, over_paper(left, gamma), gamma) for left in LEVELS for gamma in (None, *GAMMAS)]
     return pd.DataFrame(rows, columns=["left", "over_paper", "gamma"])

@@ -1,6 +1,6 @@
 """Exact transitions at every admissible combination of what the paper leaves open, over the grids of figure 5."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
@@ -25,7 +25,7 @@ STICK, FAR, TIME = np.array([0.3, 1.7]), 12.0, 1e-12
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """T_trans and L_trans of each run of figure 5, with the paper's estimates, by the exact theory.
 
     Returns boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends), fraction (of the path

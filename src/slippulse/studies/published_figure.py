@@ -5,7 +5,7 @@ to each reading is taken from a lattice run of the same trial. The largest veloc
 value over all blocks, still grows when the figure ends, and falls with the spacing.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from itertools import product
 
@@ -47,7 +47,7 @@ TRAILING = "trailing_edge_"
 DIFFERENCE, FIRST = 0.01, 2
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Best fits of every reading of the left panel over the damping ratio, and what the right panel says.
 
     Returns rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact), pull and
@@ -91,7 +91,7 @@ def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def readings_of(published: Mapping, simulation: str) -> pd.DataFrame:
+def readings_of(published: dict, simulation: str) -> pd.DataFrame:
     """What was read off for one simulation, of `published`: rows reading, drawn, quantity, reading_error, arrow."""
     rows = [
         (name, entry["value"], entry["quantity"], entry["reading_error"], entry.get("arrow", False))
@@ -149,7 +149,7 @@ class LeftPanel:
         }
         return self._chosen(known, lambda time: position_at(run, time, edge="stick_time"))
 
-    def _chosen(self, known: Mapping[str, float], trailing_edge: Callable) -> np.ndarray:
+    def _chosen(self, known: dict[str, float], trailing_edge: Callable) -> np.ndarray:
         """The readings, of what is known by name and the trailing edge over time."""
         out = []
         for name in self.readings["quantity"]:

@@ -1,7 +1,5 @@
 """What the shortcuts of the authors' published solver cost: their scheme, from its description, and exact numbers."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -20,7 +18,7 @@ PROFILE, GAMMA, DURATION = Prestress(0.6, 0.6), 0.65, 15.0
 BLOCKS, SPACING, STEP, BETA = 1000, 0.05005, 1e-3, 0.01
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Numbers of one scene by the published scheme, by the localised one on the same lattice, and exactly.
 
     Returns quantity (front_speed, first_stick_time, pulse_slip), published, localised and exact

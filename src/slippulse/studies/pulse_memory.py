@@ -1,7 +1,5 @@
 """A pulse sent from one pre-stress into another, exactly: the slip that it leaves, and how far it remembers."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -18,7 +16,7 @@ BEHIND = np.linspace(-10.0, 0.0, 21)[:-1]
 BEYOND = np.concatenate([np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace(1.0, 1.4, 21)])
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Final slip around the step of each scene.
 
     Returns level (beyond the step), x (distance beyond it) and slip; and the same in every row of a level: before (the

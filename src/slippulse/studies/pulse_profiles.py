@@ -1,7 +1,5 @@
 """Exact pulses of the runs of figures 3, 8 and 9 over the distance from their largest velocity."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 from scipy.integrate import cumulative_trapezoid
@@ -21,7 +19,7 @@ TAIL = 1e-3
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Profiles of each run.
 
     Returns simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration

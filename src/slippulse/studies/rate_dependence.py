@@ -1,7 +1,5 @@
 """Friction that depends linearly on slip rate: where pulses end, and what becomes of them without leaf springs."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pandas as pd
 
@@ -34,7 +32,7 @@ ALPHAS, ARRESTING, SPACINGS = (0.0, 0.5, 2.0), Prestress(-0.5, 0.0), (0.05, 0.02
 TIMES = np.geomspace(2.0, 100.0, 21)
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Lattices of both boundaries, and the exact theory.
 
     Returns role: lattice (level, rate_strengthening, over_critical: over the critical one, regime, run_flags, and of

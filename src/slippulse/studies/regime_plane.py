@@ -1,6 +1,5 @@
 """The planes of both levels of the pre-stress, cut into the regimes that ruptures end in by exact theory."""
 
-from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
@@ -25,7 +24,7 @@ PROFILES = (
 POINTS = 241
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Outlines of the regimes, and slip velocity over position in some of them.
 
     Returns boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends

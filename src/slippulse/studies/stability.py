@@ -1,6 +1,6 @@
 """Where a step blows up: the measured boundary on the derived one, for each scheme, order and damping ratio."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 
 import pandas as pd
@@ -33,7 +33,7 @@ PROFILES = {
 }
 
 
-def table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Bisect for the largest sound step of every scheme, order and damping ratio.
 
     Returns one row a scheme, order and damping ratio: derived (the bound, in units of dx), measured (a chain between

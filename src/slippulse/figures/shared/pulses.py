@@ -1,6 +1,6 @@
 """Pulses in their own frame, simulated and exact: rows of a figure's table, and how they are drawn."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -44,7 +44,7 @@ SCALES = ("slip", "peak_velocity", "acceleration")
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
-def pulse_table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Simulated pulses of each sweep at some of its levels, and the exact one of each run.
 
     Role "run" has the parameters, roles "simulation" and "exact" are over x, both in units of the scales: width, slip,

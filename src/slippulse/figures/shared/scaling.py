@@ -1,6 +1,6 @@
 """T_trans and L_trans of every run over the paper's predictions, with exact theory as lines."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,7 @@ MARKERS, DRAWN = "os^Dv", 3
 NEAR, FAR = np.arange(0.5, 1.5, 0.05), np.array([0.5, 0.7, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0])
 
 
-def transition_table(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
+def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """One row a run: parameters, length and time as measured, by the paper, and exact."""
     runs = pd.concat(tables.values(), ignore_index=True)
     kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]

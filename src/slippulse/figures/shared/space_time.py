@@ -1,6 +1,5 @@
 """Slip velocity over time and position, with the fronts and where blocks stick: tables and drawing."""
 
-from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -35,7 +34,7 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(rows), velocity_map(run), prestress_profile(run), *edges(run)])
 
 
-def description(roles: Mapping[str, pd.DataFrame]) -> str:
+def description(roles: dict[str, pd.DataFrame]) -> str:
     """Boundary, pre-stress and damping of a run, and its flags."""
     value = roles["parameter"].set_index("series")["value"]
     parts = [rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$" if value["gamma"] > 0.0 else r"$\Gamma = 0$"]
@@ -126,7 +125,7 @@ def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set(ylabel=r"position $x$", ylim=(rows["position"].min(), rows["position"].max()))
 
 
-def draw_map(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> AxesImage:
+def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
     """Slip velocity in colour, cut along the front and the trailing edge. Returns the image."""
     grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
     times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
@@ -139,7 +138,7 @@ def draw_map(axes: Axes, roles: Mapping[str, pd.DataFrame]) -> AxesImage:
     return image
 
 
-def draw_edges(axes: Axes, roles: Mapping[str, pd.DataFrame], end: float) -> None:
+def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     """The front and the trailing edge, known to a block and a fraction of a step; what is stuck is hidden."""
     beyond = 0.01 * end
     front, trailing = roles["front"].sort_values("position"), roles["trailing"].sort_values("position")
