@@ -2,6 +2,7 @@
 
 import math
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -9,8 +10,7 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.run import run_scene
-from ..theory.front_law import front_speed
-from ..theory.pulse import pulse_behind_front
+from ..theory.front_law import steady_pulse
 from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 
 NEEDS = {}  # type: dict[str, list[str]]
@@ -43,39 +43,41 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     rows, passing = [], []
     for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):
-        point = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": 1.0, "damping_ratio": ratio}
-        exact, estimate = barrier_depth(tau0, barrier, 1.0, ratio), barrier_depth_estimate(tau0, barrier, 1.0)
-        rows.append(point | {"exact": exact, "paper": estimate})
+        rows.append(depths(tau0, barrier, 1.0, ratio))
     for (row, tau0), (column, barrier), ratio in product(
         enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS
     ):
-        gamma = GAMMAS[(row + column) % len(GAMMAS)]
-        exact = barrier_depth(tau0, barrier, gamma, ratio)
-        pair = {"tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio, "exact": exact}
-        estimate = barrier_depth_estimate(tau0, barrier, gamma)
+        found = depths(tau0, barrier, GAMMAS[(row + column) % len(GAMMAS)], ratio)
         for dx in SPACINGS:
-            depth = entered(tau0, gamma, ratio, dx, exact, (0.0, barrier))
-            rows.append({"part": "depth", **pair, "dx": dx, "measured": depth, "paper": estimate})
+            depth = entered(found, dx, (0.0, barrier))
+            rows.append(found | {"part": "depth", "dx": dx, "measured": depth})
         for length in LENGTHS:
-            dx = PASSING_SPACING
-            depth = entered(tau0, gamma, ratio, dx, exact, (0.0, barrier), (length * exact, tau0))
-            went_past = float(depth > (length + 0.5) * exact)
-            passing.append({"part": "passing", **pair, "dx": dx, "length": length, "measured": went_past})
+            depth = entered(found, PASSING_SPACING, (0.0, barrier), (length * found["exact"], tau0))
+            past = {"length": length, "measured": float(depth > (length + 0.5) * found["exact"])}
+            passing.append(found | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING} | past)
     return pd.DataFrame(rows + passing)
 
 
-def entered(
-    tau0: float, gamma: float, ratio: float, dx: float, exact: float, *steps: tuple[float, float]
-) -> float:
+def depths(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str, Any]:
+    """A row of the map, or the beginning of another."""
+    point = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio}
+    estimate = barrier_depth_estimate(tau0, barrier, gamma)
+    return point | {"exact": barrier_depth(tau0, barrier, gamma, ratio), "paper": estimate}
+
+
+def entered(scene: dict[str, Any], dx: float, *steps: tuple[float, float]) -> float:
     """How far the right front of a lattice enters a barrier, to half a block beyond the last released one.
 
     The pre-stress has ``steps``, counted from where the barrier begins, on both sides: between two blocks, and farther
-    out than the pulse remembers its nucleation. ``exact`` is about how far the front comes.
+    out than the pulse remembers its nucleation.
     """
-    speed = float(front_speed(tau0, ratio))
-    width = pulse_behind_front(tau0, gamma, 0.0, speed).width
-    start = (math.floor((TAIL * WIDTH + width / (speed - 1.0)) / dx) + 0.5) * dx
+    tau0, gamma, ratio = (scene[name] for name in ("tau0", "gamma", "damping_ratio"))
+    pulse = steady_pulse(tau0, gamma, damping_ratio=ratio)
+    start = (math.floor((TAIL * WIDTH + pulse.width / (pulse.speed - 1.0)) / dx) + 0.5) * dx
     both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
-    profile, duration = Prestress(tau0, tau0, WIDTH, steps=both), start + CROSSINGS * exact + width
+    profile, duration = (
+        Prestress(tau0, tau0, WIDTH, steps=both),
+        start + CROSSINGS * scene["exact"] + pulse.width,
+    )
     run = run_scene(Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4))
     return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

@@ -4,8 +4,8 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..theory.front_law import front_speed
-from ..theory.pulse import paper_pulse, pulse_behind_front
+from ..theory.front_law import front_speed, steady_pulse
+from ..theory.pulse import paper_pulse
 
 # Simulations whose parameters the curves have.
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}
@@ -23,14 +23,14 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     swept, (scene, *_) = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
     left, ratio = scene.prestress.left, scene.damping_ratio
-    pulse = pulse_behind_front(left, scene.gamma, 0.0, float(front_speed(left, ratio, scene.release)))
+    pulse = steady_pulse(left, scene.gamma, damping_ratio=ratio, release=scene.release)
     limits = [("limit", left, ratio, name, getattr(pulse, name)) for name in (*QUANTITIES, "speed")]
     scene, rows = swept[0], []
     ratios = max(each.damping_ratio for each in swept) * DAMPING
     for left in sorted({each.prestress.left for each in swept}):
         paper = paper_pulse(left, scene.gamma)
         for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
-            pulse = pulse_behind_front(left, scene.gamma, ratio * scene.dx, speed)
+            pulse = steady_pulse(left, scene.gamma, ratio * scene.dx, speed)
             for name in QUANTITIES:
                 rows.append(("curve", left, ratio, name, getattr(pulse, name) / getattr(paper, name)))
     found = pd.DataFrame(rows + limits, columns=["role", "left", "damping_ratio", "quantity", "value"])

@@ -12,9 +12,8 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES
 from ..predict.exact_rupture import exact_rupture
 from ..predict.numbers import or_nan
-from ..theory.front_law import front_speed
+from ..theory.front_law import front_speed, steady_pulse
 from ..theory.front_motion import admissibility_table
-from ..theory.pulse import SteadyPulse, pulse_behind_front
 from ..theory.rupture import Rupture
 from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 from .gaussian_transition import over_paper
@@ -35,11 +34,7 @@ FOLLOWED = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Evaluate the theory.
-
-    Returns quantity, x (position, for the three that are tabulated over positions), value (NaN where theory has no
-    answer)
-    """
+    """Returns quantity, x (position, of the three that depend on it), value (NaN where theory has no answer)."""
     scenes = {name: expand(sweep)[0] for name, sweep in settings["sweeps"].items()}
     published, step = scenes["space_time_displacement"][0], scenes["pulses_across_a_step"][0]
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
@@ -48,16 +43,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     rupture = cache(lambda: exact_rupture(published.attributes()))
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop = one_way.front_ends[0][0]
+    # An undamped one at the speed with damping.
+    pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
     admissible = [front["admissible"] for rule in RELEASES for front in admissibility_table(*FOLLOWED, rule)]
-
-    def pulse() -> SteadyPulse:
-        """An undamped one at the speed with damping."""
-        return pulse_behind_front(level, gamma, 0.0, float(front_speed(level, ratio, release)))
-
-    def strain_term() -> float:
-        """Curvature of slip at the nucleation point halfway to the transition, over the pre-stress, 1 there."""
-        return abs(float(rupture().strain(STEP, 0.5 * rupture().transition_time)) / STEP)
-
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
         "pulse_width": lambda: pulse().width,
@@ -79,8 +67,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "transition_peak_highest": lambda: over_paper(levels[-1], 1.0),
         "transition_peak_level": lambda: over_paper(level, 1.0),
         "transition_peak_level_soft": lambda: over_paper(level, SOFT),
-        # What the paper neglects.
-        "strain_term": strain_term,
+        # The curvature of slip at the nucleation point halfway to the transition, where the pre-stress is 1.
+        "strain_term": lambda: abs(float(rupture().strain(STEP, 0.5 * rupture().transition_time)) / STEP),
         # Steady fronts found block by block, and those of them that are admissible.
         "fronts_block_by_block": lambda: len(admissible),
         "fronts_admissible": lambda: sum(admissible),

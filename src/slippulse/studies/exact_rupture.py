@@ -35,20 +35,19 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
         shown = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN)))
         kinds = ("boundary", "left", "right", "gamma", "damping_ratio", "dx")
         rows = [pd.DataFrame([{key: shown.attrs[key] for key in kinds}]).assign(role="scene")]
+        left, right = rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
         if name != NEEDS["data"][-1]:
-            left, right = _ends(rupture)
             x = np.linspace(left, right, CURVE_POINTS)[1:-1]
             rows.append(pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)))
             released = np.flatnonzero(np.isfinite(shown["release_time"].values))
             kept = shown.isel(x=released[:: max(1, released.size // MARKS)])
             marks = {"position": "x"} | EDGES
             rows.append(
-                pd.DataFrame({key: kept[of].values for key, of in marks.items()} | {"role": "lattice"})
+                pd.DataFrame({key: kept[of].values for key, of in marks.items()}).assign(role="lattice")
             )
         if name == NEEDS["data"][0]:
             rows += _map(shown, rupture)
         stops = rupture.front_ends[0][0].reason == "stops" or rupture.gamma == 0.0
-        left, right = _ends(rupture)
         x = np.linspace(left * FRACTIONS[0 if stops else 1], right * FRACTIONS[1], POSITIONS)
         known = _exact(rupture, x)
         known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
@@ -57,11 +56,6 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
         ]
         parts.append(pd.concat(rows).assign(scene=name))
     return pd.concat(parts, ignore_index=True)
-
-
-def _ends(rupture: Rupture) -> tuple[float, float]:
-    """Where both fronts are at the end."""
-    return rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
 
 
 def _exact(rupture: Rupture, x: np.ndarray) -> dict[str, np.ndarray]:
@@ -77,9 +71,8 @@ def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     lattice = run["sample_velocity"].sel(sample_position=right).values
     parts = []
     for source, half, velocity in (("exact", left, exact), ("lattice", right, lattice)):
-        time, position = np.meshgrid(times, half, indexing="ij")
-        values = {"time": time.ravel(), "position": position.ravel(), "slip_velocity": velocity.ravel()}
-        rows = pd.DataFrame(values).round({"slip_velocity": 5, "position": 9})
+        grid = xr.DataArray(velocity, [("time", times), ("position", half)], name="slip_velocity")
+        rows = grid.to_series().reset_index().round({"slip_velocity": 5, "position": 9})
         parts.append(rows[rows["slip_velocity"] > 0.0].assign(role=f"map_{source}"))
     return parts
 
@@ -87,14 +80,12 @@ def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
 def _differences(
     run: xr.Dataset, rupture: Rupture, x: np.ndarray, exact: dict[str, np.ndarray]
 ) -> pd.DataFrame:
-    """How far a run is from the exact solution of its scene, known at some positions; a quantity that the scene does
-    not have is left out."""
+    """How far a run is from the exact solution of its scene, in each quantity that it has."""
     found = {name: np.interp(x, run["x"].values, run[of].values) for name, of in EDGES.items()}
     # Slip velocity at the sampled points that slide, away from both edges.
-    inside = np.flatnonzero(
-        (run["sample_position"].values >= x[0]) & (run["sample_position"].values <= x[-1])
-    )
-    x, times = run["sample_position"].values[inside], run["sample_time"].values
+    sampled, times = run["sample_position"].values, run["sample_time"].values
+    inside = np.flatnonzero((sampled >= x[0]) & (sampled <= x[-1]))
+    x = sampled[inside]
     release, stick = rupture.release_time(x), np.nan_to_num(rupture.stick_time(x), nan=np.inf)
     row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
     found["velocity"] = run["sample_velocity"].values[row, inside[column]]

@@ -13,12 +13,7 @@ FRACTIONS = 1.0 - np.linspace(1.0, 0.0, 121)[:-1] ** 3
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """When each position is released, and when it sticks, in the continuum limit.
-
-    Returns simulation, position, release_time, stick_time (NaN where it slides on)
-
-    Source: `Rupture`.
-    """
+    """Returns simulation, position, release_time, stick_time (NaN where it slides on), in the continuum limit."""
     parts = []
     for name, sweep in settings["sweeps"].items():
         rupture = exact_rupture(expand(sweep)[0][0].attributes())

@@ -14,9 +14,9 @@ SCALE, LARGEST_RATIO, RATIOS = 0.005, 5.0, 33
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The pre-stress at which a front has a speed.
+    """The pre-stress at which a front has a speed: one row a point of the grid.
 
-    Returns one row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)),
+    Returns release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)),
     logit (ln(tau/(1 - tau)), to 6 decimals)
     """
     positions = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
@@ -24,7 +24,6 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ratio, parts = SCALE * np.sinh(position), []
     for release in RELEASES:
         tau = prestress_for_speed(1.0 + np.exp(excess), ratio, release)
-        logit = np.round(np.log(tau) - np.log1p(-tau), 6)
-        grid = {"damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess, "logit": logit}
-        parts.append(pd.DataFrame({"release": release} | grid))
+        grid = {"release": release, "damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess}
+        parts.append(pd.DataFrame(grid | {"logit": np.round(np.log(tau) - np.log1p(-tau), 6)}))
     return pd.concat(parts, ignore_index=True)

@@ -8,8 +8,7 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.runs import simulate_on_lattice
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_law import front_speed
-from ..theory.pulse import pulse_behind_front
+from ..theory.front_law import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window"]}
 
@@ -23,21 +22,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     Returns quantity (front_speed, first_stick_time, pulse_slip), published, localised and exact
     """
-    speed = float(front_speed(PROFILE.left, BETA / SPACING))
+    pulse = steady_pulse(PROFILE.left, GAMMA, BETA, damping_ratio=BETA / SPACING)
+    first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
     run = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
     ours = [run[name].values for name in ("x", "release_time", "stick_time", "slip")]
-    window = settings["measure"]["front_window"]
-    found = {
-        "quantity": ["front_speed", "first_stick_time", "pulse_slip"],
-        "published": numbers(published_run(), window),
-        "localised": numbers(ours, window),
-        "exact": [
-            speed,
-            exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time,
-            pulse_behind_front(PROFILE.left, GAMMA, BETA, speed).slip,
-        ],
-    }
-    return pd.DataFrame(found)
+    published, localised = (
+        numbers(run, settings["measure"]["front_window"]) for run in (published_run(), ours)
+    )
+    found = {"published": published, "localised": localised, "exact": [pulse.speed, first_stick, pulse.slip]}
+    return pd.DataFrame({"quantity": ["front_speed", "first_stick_time", "pulse_slip"]} | found)
 
 
 def published_run() -> list[np.ndarray]:

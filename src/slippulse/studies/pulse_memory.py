@@ -5,8 +5,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..predict.exact_rupture import exact_rupture
-from ..theory.front_law import front_speed
-from ..theory.pulse import pulse_behind_front
+from ..theory.front_law import steady_pulse
 
 # The simulation whose parameters the curves have.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
@@ -29,7 +28,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         before = scene.prestress.right
         # In the limit dx -> 0 damping acts through the speed alone.
         old, new = (
-            pulse_behind_front(each, scene.gamma, 0.0, front_speed(each, scene.damping_ratio, scene.release))
+            steady_pulse(each, scene.gamma, damping_ratio=scene.damping_ratio, release=scene.release)
             for each in (before, level)
         )
         memory = new.width / (new.speed - 1.0)

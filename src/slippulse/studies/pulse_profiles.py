@@ -7,8 +7,7 @@ from scipy.integrate import cumulative_trapezoid
 from ..configuration.expand import expand
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
-from ..theory.front_law import front_speed
-from ..theory.pulse import pulse_behind_front
+from ..theory.front_law import steady_pulse
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 
@@ -20,12 +19,7 @@ FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Profiles of each run.
-
-    Returns simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration
-
-    Source: `pulse_behind_front` under a displacement boundary, `ArrestingCrack.far_pulse` under a stress boundary.
-    """
+    """Returns simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration."""
     parts = []
     for name, sweep in settings["sweeps"].items():
         for run, scene in enumerate(expand(sweep)[0]):
@@ -36,9 +30,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def profile(scene: Scene) -> pd.DataFrame:
     """A steady pulse, its corners at the front and at the trailing edge kept sharp."""
-    level = scene.prestress.right
-    speed = float(front_speed(level, scene.damping_ratio, scene.release))
-    pulse = pulse_behind_front(level, scene.gamma, scene.beta, speed)
+    level, ratio = scene.prestress.right, scene.damping_ratio
+    pulse = steady_pulse(level, scene.gamma, scene.beta, damping_ratio=ratio, release=scene.release)
     even = np.linspace(-(1.0 + BEHIND), AHEAD, POINTS) * pulse.width
     edges = [-pulse.width, np.nextafter(-pulse.width, -np.inf), 0.0, 1e-12 * pulse.width]
     xi = np.unique(np.concatenate([even, edges]))
@@ -49,11 +42,10 @@ def profile(scene: Scene) -> pd.DataFrame:
 def far_profile(scene: Scene) -> pd.DataFrame:
     """The pulse far from its nucleation under a stress boundary, with its integral and its derivative."""
     crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
-    delay, velocity = crack.far_pulse()
-    order = np.argsort(delay, kind="stable")
-    delay, velocity = delay[order], velocity[order]
+    far = np.array(crack.far_pulse())
+    delay, velocity = far[:, np.argsort(far[0], kind="stable")]
     start = max(0, int(np.argmax(velocity > TAIL * velocity.max())) - 1)
-    x, v = delay[start:] - delay[int(np.argmax(velocity))], velocity[start:]
+    x, v = delay[start:] - delay[np.argmax(velocity)], velocity[start:]
     apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
     x, v = x[apart], v[apart]
     # The pulse moves at the wave speed without changing, so slip is the integral of its velocity over distance.

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from ..model.prestress import Prestress, prestress_balance_position
 from ..model.samples import Samples
@@ -40,40 +41,43 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx, rate_strengthening, time,
     largest_velocity, gap: distance of the left front from the balance of the pre-stress) and asymptote (the same)
     """
-    lattices = [_lattice(level, speed, each) for level, speed in _speeds(LEVELS) for each in FRACTIONS]
-    limit = [
-        {"level": level, "rate_strengthening": critical_rate_strengthening(GAMMA, speed)}
-        for level, speed in _speeds(np.linspace(0.05, 0.9, 60))
+    # Slip runs away where the model refuses a scene.
+    lattices = [
+        _lattice(level, speed, fraction, alpha)
+        for level, speed, critical in _fronts(LEVELS)
+        for fraction, alpha in zip(FRACTIONS, np.multiply(FRACTIONS, critical).tolist(), strict=True)
+        if alpha > -2.0 * np.sqrt(GAMMA)
     ]
-    ((_, speed),) = _speeds([LEVEL])
-    critical = critical_rate_strengthening(GAMMA, speed)
-    alphas = critical * np.linspace(-0.97, 0.97, 80)
-    pulses = [pulse_behind_front(LEVEL, GAMMA, 0.0, speed, alpha) for alpha in alphas]
-    steady = [(alpha, each.width, each.slip) for alpha, each in zip(alphas, pulses, strict=True)]
-    parts = [
-        pd.DataFrame([row for row in lattices if row]).assign(role="lattice"),
-        pd.DataFrame(limit).assign(role="limit"),
-        pd.DataFrame(steady, columns=["rate_strengthening", "pulse_width", "pulse_slip"]).assign(
-            role="steady"
-        ),
-        *(_map(regime, fraction * critical) for regime, fraction in MAPPED.items()),
-        *(_arrest(alpha, dx) for alpha in ALPHAS for dx in SPACINGS),
-        *(_asymptote(alpha) for alpha in ALPHAS if alpha),
+    limit = [(level, critical) for level, _, critical in _fronts(np.linspace(0.05, 0.9, 60))]
+    ((_, speed, critical),) = _fronts([LEVEL])
+    pulses = [
+        pulse_behind_front(LEVEL, GAMMA, 0.0, speed, each * critical) for each in np.linspace(-0.97, 0.97, 80)
     ]
-    return pd.concat(parts, ignore_index=True).assign(gamma=GAMMA, damping_ratio=RATIO)
+    steady = [(each.rate_strengthening, each.width, each.slip) for each in pulses]
+    parts = {
+        "lattice": pd.DataFrame(lattices),
+        "limit": pd.DataFrame(limit, columns=["level", "rate_strengthening"]),
+        "steady": pd.DataFrame(steady, columns=["rate_strengthening", "pulse_width", "pulse_slip"]),
+        "map": pd.concat([_map(regime, fraction * critical) for regime, fraction in MAPPED.items()]),
+        "arrest": pd.concat([_arrest(alpha, dx) for alpha in ALPHAS for dx in SPACINGS]),
+        "asymptote": pd.concat([_asymptote(alpha) for alpha in ALPHAS if alpha]),
+    }
+    rows = [rows.assign(role=role) for role, rows in parts.items()]
+    return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA, damping_ratio=RATIO)
 
 
-def _speeds(levels) -> zip:
-    """Levels, each with its front speed."""
-    return zip(levels, front_speed(np.array(levels), RATIO).tolist(), strict=True)
+def _fronts(levels) -> list[tuple[float, float, float]]:
+    """Levels, each with its front speed and its critical rate strengthening."""
+    speeds = front_speed(np.array(levels), RATIO).tolist()
+    return [
+        (level, speed, critical_rate_strengthening(GAMMA, speed))
+        for level, speed in zip(levels, speeds, strict=True)
+    ]
 
 
-def _lattice(level: float, speed: float, fraction: float) -> dict | None:
-    """One run, its regime and its pulse; None where the model refuses it, since slip runs away."""
-    alpha, dx = fraction * critical_rate_strengthening(GAMMA, speed), SPACING * level
-    if alpha <= -2.0 * np.sqrt(GAMMA):
-        return None
-    duration = SHORTEST + MEMORIES / (speed - 1.0)
+def _lattice(level: float, speed: float, fraction: float, alpha: float) -> dict:
+    """One run, its regime and its pulse."""
+    dx, duration = SPACING * level, SHORTEST + MEMORIES / (speed - 1.0)
     of = ("displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx)
     run = simulate_on_lattice(Scene(*of, order=ORDER, max_step=MAX_STEP, rate_strengthening=alpha))
     right = run["x"].values > 0.5 * dx
@@ -99,9 +103,9 @@ def _map(regime: str, alpha: float) -> pd.DataFrame:
     rupture = Rupture(Prestress(LEVEL, LEVEL), GAMMA, RATIO, duration=END, rate_strengthening=alpha)
     times, x = np.linspace(0.0, END, MAP[0]), np.linspace(0.0, rupture.front_ends[0][1].x, MAP[1])
     velocity = rupture.map(times, x, ("slip_velocity",))["slip_velocity"]
-    time, position = np.meshgrid(times, x if regime == "crack" else -x, indexing="ij")
-    values = {"time": time.ravel(), "position": position.ravel(), "slip_velocity": velocity.ravel()}
-    return pd.DataFrame(values).assign(role="map", regime=regime, rate_strengthening=alpha, level=LEVEL)
+    axes = [("time", times), ("position", x if regime == "crack" else -x)]
+    rows = xr.DataArray(velocity, axes, name="slip_velocity").to_series().reset_index()
+    return rows.assign(regime=regime, rate_strengthening=alpha, level=LEVEL)
 
 
 def _arrest(alpha: float, dx: float) -> pd.DataFrame:
@@ -112,7 +116,7 @@ def _arrest(alpha: float, dx: float) -> pd.DataFrame:
     front = np.array([float(left["x"].values[left["release_time"].values <= time].min()) for time in TIMES])
     values = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}
     values["gap"] = front - prestress_balance_position(ARRESTING)
-    return pd.DataFrame(values).assign(role="arrest", rate_strengthening=alpha, dx=dx)
+    return pd.DataFrame(values).assign(rate_strengthening=alpha, dx=dx)
 
 
 def _asymptote(alpha: float) -> pd.DataFrame:
@@ -122,4 +126,4 @@ def _asymptote(alpha: float) -> pd.DataFrame:
     slip = float(np.trapezoid((x - balance) * ARRESTING(x), x))
     values = {"time": TIMES, "largest_velocity": slip / (np.sqrt(2.0 * np.pi * np.e) * TIMES)}
     values["gap"] = -slip / ARRESTING.left * np.sqrt(alpha / (np.pi * TIMES))
-    return pd.DataFrame(values).assign(role="asymptote", rate_strengthening=alpha)
+    return pd.DataFrame(values).assign(rate_strengthening=alpha)
