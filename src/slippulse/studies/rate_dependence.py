@@ -1,5 +1,7 @@
 """Friction that depends linearly on slip rate: where pulses end, and what becomes of them without leaf springs."""
 
+from functools import cache
+
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -31,31 +33,27 @@ LEVEL, MAPPED, END, MAP = 0.5, {"pulse": 0.6, "crack": 1.5}, 14.0, (57, 96)
 # Without leaf springs: rate strengthening, pre-stress, spacings and times.
 ALPHAS, ARRESTING, SPACINGS = (0.0, 0.5, 2.0), Prestress(-0.5, 0.0), (0.05, 0.025)
 TIMES = np.geomspace(2.0, 100.0, 21)
+LATTICE = [
+    "level", "rate_strengthening", "over_critical", "dx", "regime", "run_flags", "pulse_width", "pulse_slip"
+]  # fmt: skip
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Lattices of both boundaries, and the exact theory.
 
-    Returns role: lattice (level, rate_strengthening, over_critical: over the critical one, regime, run_flags, and of
-    pulses pulse_width, pulse_slip), limit (level, rate_strengthening: the critical one), steady (rate_strengthening,
-    pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx, rate_strengthening, time,
-    largest_velocity, gap: distance of the left front from the balance of the pre-stress) and asymptote (the same)
+    Returns role: lattice (LATTICE; over_critical: over the critical one, which limit has at each level), steady
+    (rate_strengthening, pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx,
+    rate_strengthening, time, largest_velocity, gap: distance of the left front from the balance of the pre-stress) and
+    asymptote (the same)
     """
-    # Slip runs away where the model refuses a scene.
-    lattices = [
-        _lattice(level, speed, fraction, alpha)
-        for level, speed, critical in _fronts(LEVELS)
-        for fraction, alpha in zip(FRACTIONS, np.multiply(FRACTIONS, critical).tolist(), strict=True)
-        if alpha > -2.0 * np.sqrt(GAMMA)
-    ]
-    limit = [(level, critical) for level, _, critical in _fronts(np.linspace(0.05, 0.9, 60))]
-    ((_, speed, critical),) = _fronts([LEVEL])
-    pulses = [
-        pulse_behind_front(LEVEL, GAMMA, 0.0, speed, each * critical) for each in np.linspace(-0.97, 0.97, 80)
-    ]
+    lattices = [row for level in LEVELS for each in FRACTIONS if (row := _lattice(level, each))]
+    limit = [(level, _front(level)[1]) for level in np.linspace(0.05, 0.9, 60)]
+    speed, critical = _front(LEVEL)
+    alphas = critical * np.linspace(-0.97, 0.97, 80)
+    pulses = [pulse_behind_front(LEVEL, GAMMA, 0.0, speed, alpha) for alpha in alphas]
     steady = [(each.rate_strengthening, each.width, each.slip) for each in pulses]
     parts = {
-        "lattice": pd.DataFrame(lattices),
+        "lattice": pd.DataFrame(lattices, columns=LATTICE),
         "limit": pd.DataFrame(limit, columns=["level", "rate_strengthening"]),
         "steady": pd.DataFrame(steady, columns=["rate_strengthening", "pulse_width", "pulse_slip"]),
         "map": pd.concat([_map(regime, fraction * critical) for regime, fraction in MAPPED.items()]),
@@ -66,36 +64,33 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA, damping_ratio=RATIO)
 
 
-def _fronts(levels) -> list[tuple[float, float, float]]:
-    """Levels, each with its front speed and its critical rate strengthening."""
-    speeds = front_speed(np.array(levels), RATIO).tolist()
-    return [
-        (level, speed, critical_rate_strengthening(GAMMA, speed))
-        for level, speed in zip(levels, speeds, strict=True)
-    ]
+@cache
+def _front(level: float) -> tuple[float, float]:
+    """Speed of a front, and the critical rate strengthening behind it."""
+    speed = float(front_speed(level, RATIO))
+    return speed, critical_rate_strengthening(GAMMA, speed)
 
 
-def _lattice(level: float, speed: float, fraction: float, alpha: float) -> dict:
-    """One run, its regime and its pulse."""
-    dx, duration = SPACING * level, SHORTEST + MEMORIES / (speed - 1.0)
+def _lattice(level: float, fraction: float) -> tuple:
+    """One run, its regime and its pulse; empty where the model refuses it, since slip runs away."""
+    speed, critical = _front(level)
+    alpha, dx, duration = fraction * critical, SPACING * level, SHORTEST + MEMORIES / (speed - 1.0)
+    if alpha <= -2.0 * np.sqrt(GAMMA):
+        return ()
     of = ("displacement", Prestress(level, level), duration, dx, GAMMA, RATIO * dx)
     run = simulate_on_lattice(Scene(*of, order=ORDER, max_step=MAX_STEP, rate_strengthening=alpha))
     right = run["x"].values > 0.5 * dx
     names = ("x", "stick_time", "release_time", "slip_velocity", "slip")
     x, stick, release, velocity, slip = (run[name].values[right] for name in names)
-    (start, end), (earlier_start, earlier_end) = (
-        # The outermost blocks that have stuck and that have been released.
-        [float(x[times <= time].max(initial=0.0)) for times in (stick, release)]
-        for time in (duration, 0.5 * duration)
-    )
+    # Between the outermost blocks that have stuck and that have been released, at the end and half-way to it.
+    times = duration, 0.5 * duration
+    stuck, released = ([x[known <= time].max(initial=0.0) for time in times] for known in (stick, release))
+    width, earlier = np.subtract(released, stuck)
     # From the front backwards, the last that slides.
     slowest = velocity[velocity > 0.0][0] / velocity.max()
-    pulse = end - start < GROWTH * (earlier_end - earlier_start) and slowest > QUIET
-    found = {"pulse_width": end - start, "pulse_slip": float(slip[np.argmin(np.abs(x - start))])}
-    return {
-        "level": level, "rate_strengthening": alpha, "over_critical": fraction, "dx": dx,
-        "regime": "pulse" if pulse else "crack", "run_flags": run.attrs["run_flags"], **(found if pulse else {}),
-    }  # fmt: skip
+    pulse = width < GROWTH * earlier and slowest > QUIET
+    shape = (width, slip[np.argmin(np.abs(x - stuck[0]))]) if pulse else (np.nan, np.nan)
+    return level, alpha, fraction, dx, "pulse" if pulse else "crack", run.attrs["run_flags"], *shape
 
 
 def _map(regime: str, alpha: float) -> pd.DataFrame:
@@ -113,10 +108,10 @@ def _arrest(alpha: float, dx: float) -> pd.DataFrame:
     samples = Samples(TIMES, np.arange(-8.0, TIMES[-1] + 10.0, 0.25))
     run = simulate_on_lattice(Scene(*of, rate_strengthening=alpha, max_step=0.4), samples)
     left = run.where(run["x"] < 0.0, drop=True)
-    front = np.array([float(left["x"].values[left["release_time"].values <= time].min()) for time in TIMES])
-    values = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}
-    values["gap"] = front - prestress_balance_position(ARRESTING)
-    return pd.DataFrame(values).assign(rate_strengthening=alpha, dx=dx)
+    front = np.array([left["x"].values[left["release_time"].values <= time].min() for time in TIMES])
+    found = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}
+    found["gap"] = front - prestress_balance_position(ARRESTING)
+    return pd.DataFrame(found | {"rate_strengthening": alpha, "dx": dx})
 
 
 def _asymptote(alpha: float) -> pd.DataFrame:
@@ -124,6 +119,6 @@ def _asymptote(alpha: float) -> pd.DataFrame:
     balance = prestress_balance_position(ARRESTING)
     x = np.linspace(balance, 12.0, 20_001)
     slip = float(np.trapezoid((x - balance) * ARRESTING(x), x))
-    values = {"time": TIMES, "largest_velocity": slip / (np.sqrt(2.0 * np.pi * np.e) * TIMES)}
-    values["gap"] = -slip / ARRESTING.left * np.sqrt(alpha / (np.pi * TIMES))
-    return pd.DataFrame(values).assign(rate_strengthening=alpha)
+    found = {"time": TIMES, "largest_velocity": slip / (np.sqrt(2.0 * np.pi * np.e) * TIMES)}
+    found["gap"] = -slip / ARRESTING.left * np.sqrt(alpha / (np.pi * TIMES))
+    return pd.DataFrame(found | {"rate_strengthening": alpha})
