@@ -30,18 +30,12 @@ def _regime(scene: Scene, still: float) -> str:
 def final_regime(
     left: float, right: float, gamma: float, damping_ratio: float, release: str, still: float
 ) -> str:
-    """The regime of `measure.regime` that a rupture between two levels comes to in the continuum limit.
+    """The regime of `measure.regime` that a rupture between two levels comes to in the continuum limit, or UNDECIDED.
 
-    Parameters
-    ----------
     left, right : levels of the pre-stress, below 1, with one nucleation point between them
     gamma : elasticity ratio, or 0 for the stress boundary
     damping_ratio, release : beta/dx and the release rule, which set the front speed
     still : fraction of the largest velocity below which the nucleation point counts as at rest, as in `classify`
-
-    Returns
-    -------
-    one of REGIMES; UNDECIDED where the exact solution does not say
 
     With leaf springs a front into a negative level stops, one into a positive level outruns the waves for good, the
     nucleation point sticks (`trailing`), and a pulse forgets its past in a finite distance. Into a level 0 it gets

@@ -25,17 +25,8 @@ THICKEST_LAYER = 0.125
 
 
 def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
-    """Measure every run of a sweep.
-
-    Parameters
-    ----------
-    sweep : data of a sweep
-    settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
-
-    Returns
-    -------
-    one row a run: `measure_run`, the state of its leading pulse, and the paper's T_trans and L_trans where the
-    transition is measured
+    """One row a run of a sweep: `measure_run` by its settings, the state of its leading pulse, and the paper's T_trans
+    and L_trans (sections III B and III C) where the transition is measured.
     """
     rows = []
     for index in range(sweep.sizes["point"]):
@@ -45,33 +36,28 @@ def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
             row["pulse_state"] = pulse_state(run, pulse)
             row["pulse_shape_deviation"] = shape_deviation(run, pulse)
         if "transition_time" in row:
-            row["paper_transition_time"], row["paper_transition_length"] = paper_transition(run)
+            held, of = run.attrs["boundary"] == "displacement", (run.attrs["left"], run.attrs["gamma"])
+            paper = (
+                paper_transition_displacement(*of)
+                if held
+                else paper_transition_stress(prestress_from(run.attrs))
+            )
+            row["paper_transition_time"], row["paper_transition_length"] = paper
         rows.append(row)
     return pd.DataFrame(rows)
 
 
 def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
-    """Whether the leading pulse is the steady one, so that the numbers of steady pulses apply to it.
+    """Whether the leading pulse of a run is the steady one, so that the numbers of steady pulses apply to it.
 
-    Parameters
-    ----------
-    run : one run with fronts and fields
-    pulse : its leading pulse
-
-    Returns
-    -------
     "steady"; "unsteady" when its width is not the steady one at its speed, the slip behind it varies, or it is slower
     than the waves; "thick_front" when the damped layer is not thin against it; "none" without a pulse or under a
-    stress boundary
-
-    Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
+    stress boundary. Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
     """
     if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
-    _, distance = path(run)
-    tau = float(
-        run.variables["prestress"].values[np.argmin(np.abs(run.variables["x"].values - distance[-1]))]
-    )
+    ahead = np.argmin(np.abs(run.variables["x"].values - path(run)[1][-1]))
+    tau = float(run.variables["prestress"].values[ahead])
     if not 0.0 < tau < 1.0:
         return "none"
     if pulse.speed <= 1.0:
@@ -83,8 +69,7 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
         return "thick_front"
     allowed = CHANGE * steady.width + layer + WIDTH_BLOCKS * dx
     # A pulse too young to have left slip behind is judged by its width alone.
-    varied = slip_variation(run, pulse)
-    changes = abs(pulse.width - steady.width) > allowed or varied > CHANGE
+    changes = abs(pulse.width - steady.width) > allowed or slip_variation(run, pulse) > CHANGE
     return "unsteady" if changes else "steady"
 
 
@@ -92,9 +77,7 @@ def shape_deviation(run: xr.Dataset, pulse: LeadingPulse) -> float:
     """Largest distance of the right pulse's slip velocity from the paper's cosine, over its peak, the peaks aligned.
 
     Two blocks at each end of the cosine are left out, where the lattice rounds its corner. NaN without a pulse, or
-    where the paper has none.
-
-    Source: equations (9) and (C10) of the paper.
+    where the paper has none. Source: equations (9) and (C10) of the paper.
     """
     tau = run.attrs["right"]
     if run.attrs["boundary"] != "displacement" or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
@@ -107,10 +90,3 @@ def shape_deviation(run: xr.Dataset, pulse: LeadingPulse) -> float:
         return float("nan")
     _, cosine, _ = paper.profile(away[inside] + paper.peak_position)
     return float(np.max(np.abs(fields["slip_velocity"][inside] - cosine)) / paper.peak_velocity)
-
-
-def paper_transition(run: xr.Dataset) -> tuple[float, float]:
-    """The paper's T_trans and L_trans of a run (sections III B and III C)."""
-    if run.attrs["boundary"] == "displacement":
-        return paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
-    return paper_transition_stress(prestress_from(run.attrs))

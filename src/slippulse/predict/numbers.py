@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import TypeVar
 
-import numpy as np
-
 from ..model.scene import Scene
 
 Found = TypeVar("Found")
@@ -14,7 +12,7 @@ SIDES = {"left": -1e300, "right": 1e300}
 
 def level(scene: Scene, side: str) -> float:
     """Pre-stress far away on one of SIDES."""
-    return float(scene.prestress.level(np.asarray(SIDES[side])))
+    return float(scene.prestress.level(SIDES[side]))
 
 
 def ratio(scene: Scene) -> float:

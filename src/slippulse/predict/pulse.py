@@ -22,10 +22,11 @@ def _pulse(scene: Scene, speed: float) -> dict[str, float]:
         paper = known(lambda: paper_pulse(ahead, scene.gamma))
         if speed > 1.0:
             exact = known(lambda: pulse_behind_front(ahead, scene.gamma, scene.beta, speed))
-    out = {}
+    out: dict[str, float] = {}
     for kind, pulse in (("paper", paper), ("exact", exact)):
-        for name in ("width", "slip", "peak_velocity"):
-            out[f"{kind}_pulse_{name}"] = getattr(pulse, name) if pulse else NAN
+        out |= {
+            f"{kind}_pulse_{name}": getattr(pulse, name, NAN) for name in ("width", "slip", "peak_velocity")
+        }
         out[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
     return out
 

@@ -39,12 +39,11 @@ def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
 @cache
 def _first_stick(level: float, width: float, gamma: float, ratio: float, release: str) -> dict[str, float]:
     profile = Prestress(level, level, width)
-    # More panels than theory allows, or more damping.
-    exact = known(lambda: exact_transition_displacement(profile, gamma, ratio, release))
-    if exact is None:
-        return {}
-    time = {"exact_transition_time": exact.time, "exact_first_stick_time": exact.time}
-    return time | {"exact_transition_length": exact.length}
+    # None with more panels than theory allows, or more damping.
+    if exact := known(lambda: exact_transition_displacement(profile, gamma, ratio, release)):
+        names = ("exact_transition_time", "exact_first_stick_time", "exact_transition_length")
+        return dict(zip(names, (exact.time, exact.time, exact.length), strict=True))
+    return {}
 
 
 @cache
