@@ -42,8 +42,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         parts.append(pd.DataFrame(line | {"release": release, "damping_ratio": ratio}))
     for left, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
         line = {"panel": "springs", "release": SPRINGS_RELEASE, "left": left, "damping_ratio": ratio}
-        speeds = [_speed(left, each, 1.0, ratio, SPRINGS_RELEASE) for each in SPRINGS]
-        parts.append(pd.DataFrame(line | {"springs": SPRINGS, "speed": speeds}))
+        line["speed"] = [_speed(left, each, 1.0, ratio, SPRINGS_RELEASE) for each in SPRINGS]
+        parts.append(pd.DataFrame(line | {"springs": SPRINGS}))
     held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
     held += [each.assign(held="beta", fixed=each["beta"]) for each in fixed_beta]
     for values, dx in pd.concat(held).query(REFINED).groupby(LINE)["dx"]:

@@ -14,24 +14,21 @@ NEEDS = {"settings": ["model.damping_ratio", "model.release", "measure.still"]}
 GAMMAS = {"displacement": 1.0, "stress": 0.0}
 # Levels on the positive side along the border between crack and pulse, to where the negative one is beyond -1.
 BORDER = np.linspace(0.0, 0.15, 31)[1:]
-# Boundary, levels on the left and on the right, and time of the velocity profiles; their points.
+# Boundary, and levels on the left and on the right, of the velocity profiles; their time and points.
 PROFILES = (
-    ("displacement", 0.5, 0.5, 12.0),
-    ("displacement", -0.5, 0.5, 12.0),
-    ("stress", 0.3, 0.3, 12.0),
-    ("stress", -0.5, 0.0, 12.0),
+    ("displacement", 0.5, 0.5),
+    ("displacement", -0.5, 0.5),
+    ("stress", 0.3, 0.3),
+    ("stress", -0.5, 0.0),
 )
-POINTS = 241
+TIME, POINTS = 12.0, 241
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Outlines of the regimes, and slip velocity over position in some of them.
 
     Returns boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends
-    of a line on which one level is 0 and the other negative) and profile (time, x, slip_velocity: of one pre-stress, W
-    = 1)
-
-    Source: `final_regime`, `Rupture`.
+    of a line on which one level is 0 and the other negative) and profile (time, x, slip_velocity, at W = 1)
     """
     still, model = settings["measure"]["still"], settings["model"]
     rules = model["damping_ratio"], model["release"]
@@ -53,11 +50,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
         labels = {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
         parts.append(pd.DataFrame(corners, columns=["left", "right"]).assign(**labels))
-    for boundary, left, right, time in PROFILES:
-        rupture = Rupture(Prestress(left, right), GAMMAS[boundary], *rules, time)
-        x = np.linspace(*rupture.fronts_at(time), POINTS)
-        found = pd.DataFrame({"x": x, "slip_velocity": rupture.slip_velocity(x, time)})
+    for boundary, left, right in PROFILES:
+        rupture = Rupture(Prestress(left, right), GAMMAS[boundary], *rules, TIME)
+        x = np.linspace(*rupture.fronts_at(TIME), POINTS)
+        found = pd.DataFrame({"x": x, "slip_velocity": rupture.slip_velocity(x, TIME)})
         regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
         labels = {"role": "profile", "boundary": boundary, "series": len(parts), "regime": regime}
-        parts.append(found.assign(time=time, left=left, right=right, **labels))
+        parts.append(found.assign(time=TIME, left=left, right=right, **labels))
     return pd.concat(parts, ignore_index=True)

@@ -34,11 +34,9 @@ PROFILES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Bisect for the largest sound step of every scheme, order and damping ratio.
-
-    Returns one row a scheme, order and damping ratio: derived (the bound, in units of dx), measured (a chain between
-    walls, nothing but the linear step) and measured_rupture (fronts, an event in most steps), and their ratios to the
-    bound
+    """One row a scheme, order and damping ratio: derived (the bound, in units of dx), measured (the largest sound step
+    of a chain between walls, nothing but the linear step) and measured_rupture (of fronts, an event in most steps), and
+    their ratios to the bound.
     """
     rows = []
     for scheme, order in [("fixed_step", 1), *(("localised", order) for order in ORDERS)]:
