@@ -42,6 +42,13 @@ lattice_of, TIMES, REACH = partial(Scene, max_step=1.0, order=8), 109, 1.5
 WINDOW = 0.3
 # Positions of the exact trailing edge and of the last profile of slip velocity.
 EDGE, PROFILE = 241, 401
+KNOWN = (
+    "front_speed_right",
+    "front_intercept_right",
+    "first_stick_time",
+    "transition_length",
+    "largest_velocity",
+)
 TRAILING = "trailing_edge_"
 # Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
 DIFFERENCE, FIRST = 0.01, 2
@@ -53,10 +60,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     Returns rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less exact), pull and
     weight (0 where it is not fitted). "profile": release, damping_ratio, dx = beta/damping_ratio, and tau0 and gamma
     that fit all but the drawn arrows best, with their errors; "arrows": the same of all readings; "notebook": as
-    "profile" at the damping ratio and spacing of the authors' public notebook; "stress": the right panel at the levels
-    and width read off it
-
-    Source: `claims.inference`.
+    "profile", by NOTEBOOK; "stress": the right panel at the levels and width read off it
     """
     panel = LeftPanel(readings_of(settings["published"], "space_time_displacement"))
     parts = []
@@ -82,23 +86,19 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         scene = lattice_of("stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release)
         run = sampled(scene, crack.balance_position)
         found, exact = float(run["sample_velocity"].max()), crack.peak_velocity
-        rows = readings.assign(
+        parts.append(readings.assign(
             part="stress", release=release, damping_ratio=ratio, dx=dx, left=RIGHT_PANEL.left, width=RIGHT_PANEL.width,
             exact=exact, correction=found - exact, pull=(found - readings["drawn"]) / readings["reading_error"],
             weight=1.0,
-        )  # fmt: skip
-        parts.append(rows)
+        ))  # fmt: skip
     return pd.concat(parts, ignore_index=True)
 
 
 def readings_of(published: dict, simulation: str) -> pd.DataFrame:
     """What was read off for one simulation, of `published`: rows reading, drawn, quantity, reading_error, arrow."""
-    rows = [
-        (name, entry["value"], entry["quantity"], entry["reading_error"], entry.get("arrow", False))
-        for name, entry in published.items()
-        if entry["simulation"] == simulation
-    ]
-    return pd.DataFrame(rows, columns=["reading", "drawn", "quantity", "reading_error", "arrow"])
+    found = pd.DataFrame.from_dict(published, orient="index").rename_axis("reading").reset_index()
+    found = found[found["simulation"] == simulation].rename(columns={"value": "drawn"})
+    return found[["reading", "drawn", "quantity", "reading_error"]].assign(arrow=found["arrow"].eq(True))
 
 
 def sampled(scene: Scene, left: float) -> xr.Dataset:
@@ -125,13 +125,8 @@ class LeftPanel:
         stick = rupture.stick_time(x)
         edge = stick[np.isfinite(stick)], x[np.isfinite(stick)]
         at_end = rupture.slip_velocity(np.linspace(0.0, end.x, PROFILE), rupture.duration)
-        known = {
-            "front_speed_right": speed,
-            "front_intercept_right": end.x - speed * end.time,
-            "first_stick_time": rupture.transition_time,
-            "transition_length": rupture.transition_length,
-            "largest_velocity": max(rupture.largest_velocity, float(np.max(at_end))),
-        }
+        transition, largest = (rupture.transition_time, rupture.transition_length), np.max(at_end)
+        known = speed, end.x - speed * end.time, *transition, max(rupture.largest_velocity, largest)
         return self._chosen(known, lambda time: np.interp(time, *edge))
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
@@ -140,24 +135,18 @@ class LeftPanel:
         scene = lattice_of("displacement", Prestress(tau0, tau0), END, dx, gamma, ratio * dx, release)
         run = sampled(scene, 0.0)
         speed, intercept, _ = front_speed(run, WINDOW)
-        known = {
-            "front_speed_right": speed,
-            "front_intercept_right": intercept,
-            "first_stick_time": run.attrs["first_stick_time"],
-            "transition_length": between_fronts(run, run.attrs["first_stick_time"]),
-            "largest_velocity": float(run["sample_velocity"].max()),
-        }
+        first = run.attrs["first_stick_time"]
+        known = speed, intercept, first, between_fronts(run, first), float(run["sample_velocity"].max())
         return self._chosen(known, lambda time: position_at(run, time, edge="stick_time"))
 
-    def _chosen(self, known: dict[str, float], trailing_edge: Callable) -> np.ndarray:
-        """The readings, of what is known by name and the trailing edge over time."""
-        out = []
+    def _chosen(self, known: tuple[float, ...], trailing_edge: Callable) -> np.ndarray:
+        """The readings, of the numbers KNOWN and the trailing edge over time."""
+        out, found = [], dict(zip(KNOWN, known, strict=True))
         for name in self.readings["quantity"]:
-            if name not in known and not name.startswith(TRAILING):
-                raise ValueError(f"quantity: {name!r}; allowed: {', '.join(known)}, {TRAILING}TIME")
-            value = known[name] if name in known else trailing_edge(float(name.removeprefix(TRAILING)))
-            out.append(float(value))
-        return np.array(out)
+            if name not in found and not name.startswith(TRAILING):
+                raise ValueError(f"quantity: {name!r}; allowed: {', '.join(KNOWN)}, {TRAILING}TIME")
+            out.append(found[name] if name in found else trailing_edge(float(name.removeprefix(TRAILING))))
+        return np.array(out, dtype=float)
 
     def fitted(
         self, ratio: float, release: str, dx: float, guess: np.ndarray, steps: int
