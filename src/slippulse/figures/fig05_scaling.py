@@ -5,16 +5,14 @@ from matplotlib.figure import Figure
 
 from .shared import scaling
 from .shared.pulses import prestress_inset
-from .shared.scaling import OTHER, SYMBOLS, chosen
-from .shared.scaling import transition_table as table
-from .style import BLACK, PAGE, new_panels
-
-__all__ = ["NEEDS", "plot", "table"]
+from .shared.scaling import OTHER, SYMBOLS, chosen, transition_table
+from .style import BLACK, PAGE, Look, new_panels
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
     "predicted": {"scaling_displacement": ["transition"], "scaling_stress": ["transition"]},
 }
+table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 
@@ -29,20 +27,17 @@ def plot(table: pd.DataFrame) -> Figure:
             inset = axes.inset_axes((0.09, 0.58, 0.36, 0.33))
             inset.set_in_layout(False)
             inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
-            scaling.draw_ratio(
-                inset, runs[runs[other].isin(chosen(runs[other], 3))], quantity, "left", other, "o"
-            )
+            some = runs[runs[other].isin(chosen(runs[other], 3))]
+            scaling.draw_ratio(inset, some, quantity, "left", other, "o")
             inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
             inset.set_xlabel(scaling.LEVEL[boundary][1], fontsize=7.0, labelpad=0.0)
             inset.set_title("measured / formula", fontsize=7.0, pad=2.0)
         narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
         narrow = narrow[narrow["left"].isin(chosen(runs["left"], 3))]
-        prestress_inset(
-            panels[column], (0.7, 0.13, 0.26, 0.22), narrow, list(scaling.colours(narrow, "left")), 6.0
-        )
+        levels = list(scaling.colours(narrow, "left"))
+        prestress_inset(panels[column], (0.7, 0.13, 0.26, 0.22), narrow, levels, 6.0)
         panels[column].set_title(title, fontsize=9)
         for kind in ("left", other):
-            scaling.colour_bar(
-                figure, panels[column::2], boundary, kind, location="bottom", aspect=35, pad=0.02
-            )
+            look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
+            scaling.colour_bar(figure, panels[column::2], boundary, kind, **look)
     return figure

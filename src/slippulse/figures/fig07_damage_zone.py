@@ -8,12 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from .shared.sketch import BOTH, arrow, label
-from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, new_panels
-from .style import as_given as table
-
-__all__ = ["NEEDS", "plot", "table"]
+from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, as_given, new_panels
 
 NEEDS = {"studies": ["damage_zone"]}
+table = as_given
 
 # Width of the sketch, and where displacements are counted from, in thicknesses of the zone.
 WIDTH, ORIGIN = 4.2, 1.95
@@ -67,7 +65,6 @@ def draw_stress_drop(axes: Axes, curves: pd.DataFrame) -> None:
     groups = curves.groupby("thickness_ratio")
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):
-        curve = curve.sort_values("stiffness_ratio")
         name = rf"$H_r/H = {thickness:g}$"
         axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve")
         look: Look = {"xytext": (3, 0), "textcoords": "offset points", "va": "center", "fontsize": 8.0}

@@ -1,10 +1,8 @@
 """Figure 9: slip, slip velocity and acceleration of the pulses under a stress boundary."""
 
-from .shared.pulses import plot_fields as plot
-from .shared.pulses import pulse_table as table
+from .shared.pulses import plot_fields, pulse_table
 
-__all__ = ["NEEDS", "plot", "table"]
-
+plot, table = plot_fields, pulse_table
 NEEDS = {
     "data": ["steady_stress"],
     "measured": ["steady_stress"],

@@ -41,16 +41,14 @@ def plot(table: pd.DataFrame) -> Figure:
 def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     """One mark a setting; the textbook scheme joined over its steps, steps of 1 over spacings; presets ringed."""
     textbook = rows[rows["scheme"] == "fixed_step"]
-    axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6, gid="textbook")
+    axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6)
     for (order, step), marks in rows[rows["scheme"] == "localised"].groupby(["order", "step"]):
-        look: Look = {"color": ORDER_COLOURS[order], "markersize": SIZES.get(step, 2.3)}
-        look |= {"linewidth": 0.6, "linestyle": "-"} if step == 1.0 else {"alpha": 0.35, "linestyle": "none"}
+        look: Look = {"linewidth": 0.6} if step == 1.0 else {"alpha": 0.35, "linestyle": "none"}
+        look |= {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": SIZES.get(step, 2.3)}
         marks = marks.sort_values("work")
-        look |= {"marker": MARKERS[order], "markeredgewidth": 0.0, "gid": "localised"}
-        axes.plot(marks["work"], marks[name], **look)
+        axes.plot(marks["work"], marks[name], markeredgewidth=0.0, **look)
     presets = rows[rows["preset"].notna()]
-    look = {"color": BLACK, "markersize": 8.0, "fillstyle": "none"}
-    axes.plot(presets["work"], presets[name], "o", gid="preset", **look)
+    axes.plot(presets["work"], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none")
     # On the side that is empty.
     look = {"xytext": (4, 6), "textcoords": "offset points", "fontsize": 7.5, "path_effects": HALO}
     for _, preset in presets.iterrows():
@@ -62,14 +60,15 @@ def _handles(rows: pd.DataFrame) -> list[Line2D]:
     """Legend: colours and markers are orders, sizes steps."""
     spacings = ", ".join(f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique())
     orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
-    textbook = entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", linewidth=0.6, linestyle="-")
-    found = [textbook, entry("preset", color=BLACK, marker="o", markersize=8.0, fillstyle="none")]
+    line: Look = {"linewidth": 0.6, "linestyle": "-"}
+    found = [entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", **line)]
+    found.append(entry("preset", color=BLACK, marker="o", markersize=8.0, fillstyle="none"))
     for order in orders:
-        look: Look = {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": 4.0}
-        found.append(entry(f"order {order:g}", linewidth=0.6, linestyle="-", **look))
+        look = line | {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": 4.0}
+        found.append(entry(f"order {order:g}", **look))
     for step, size in SIZES.items():
-        look = {"alpha": 1.0 if step == 1.0 else 0.5, "marker": "o", "markersize": size}
-        found.append(entry(f"step {step:g} dx", color=GREY, **look))
+        look = {"alpha": 1.0 if step == 1.0 else 0.5, "marker": "o", "markersize": size, "color": GREY}
+        found.append(entry(f"step {step:g} dx", **look))
     return found
 
 
@@ -82,12 +81,10 @@ def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
         locked = 1.0 / (n * steps)
         shown = np.where((locked > low) & (locked < high), locked, np.nan)
         label = r"$\Delta x/(n\,\Delta t)$, $n = 1, 2, \dots$" if n == 1 else None
-        axes.plot(steps, shown, color="0.75", linewidth=0.8, gid="locked", label=label)
+        axes.plot(steps, shown, color="0.75", linewidth=0.8, label=label)
     axes.axhline(float(rows["exact"].iloc[0]), color=BLUE, linewidth=0.9, label="exact")
-    axes.plot(
-        fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme", gid="fixed_step"
-    )
-    look: Look = {"gid": "localised", "label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
+    axes.plot(fixed["step"], fixed["front_speed"], "x", color=BLACK, label="textbook scheme")
+    look: Look = {"label": "localised scheme", "fillstyle": "none", "markersize": 4.0}
     axes.plot(local["step"], local["front_speed"], "o", color=BLUE, **look)
     # The legend stands above the marks.
     axes.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")

@@ -6,12 +6,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..data.numerals import setting
+from . import style
 from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, entry, few_ticks, new_panels
-from .style import as_given as table
-
-__all__ = ["NEEDS", "plot", "table"]
 
 NEEDS = {"studies": ["exact_rupture"]}
+table = style.as_given
 
 SCENES = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress": GREEN}
 MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
@@ -21,12 +20,16 @@ def plot(table: pd.DataFrame) -> Figure:
     """(a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
     figure, (map_axes, edge_axes, slip_axes, difference_axes) = new_panels(PAGE, 5.4, 2, 2)
     _draw_map(figure, map_axes, table[table["scene"] == next(iter(SCENES))])
-    names = {row["scene"]: _name(row) for _, row in table[table["role"] == "scene"].iterrows()}
+    scenes, names = table[table["role"] == "scene"], {}
+    for row in scenes.itertuples():
+        springs = rf"$\Gamma = 1$, $\gamma = {row.gamma:g}$" if row.gamma > 0.0 else r"$\Gamma = 0$"
+        levels = dict.fromkeys([setting(row.left), setting(row.right)])
+        names[row.scene] = rf"{springs}, $\tau_0$ = {', '.join(levels)}"
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
         for axes, quantity in ((edge_axes, "release"), (edge_axes, "stick"), (slip_axes, "slip")):
             _draw_edge(axes, rows, quantity, colour)
-    dx = table.loc[table["role"] == "scene", "dx"].iloc[0]
+    dx = scenes["dx"].iloc[0]
     drawn = table.loc[table["role"] == "exact", "scene"].unique()
     looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"front, lattice, $\Delta x = {dx:g}$"}
     for look, label in (looks | {"s": "trailing edge, lattice"}).items():
@@ -41,12 +44,6 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _name(row: pd.Series) -> str:
-    springs = rf"$\Gamma = 1$, $\gamma = {row['gamma']:g}$" if row["gamma"] > 0.0 else r"$\Gamma = 0$"
-    levels = dict.fromkeys([setting(row["left"]), setting(row["right"])])
-    return rf"{springs}, $\tau_0$ = {', '.join(levels)}"
-
-
 def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     samples = rows[rows["role"].isin(["map_exact", "map_lattice"])]
     look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": samples["slip_velocity"].max()}
@@ -55,9 +52,8 @@ def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
         grid = half.pivot(index="position", columns="time", values="slip_velocity")
         image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
     exact = rows[rows["role"] == "exact"]
-    for quantity, style in (("release", "-"), ("stick", "--")):
-        look = {"color": BLACK, "linewidth": 0.9, "gid": f"exact {quantity}"}
-        axes.plot(exact[quantity], exact["position"], style, **look)
+    for quantity, dashes in (("release", "-"), ("stick", "--")):
+        axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     for height, half in ((0.05, "exact"), (0.91, "lattice")):
         axes.text(0.03, height, half, transform=axes.transAxes)
@@ -68,23 +64,22 @@ def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
 def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
     """The exact line and the lattice's marks."""
     look: Look = {"linewidth": 0.9, "markersize": 2.2, "markerfacecolor": "white", "markeredgewidth": 0.6}
-    styles = ("--", "s") if quantity == "stick" else ("-", "o")
-    for role, style in zip(("exact", "lattice"), styles, strict=True):
-        line, gid = rows[rows["role"] == role], f"{role} {quantity} {rows['scene'].iloc[0]}"
-        # Space-time has time on the horizontal axis, as in every figure.
-        across = ("position", "slip") if quantity == "slip" else (quantity, "position")
-        axes.plot(line[across[0]], line[across[1]], style, color=colour, gid=gid, **look)
+    # Space-time has time on the horizontal axis, as in every figure.
+    x, y = ("position", "slip") if quantity == "slip" else (quantity, "position")
+    marks = ("--", "s") if quantity == "stick" else ("-", "o")
+    for role, mark in zip(("exact", "lattice"), marks, strict=True):
+        line = rows[rows["role"] == role]
+        axes.plot(line[x], line[y], mark, color=colour, **look)
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) -> None:
     """The largest and the smallest difference of each scene; its others lie between them."""
     drawn = []
     for scene, colour in SCENES.items():
-        lines = rows[rows["scene"] == scene].sort_values("dx")
-        finest = lines[lines["dx"] == lines["dx"].min()].sort_values("difference")
-        for quantity in finest["quantity"].iloc[[0, -1]]:
-            line, marker = lines[lines["quantity"] == quantity], MARKERS[quantity] + "-"
-            axes.plot(line["dx"], line["difference"], marker, gid=quantity, color=colour, linewidth=0.7)
+        lines = rows[rows["scene"] == scene].pivot(index="dx", columns="quantity", values="difference")
+        finest = lines.iloc[0].dropna().sort_values()
+        for quantity in finest.index[[0, -1]]:
+            axes.plot(lines[quantity], MARKERS[quantity] + "-", color=colour, linewidth=0.7)
             drawn.append(quantity)
     for quantity in dict.fromkeys(drawn):
         label = "slip velocity" if quantity == "velocity" else quantity
@@ -92,10 +87,9 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) ->
     for label, colour in others.items():
         axes.plot([], [], color=colour, label=label)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
-    axes.plot(ends, 1.5 * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order", gid="guide")
-    axes.set(
-        xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="mean |lattice $-$ exact| / mean"
-    )
+    axes.plot(ends, 1.5 * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order")
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
+    axes.set_ylabel("mean |lattice $-$ exact| / mean")
     few_ticks(axes.xaxis, np.unique(rows["dx"]))
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)
     axes.legend(loc="lower right", ncols=2, columnspacing=0.8)

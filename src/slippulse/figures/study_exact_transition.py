@@ -11,14 +11,17 @@ from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, colour_scale, few_tick
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress", "transition_convergence"],
     "predicted": {
-        "scaling_displacement": ["transition"],
-        "scaling_stress": ["transition"],
+        "scaling_displacement": ["transition"], "scaling_stress": ["transition"],
         "transition_convergence": ["transition"],
     },
     "studies": ["gaussian_transition"],
-}
+}  # fmt: skip
 
 KINDS = {"displacement": ("o", BLUE, r"$\Gamma = 1$"), "stress": ("s", ORANGE, r"$\Gamma = 0$")}
+REFERENCES: dict[str, tuple[str, Look]] = {
+    "paper": ("paper's value", {"markersize": 2.5, "markerfacecolor": "white"}),
+    "exact": ("exact one", {"markersize": 1.7, "zorder": 3.0}),
+}
 QUANTITIES = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
@@ -46,21 +49,13 @@ def plot(table: pd.DataFrame) -> Figure:
 def _draw_ratios(axes: Axes, sweep: pd.DataFrame, quantity: str) -> None:
     """Against the exact value: measured over exact filled, over the paper's prediction open."""
     axes.axhline(1.0, color=BLACK, linewidth=0.6)
-    for reference in ("paper", "exact"):
+    for reference, (name, own) in REFERENCES.items():
         for boundary, (marker, colour, label) in KINDS.items():
             runs = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
             exact, measured = runs[f"exact_transition_{quantity}"], runs[f"transition_{quantity}"]
             ratio = measured / runs[f"{reference}_transition_{quantity}"]
-            look: Look = {"color": colour, "markeredgewidth": 0.5, "gid": f"{reference} {boundary}"}
-            if reference == "paper":
-                look |= {
-                    "markersize": 2.5,
-                    "markerfacecolor": "white",
-                    "label": f"{label}, over the paper's value",
-                }
-            else:
-                look |= {"markersize": 1.7, "zorder": 3.0, "label": f"{label}, over the exact one"}
-            axes.plot(exact, ratio, marker, **look)
+            look: Look = {"color": colour, "label": f"{label}, over the {name}"} | own
+            axes.plot(exact, ratio, marker, markeredgewidth=0.5, **look)
     symbol = SYMBOLS[quantity]
     axes.set(xscale="log", xlabel=f"exact ${symbol}$", ylabel=f"measured / predicted ${symbol}$")
 
@@ -73,7 +68,7 @@ def _draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
         look: Look = {"color": colour, "markersize": 2.5, "markerfacecolor": "none", "markeredgewidth": 0.5}
         axes.plot(spacing, error, marker, **look)
         largest, label = error.groupby(spacing).max(), f"${SYMBOLS[quantity]}$, largest"
-        axes.plot(largest.index, largest, marker=marker, color=colour, label=label, gid=f"refined {quantity}")
+        axes.plot(largest, marker=marker, color=colour, label=label)
     ends = spacing.agg(["min", "max"]).to_numpy()
     axes.plot(ends, 0.4 * ends, color=BLACK, linewidth=0.8, linestyle=":", label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
@@ -86,10 +81,10 @@ def _draw_gaussian(axes: Axes, rows: pd.DataFrame) -> None:
     """T_trans over the paper's pi/sqrt(gamma): uniform pre-stress, and with the Gaussian."""
     axes.axhline(1.0, color=BLACK, linewidth=0.6)
     line = rows[rows["gamma"].isna()]
-    axes.plot(line["left"], line["over_paper"], "--", color=BLACK, label="uniform", gid="uniform")
+    axes.plot(line["left"], line["over_paper"], "--", color=BLACK, label="uniform")
     for gamma, line in rows.groupby("gamma"):
-        look: Look = {"color": colour_scale("gamma").to_rgba(gamma), "gid": f"peak {gamma:g}"}
-        axes.plot(line["left"], line["over_paper"], label=rf"$\gamma = {gamma:g}$", **look)
+        look: Look = {"color": colour_scale("gamma").to_rgba(gamma), "label": rf"$\gamma = {gamma:g}$"}
+        axes.plot(line["left"], line["over_paper"], **look)
     axes.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
     axes.set_ylabel(r"exact $T_\mathrm{trans}\,\gamma^{1/2}/\pi$")
     axes.set_title(r"$\Gamma = 1$, $b = 0$, exact", loc="right")

@@ -92,8 +92,8 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     looks = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
     for (left, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
-        (style, marker), gid = looks[left], f"springs {left:g} {ratio:g}"
-        axes.plot(line["springs"], line["speed"], style, color=_colour(ratio), gid=gid)
+        style, marker = looks[left]
+        axes.plot(line["springs"], line["speed"], style, color=_colour(ratio))
         known = line.dropna(subset="speed")
         if len(known) < len(line):
             axes.plot(known["springs"].iloc[-1:], known["speed"].iloc[-1:], "x", color=_colour(ratio))
@@ -102,11 +102,8 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
     axes.plot([], [], "x", color=GREY, label="no front beyond")
     axes.plot([], [], "s", color=GREY, markerfacecolor="white", label="too narrow for the theory")
-    axes.set(
-        xscale="log", yscale="log", xlabel=r"leaf springs $\gamma\,\Delta x^2$", ylabel="front speed $v$"
-    )
     axes.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
-    few_ticks(axes.yaxis, (1, 1.5, 2, 3, 4, 5))
+    _speed_axis(axes, r"leaf springs $\gamma\,\Delta x^2$", (1, 1.5, 2, 3, 4, 5))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
 
 
@@ -115,26 +112,30 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
     lines = rows.groupby(["held", "fixed", "release"])
     for ((held, fixed, rule), group), marker in zip(lines, MARKERS, strict=False):
         line = group[group["role"] == "theory"].sort_values("dx")
-        gid, name = f"refined {held} {fixed:g} {rule}", rf"fixed ${names[held]} = {fixed:g}$, {rule}"
-        axes.plot(line["dx"], line["speed"], color=GREY, linewidth=0.8, gid=gid)
+        name = rf"fixed ${names[held]} = {fixed:g}$, {rule}"
+        look: Look = {"color": GREY, "linewidth": 0.8}
+        axes.plot(line["dx"], line["speed"], **look)
         _points(axes, group, "dx", "speed", marker)
-        axes.plot([], [], marker=marker, color=GREY, linewidth=0.8, label=name)
+        axes.plot([], [], marker=marker, label=name, **look)
     undamped = rows["undamped"].max()
     for value, style, name, side in ((limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")):
         axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=style)
-        look: Look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
+        look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
         axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
+    _speed_axis(axes, r"spacing $\Delta x$", (1.2, 1.5, 2, 2.5, 3))
     axes.set_ylim(0.88 * undamped, None)
-    few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
     axes.set_title(rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$", loc="right")
     axes.legend(loc="upper right")
+
+
+def _speed_axis(axes: Axes, xlabel: str, ticks: tuple[float, ...]) -> None:
+    axes.set(xscale="log", yscale="log", xlabel=xlabel, ylabel="front speed $v$")
+    few_ticks(axes.yaxis, ticks)
 
 
 def _points(axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None) -> None:
     """Simulated speeds in the colour of their damping ratio; open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
-        look: Look = {"color": _colour(ratio)} | ({} if sound else {"markerfacecolor": "white"})
-        label = label if sound else None
-        axes.plot(group[x], group[y], marker, gid="simulation", label=label, **look)
+        look: Look = {"label": label} if sound else {"markerfacecolor": "white"}
+        axes.plot(group[x], group[y], marker, color=_colour(ratio), **look)

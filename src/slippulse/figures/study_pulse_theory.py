@@ -48,12 +48,11 @@ def plot(table: pd.DataFrame) -> Figure:
         for left, rows in table[table["quantity"] == quantity].groupby("left"):
             colour = colour_scale("tau_0").to_rgba(left)
             line, runs = rows[rows["role"] == "theory"], rows[rows["role"] == "simulation"]
-            look: Look = {"color": colour, "label": rf"exact, $\tau_0 = {left:g}$" if len(line) else None}
-            axes.plot(line["damping_ratio"], line["over_paper"], gid=f"theory {left:g}", **look)
+            name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
+            axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
             for flagged, group in runs.groupby(runs["run_flags"].notna()):
-                look = {"markerfacecolor": "white"} if flagged else {}
-                over = group["value"] / group["paper"]
-                axes.plot(group["damping_ratio"], over, "o", color=colour, gid=f"simulation {left:g}", **look)
+                look: Look = {"color": colour} | ({"markerfacecolor": "white"} if flagged else {})
+                axes.plot(group["damping_ratio"], group["value"] / group["paper"], "o", **look)
         gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]
         axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", loc="right")
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula", xlim=(-0.02, None))
@@ -67,8 +66,8 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     for quantity, colour, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
-        label = QUANTITIES.get(quantity, "front speed")
-        axes.plot(line["dx"], error, marker=marker, color=colour, label=label, gid=quantity)
+        look: Look = {"color": colour, "label": QUANTITIES.get(quantity, "front speed")}
+        axes.plot(line["dx"], error, marker=marker, **look)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
     axes.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")

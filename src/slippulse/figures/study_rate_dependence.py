@@ -6,12 +6,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, new_panels
-from .style import as_given as table
-
-__all__ = ["NEEDS", "plot", "table"]
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, as_given, new_panels
 
 NEEDS = {"studies": ["rate_dependence"]}
+table = as_given
 
 REGIMES = {"pulse": (BLUE, "o"), "crack": (ORANGE, "s")}
 LINES: Look = {"color": BLACK, "linewidth": 1.0}
@@ -36,13 +34,11 @@ def plot(table: pd.DataFrame) -> Figure:
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     axes.fill_betweenx(limit["level"], -limit["over"], limit["over"], color=BLUE, alpha=0.12, linewidth=0.0)
     for sign, label in ((1.0, "exact"), (-1.0, None)):
-        axes.plot(sign * limit["over"], limit["level"], label=label, gid=f"limit {sign:g}", **LINES)
-    flags = runs["run_flags"].fillna("") != ""
+        axes.plot(sign * limit["over"], limit["level"], label=label, **LINES)
+    flags = runs["run_flags"].notna()
     for (regime, flagged), rows in runs.groupby(["regime", flags]):
         colour, marker = REGIMES[str(regime)]
-        look = SMALL | {"markerfacecolor": "white" if flagged else colour}
-        gid = f"{regime} {'flagged' if flagged else ''}".strip()
-        axes.plot(rows["over"], rows["level"], marker, color=colour, gid=gid, **look)
+        axes.plot(rows["over"], rows["level"], marker, color=colour, **OPEN if flagged else SMALL)
     for regime, (colour, marker) in REGIMES.items():
         axes.plot([], [], marker, color=colour, label=f"{regime}, lattice", **SMALL)
     if flags.any():
@@ -54,12 +50,10 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
 
 
 def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame) -> None:
-    for column, colour, marker, label in (
-        ("pulse_width", BLACK, "o", r"width $W_\mathrm{p}$"),
-        ("pulse_slip", GREY, "s", r"slip $u$"),
-    ):
-        axes.plot(steady["over"], steady[column], color=colour, label=label, gid=f"exact {column}")
-        axes.plot(runs["over"], runs[column], marker, color=colour, gid=f"lattice {column}", **OPEN)
+    sizes = {"pulse_width": (BLACK, "o", r"width $W_\mathrm{p}$"), "pulse_slip": (GREY, "s", r"slip $u$")}
+    for column, (colour, marker, label) in sizes.items():
+        axes.plot(steady["over"], steady[column], color=colour, label=label)
+        axes.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
     axes.set(xlabel=RATE, ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
     axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {runs['level'].iloc[0]:g}$; points: lattice", loc="right")
     axes.legend(loc="upper center")
@@ -68,8 +62,7 @@ def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame) -> None:
 def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": rows["slip_velocity"].max()}
     for regime, half in rows.groupby("regime"):
-        grid = half.pivot(index="position", columns="time", values="slip_velocity")
-        grid = grid.where(grid > 0.0)
+        grid = half.pivot(index="position", columns="time", values="slip_velocity").where(lambda v: v > 0.0)
         image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
         name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
         axes.text(0.04, 0.92 if regime == "crack" else 0.04, name, transform=axes.transAxes)
@@ -84,14 +77,10 @@ def _draw_arrest(axes: Axes, rows: pd.DataFrame, theory: pd.DataFrame) -> None:
     groups = rows.groupby("rate_strengthening")
     colours = matplotlib.colormaps["plasma"](np.linspace(0.0, 0.7, groups.ngroups))
     for colour, marker, (alpha, line) in zip(colours, "os^Dv", groups, strict=False):
-        look: Look = OPEN | {
-            "markersize": 3.0,
-            "label": rf"$\alpha = {alpha:g}$",
-            "gid": f"velocity {alpha:g}",
-        }
+        look: Look = OPEN | {"markersize": 3.0, "label": rf"$\alpha = {alpha:g}$"}
         axes.plot(line["time"], line["largest_velocity"], marker, color=colour, **look)
     line = theory[theory["rate_strengthening"] == theory["rate_strengthening"].min()]
-    axes.plot(line["time"], line["largest_velocity"], "--", label="diffusion", gid="diffusion", **LINES)
+    axes.plot(line["time"], line["largest_velocity"], "--", label="diffusion", **LINES)
     axes.set(xscale="log", yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity")
     axes.set_title(rf"$\Gamma = 0$, lattice, $\Delta x = {rows['dx'].iloc[0]:g}$", loc="right")
     axes.legend(loc="lower left")
