@@ -15,7 +15,7 @@ AXES = {
     "gamma": r"$\gamma$",
     "damping_ratio": r"$\beta/\Delta x$",
     "width": r"$W$",
-    "beyond": r"level beyond the step",
+    "beyond": "level beyond the step",
     "release": "release rule",
     "dx": r"$\Delta x$",
 }
@@ -23,11 +23,9 @@ PANELS, ROWS = 6, 2
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
-    """Every main number of every run.
-
-    Tables hold one sweep, measured and predicted. The numbers are `main_numbers` of each run with its flags, the axis
-    that takes most values (tau_0 for a level on both sides), x (its value) and the series by all others that vary,
-    empty where none does; a number that equals another one in every run is left out.
+    """`main_numbers` of each run of one sweep, measured and predicted, with its flags, the axis that takes most values
+    (tau_0 for a level on both sides), x (its value) and the series by all others that vary, empty where none does; a
+    number that equals another one in every run is left out.
     """
     (runs,) = tables.values()
     varying: list[str] = []
@@ -43,9 +41,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for _, run in runs.iterrows():
         values = {name: run[name] if isinstance(run[name], str) else f"{run[name]:g}" for name in others}
         series = ", ".join(f"{AXES[name]} = {value}" for name, value in values.items())
-        parts.append(
-            main_numbers(run).assign(run_flags=run["run_flags"], axis=axis, x=run[axis], series=series)
-        )
+        numbers = main_numbers(run).assign(run_flags=run["run_flags"])
+        parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
     new: list[pd.DataFrame] = []
     for _, group in pd.concat(parts).groupby("quantity", sort=False):
         if not any(np.array_equal(group["value"], other["value"]) for other in new):

@@ -20,20 +20,14 @@ class Picture(Figure):
 def plot(run: xr.Dataset) -> Picture:
     """Draw pre-stress, slip velocity over time and position with fronts and trailing edge, and the slip at the end.
 
-    Parameters
-    ----------
     run : what `slippulse.simulate` returned; its map is there if it was given ``samples``
 
-    Returns
-    -------
-    A figure; a notebook shows it, ``figure.savefig("name.png")`` writes it.
-
-    Raises
-    ------
-    TypeError
-        If it is not a run.
+    Returns a figure: a notebook shows it, ``figure.savefig("name.png")`` writes it.
+    Raises TypeError: if it is not a run (of a sweep, `slippulse.point` takes one).
     """
-    if not isinstance(run, xr.Dataset) or not _is_run(run):
+    drawn = ("prestress", "release_time", "stick_time", "slip")
+    known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
+    if not known or not all(name in run and run[name].dims == ("x",) for name in drawn):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
     # The house style is not forced on the figures of whoever calls.
     with matplotlib.rc_context():
@@ -64,9 +58,3 @@ def plot(run: xr.Dataset) -> Picture:
         slip.plot(run["slip"], run["x"], color=BLUE)
         slip.set_xlabel(r"slip $u$")
     return figure
-
-
-def _is_run(data: xr.Dataset) -> bool:
-    """Whether it has what is drawn: of a sweep, `slippulse.point` takes a run."""
-    drawn = ("prestress", "release_time", "stick_time", "slip")
-    return "end_time" in data.attrs and all(name in data and data[name].dims == ("x",) for name in drawn)

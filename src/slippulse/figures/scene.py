@@ -21,17 +21,8 @@ LARGEST = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
 
 
 def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
-    """Everything that the figure draws.
-
-    Parameters
-    ----------
-    run : one run with fronts, fields and samples
-    numbers : `shared.numbers.scene_numbers` of it
-    title : of the scene
-
-    Returns
-    -------
-    roles of `run_rows`; profile (series: field at the end); number (series: its quantity); title (series: the text)
+    """Roles of `run_rows` of a run with fields; profile (series: field at the end); number (series: its quantity), as
+    `shared.numbers.scene_numbers` has them; title (series: the text).
     """
     lower, upper = limits(run)
     x = run["x"].values
@@ -58,10 +49,8 @@ def plot(table: pd.DataFrame) -> Figure:
     roles = {str(role): rows for role, rows in table.groupby("role")}
     numbers = roles.get("number", table.iloc[:0])
     rows = math.ceil(len(numbers) / 2)
-    figure = new_figure(PAGE, 4.9 + 0.16 * rows)
-    upper, lower, text = figure.subfigures(
-        3, 1, squeeze=False, height_ratios=(3.1, 1.6, 0.2 + 0.16 * rows)
-    ).flat
+    figure, heights = new_figure(PAGE, 4.9 + 0.16 * rows), (3.1, 1.6, 0.2 + 0.16 * rows)
+    upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     draw_space_time(upper, roles)
     for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
         draw_end(axes, roles["profile"], numbers, field)

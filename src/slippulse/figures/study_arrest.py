@@ -24,10 +24,8 @@ OPEN: Look = {"markerfacecolor": "white"}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The left front's path, its last release, and when it has covered the fraction of the way that counts as arrest.
-
-    In units of |x_minus|: roles path (simulated at the finest spacing) and exact_path (time, to_go), and run (dx,
-    last_release, fraction_time, exact_fraction_time).
+    """In units of |x_minus|: roles path (of the left front at the finest spacing) and exact_path (time, to_go), and run
+    (dx, last_release, and fraction_time and exact_fraction_time of the fraction that counts as arrest).
     """
     runs = tables["arrest"]
     # The paper estimates the time of the transition by |x_minus|.
@@ -59,20 +57,15 @@ def plot(table: pd.DataFrame) -> Figure:
         handles.append(entry(f"$b$ = {ratio:g}", marker=marker, **look))
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
-        path_axes.plot(simulated["time"], simulated["to_go"], gid=f"simulation {ratio:g}", **PALE, **look)
-        path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, gid=f"theory {ratio:g}", **look)
+        path_axes.plot(simulated["time"], simulated["to_go"], **PALE, **look)
+        path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
         path_axes.plot(simulated["time"].iloc[-1:], simulated["to_go"].iloc[-1:], marker, **look)
         runs = rows[rows["role"] == "run"].sort_values("dx")
-        spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, gid=f"last {ratio:g}", **look)
-        fraction = OPEN | look | {"gid": f"fraction {ratio:g}"}
-        spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **fraction)
+        spacing_axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
+        spacing_axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN | look)
         spacing_axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
     fraction_label = f"{100.0 * table['fraction'].max():g} % of the way"
-    looks: dict[str, Look] = {
-        "simulation": PALE,
-        "exact": {"linewidth": 0.9},
-        "last release": {"marker": "o"},
-    }
+    looks = {"simulation": PALE, "exact": {"linewidth": 0.9}, "last release": {"marker": "o"}}
     looks |= {fraction_label: {"marker": "o"} | OPEN, "the same, exact": {"marker": "<"}}
     handles += [entry(label, color=GREY, **look) for label, look in looks.items()]
     legend_below(figure, handles, 5)

@@ -26,10 +26,8 @@ LEVELS = (0.2, 0.5, 0.8)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The lattices of the study, with interpolated maps and curves of exact depths and of the estimate.
-
-    Part "depth" as in the study; part "fine" exact at gamma = 1 on a fine grid; part "curve" exact and paper (the later
-    estimate) over the barrier's level at gamma = GAMMA.
+    """Part "depth" as in the study; interpolated parts "fine" (exact at gamma = 1) and "curve" (exact and paper, the
+    later estimate, over the barrier's level at gamma = GAMMA).
     """
     study = tables["barriers"]
     parts = [study[study["part"] == "depth"]]
@@ -41,8 +39,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             ("fine", x, 1.0, {"exact": 0.5}),
             ("curve", np.array(LEVELS), GAMMA, {"exact": 0.5, "paper": 1.0}),
         ):
-            level, barrier = np.meshgrid(levels, -np.exp(y), indexing="ij")
-            out = pd.DataFrame({"tau0": level.ravel(), "barrier": barrier.ravel()})
+            out = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"]).to_frame(
+                index=False
+            )
             for name, power in powers.items():
                 depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
                 depth = np.exp(_between(at[0], levels) @ np.log(depths) @ _between(at[1], y).T)
@@ -87,10 +86,10 @@ def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNo
     image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
     lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors=_ink(CONTOURS), linewidths=0.5)
     axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
-    look: Look = {"s": 26.0, "linewidths": 0.9, "gid": "lattice", "zorder": 3.0}
+    look: Look = {"s": 26.0, "linewidths": 0.9, "norm": scale, "cmap": MAP, "zorder": 3.0}
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
         depth = group["measured"] * np.sqrt(gamma)
-        look |= {"c": depth, "edgecolors": _ink(depth), "norm": scale, "cmap": MAP, "marker": marker}
+        look |= {"c": depth, "edgecolors": _ink(depth), "marker": marker}
         axes.scatter(group["tau0"], -group["barrier"], **look)
     axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\mathrm{b}$")
     few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
@@ -106,12 +105,11 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):
         colour = colour_scale("tau_0").to_rgba(tau0)
-        label, depth = rf"$\tau_0 = {tau0:g}$", -rows["barrier"]
-        axes.plot(depth, rows["exact"], color=colour, gid=f"exact {tau0:g}", label=label)
-        axes.plot(depth, rows["paper"], "--", color=colour, linewidth=0.8, gid=f"estimate {tau0:g}")
+        axes.plot(-rows["barrier"], rows["exact"], color=colour, label=rf"$\tau_0 = {tau0:g}$")
+        axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
         for gamma, found in finest[finest["tau0"] == tau0].groupby("gamma"):
-            look: Look = {"color": colour, "gid": f"lattice {tau0:g}"} | OPEN
-            axes.plot(-found["barrier"], found["measured"] * np.sqrt(gamma / GAMMA), markers[gamma], **look)
+            depth = found["measured"] * np.sqrt(gamma / GAMMA)
+            axes.plot(-found["barrier"], depth, markers[gamma], color=colour, **OPEN)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
         axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
@@ -119,7 +117,13 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
     axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
-    look = {"ncols": 2, "columnspacing": 0.6, "handletextpad": 0.3, "handlelength": 1.3, "fontsize": 7.0}
+    look: Look = {
+        "ncols": 2,
+        "columnspacing": 0.6,
+        "handletextpad": 0.3,
+        "handlelength": 1.3,
+        "fontsize": 7.0,
+    }
     axes.legend(loc="lower left", borderaxespad=0.2, **look)
 
 
@@ -129,8 +133,7 @@ def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
         look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
         for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
             line, label = line.sort_values("dx"), None if number else rf"$b = {ratio:g}$"
-            over = line["measured"] / line["exact"]
-            axes.plot(line["dx"], over, style, gid=f"lattice {ratio:g}", label=label, **look)
+            axes.plot(line["dx"], line["measured"] / line["exact"], style, label=label, **look)
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
     scenes = runs.groupby(["tau0", "barrier", "gamma"]).ngroups

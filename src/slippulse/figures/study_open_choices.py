@@ -32,16 +32,13 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     Over is deviation over tolerance, choice what matters most, release the rule, solution exact or lattice.
     """
-    rows = []
+    rows, names = [], ["id", "label", "verdict", "tolerance", "choice"]
     for claim in tables["claims"].to_dict("records"):
         if claim["kind"] in NUMERIC and claim["tolerance"]:
             for found in claim["choices"] or [{"deviation": claim["deviation"]}]:
-                rows.append(
-                    {name: claim[name] for name in ("id", "label", "verdict", "tolerance", "choice")}
-                    | {"deviation": found["deviation"], "release": found.get("release", "")}
-                    | {"solution": found.get("solution", "lattice")}
-                )
-    drawn = pd.DataFrame(rows).dropna(subset="deviation")
+                own = {name: claim[name] for name in names}
+                rows.append({"release": "", "solution": "lattice"} | found | own)
+    drawn = pd.DataFrame(rows)[[*names, "deviation", "release", "solution"]].dropna(subset="deviation")
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
@@ -52,13 +49,13 @@ def plot(table: pd.DataFrame) -> Figure:
     figure = new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
     axes = figure.subplots()
     axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
-    axes.axvline(1.0, color=BLACK, linewidth=0.8, gid="tolerance")
+    axes.axvline(1.0, color=BLACK, linewidth=0.8)
     for position, (id, _) in enumerate(farthest.index):
         for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):
             look = {"color": LOOKS.get(str(choice), LOOKS[""])["color"]} | MARKERS[str(solution)]
             over = np.maximum(rows["over"], LEAST)
             height = position + rows["release"].map(APART).fillna(0.0)
-            axes.plot(over, height, linestyle="none", gid=f"claim {id}", **look)
+            axes.plot(over, height, linestyle="none", **look)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)

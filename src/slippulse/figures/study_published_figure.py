@@ -36,12 +36,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         best = line.loc[line["chi2"].idxmin()]
         readings = profile.loc[profile["weight"] > 0.0, "reading"].drop_duplicates()
         rows = pd.DataFrame({"reading": readings, "pull": best[readings].to_numpy(float)})
-        kept = line[::KEPT][[*names, "tau0_error", "gamma_error"]]
+        kept = line.loc[::KEPT, [*names, "tau0_error", "gamma_error"]]
         parts.append(kept.assign(part="curve", release=release))
         parts.append(rows.assign(part="best", release=release, **best[names]))
     scene = settings["simulations"]["space_time_displacement"]
-    ours = {"tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
-    return pd.concat([*parts, pd.DataFrame([{"part": "ours", **ours}])], ignore_index=True)
+    ours = {"part": "ours", "tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
+    return pd.concat([*parts, pd.DataFrame([ours])], ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -51,7 +51,7 @@ def plot(table: pd.DataFrame) -> Figure:
     _draw_chi2(axes["a"], table)
     _draw_region(axes["b"], table, "tau0", r"pre-stress $\tau_0$")
     _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\gamma$")
-    _draw_pulls(axes["d"], table[table["part"] == "best"])
+    _draw_pulls(axes["d"], table)
     for name, panel in axes.items():
         panel_letter(panel, name)
     return figure
@@ -82,9 +82,9 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
     top = 1.75 * accepted
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
     label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
-    look: Look = {"color": LOOKS["total"][0], "markersize": 4.5, "label": label}
+    look: Look = {"color": LOOKS["total"][0], "markersize": 4.5, "clip_on": False}
     # Far above the axes, to which the marker points.
-    axes.plot(notebook["damping_ratio"].iloc[0], top, "^", clip_on=False, **look)
+    axes.plot(notebook["damping_ratio"].iloc[0], top, "^", label=label, **look)
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
     look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
     axes.text(0.98, accepted, f"5 % at {dof} degrees of freedom", **look)
@@ -103,8 +103,7 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
             ends = inside["damping_ratio"], inside[name] - half, inside[name] + half
             axes.fill_between(*ends, color=colour, alpha=alpha, linewidth=0.0, gid=f"{release} {level:g}")
-        look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
-        axes.plot(best["damping_ratio"], best[name], marker, **look)
+        axes.plot(best["damping_ratio"], best[name], marker, color=colour, mec="white", markersize=4.5)
     ours = table[table["part"] == "ours"].iloc[0]
     axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     if name == "tau0":
@@ -115,13 +114,13 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
     axes.set(xlim=(0.045, 0.3), ylabel=label)
 
 
-def _draw_pulls(axes: Axes, best: pd.DataFrame) -> None:
+def _draw_pulls(axes: Axes, table: pd.DataFrame) -> None:
     """What the best fits leave of each reading, in units of its error."""
     axes.axhspan(-1.0, 1.0, color="0.92")
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
-        rows = best[best["release"] == release]
-        axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label, gid=release)
+        rows = _of(table, "best", release)
+        axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
     labels = [NAMES.get(name, rf"edge, $t = {name.rpartition('_')[2]}$") for name in rows["reading"]]
     axes.set_xticks(np.arange(len(labels)), labels, rotation=35, ha="right", rotation_mode="anchor")
     axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")

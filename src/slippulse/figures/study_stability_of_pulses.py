@@ -22,16 +22,12 @@ LEAST = 0.03
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Slip left behind over the distance from the step (Gamma = 1), largest velocity over time (Gamma = 0).
-
-    Of each level beyond the step role exact (as the study has it) and lattice (x: distance beyond the step, slip), and
-    velocity (time, largest_velocity ahead of the nucleation point, step: its position).
+    """Of each level beyond the step role exact (as the study has it), lattice (Gamma = 1; x: distance beyond the step,
+    slip left behind) and velocity (Gamma = 0; time, largest_velocity right of the nucleation, step: its position).
     """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
-    across, beyond = (
-        [point(data[name], i) for i in range(data[name].sizes["point"])] for name in NEEDS["data"]
-    )
+    across, beyond = ([point(runs, i) for i in range(runs.sizes["point"])] for runs in data.values())
     for run in across:
         position, level = prestress_from(run.attrs).steps[-1]
         x = run["x"].values - position
@@ -59,13 +55,10 @@ def plot(table: pd.DataFrame) -> Figure:
         colour = colour_scale("tau_0").to_rgba(level)
         _draw_level(slip_axes, rest_axes, rows.sort_values("x"), colour, f"{level:g}")
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    handles = slip_axes.get_legend_handles_labels()[0]
-    lattice = {"marker": "o", "markersize": 2.5, "markerfacecolor": "white"}
-    handles += [
-        entry("exact", color=GREY),
-        entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", color=GREY, **lattice),
-        entry("finite memory", color=GREY, marker="|", markersize=7.0),
-    ]
+    handles = [*slip_axes.get_legend_handles_labels()[0], entry("exact", color=GREY)]
+    lattice: Look = {"color": GREY, "marker": "o", "markersize": 2.5, "markerfacecolor": "white"}
+    handles.append(entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", **lattice))
+    handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
     legend_below(figure, handles, 4)
@@ -83,20 +76,18 @@ def plot(table: pd.DataFrame) -> Figure:
 def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str) -> None:
     exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    look: Look = {"label": rf"$\tau_0 = {level}$ beyond", "gid": f"exact {level}"}
-    slip_axes.plot(exact["x"], exact["slip"], color=colour, **look)
+    slip_axes.plot(exact["x"], exact["slip"], color=colour, label=rf"$\tau_0 = {level}$ beyond")
     marks = lattice.iloc[::MARKED]
-    look = {"markersize": 1.8, "markerfacecolor": "white", "markeredgewidth": 0.5, "gid": f"slip {level}"}
-    slip_axes.plot(marks["x"], marks["slip"], "o", color=colour, **look)
-    look = {"markersize": 9.0, "markeredgewidth": 1.2, "gid": f"memory {level}"}
-    slip_axes.plot(memory, steady, "|", color=colour, **look)
+    look: Look = {"color": colour, "markerfacecolor": "white"}
+    slip_axes.plot(marks["x"], marks["slip"], "o", markersize=1.8, markeredgewidth=0.5, **look)
+    slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
     # From the memory on the exact rest is 0.
     exact = exact[(exact["x"] > 0.0) & ((exact["x"] <= memory) | (exact["x"].shift() <= memory))]
     marks = marks[marks["x"] > 0.0]
-    for part, line, name in ((exact, "-", "rest"), (marks, "o", "lattice rest")):
+    look |= {"linewidth": 1.0, "markersize": 2.2, "markeredgewidth": 0.6}
+    for part, line in ((exact, "-"), (marks, "o")):
         rest = np.maximum(np.abs(part["slip"] / steady - 1.0), ROUNDING)
-        look = {"linewidth": 1.0, "markersize": 2.2, "markerfacecolor": "white", "markeredgewidth": 0.6}
-        rest_axes.plot(part["x"] / memory, rest, line, color=colour, gid=f"{name} {level}", **look)
+        rest_axes.plot(part["x"] / memory, rest, line, **look)
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
@@ -104,15 +95,14 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     rows = rows[rows["largest_velocity"] > 0.0]
     for level, line in rows.groupby("level"):
         colour = style.GREEN if level < 0.0 else style.PURPLE if level > 0.0 else style.YELLOW
-        look: Look = {"markersize": 2.0, "linewidth": 0.8, "gid": f"velocity {level:g}"}
-        axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, **look)
+        axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, markersize=2.0, linewidth=0.8)
         # Where the line ends or leaves the panel; velocities fall with time there.
         seen, below = line[line["largest_velocity"] > LEAST], line[line["largest_velocity"] <= LEAST]
         at = tuple(seen[["time", "largest_velocity"]].iloc[-1])
         if len(below):
             two = pd.concat([below.iloc[:1], seen.iloc[-1:]])
             at = np.interp(np.log(LEAST), np.log(two["largest_velocity"]), two["time"]), 1.15 * LEAST
-        look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 7.0}
+        look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 7.0}
         axes.annotate(setting(level), at, color=BLACK, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")

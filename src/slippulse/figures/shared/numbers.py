@@ -38,19 +38,10 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
-    """The main numbers of a scene with their uncertainty.
-
-    Parameters
-    ----------
-    run : its measured and predicted numbers; the theory of steady pulses applies to a steady one alone (pulse_state)
-    study : its grid study
-
-    Returns
-    -------
-    as `main_numbers`, with uncertainty, and promised and kept where an accuracy is promised
-    """
+    """`main_numbers` of a scene with their uncertainty by its grid study, and promised and kept where that has them."""
     found = main_numbers(run)
     quantity = found["quantity"]
+    # The theory of steady pulses applies to a steady one alone.
     if run.get("pulse_state") != "steady":
         found.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
     # The balance of the pre-stress is computed for the Gaussian and its levels alone.
