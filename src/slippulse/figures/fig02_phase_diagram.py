@@ -14,12 +14,11 @@ from .style import BLACK, GREY, PAGE, Look, entry, legend_below, new_figure, pan
 NEEDS = {
     "measured": ["regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress"],
     "predicted": {
-        "regimes_displacement": ["final_regime"],
-        "regimes_displacement_asymmetric": ["final_regime"],
+        "regimes_displacement": ["final_regime"], "regimes_displacement_asymmetric": ["final_regime"],
         "regimes_stress": ["final_regime"],
     },
     "studies": ["regime_plane"],
-}
+}  # fmt: skip
 
 BOUNDARIES = {"displacement": r"$\Gamma = 1$, any $\gamma$", "stress": r"$\Gamma = 0$"}
 # Colour of each regime, and its name in the planes.
@@ -60,8 +59,7 @@ def plot(table: pd.DataFrame) -> Figure:
     numbers = {tuple(rows[["boundary", "regime"]].iloc[0]): NUMBERS[i] for i, rows in enumerate(profiles)}
     for axes, letter, boundary in zip(planes.subplots(1, 2), "ab", BOUNDARIES, strict=True):
         rows = table[table["boundary"] == boundary]
-        regimes = LOOKS.items()
-        names = {name: f"{numbers.get((boundary, name), '')} {label}".strip() for name, (_, label) in regimes}
+        names = {name: f"{numbers.get((boundary, name), '')} {LOOKS[name][1]}".strip() for name in LOOKS}
         draw_plane(axes, rows[rows["role"].isin(["area", "line"])], names)
         for run in rows[rows["role"] == "run"].itertuples():
             # Open where it is not the regime of the area, crossed out where flagged.
@@ -72,13 +70,11 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_title(BOUNDARIES[boundary], fontsize=9)
         panel_letter(axes, letter)
     draw_profiles(strips, profiles)
-    looks: dict[str, Look] = {
-        "simulation, in the colour of its regime": {"marker": "o", "markerfacecolor": GREY},
-        "not settled by its end": {"marker": "o", "markerfacecolor": "white"},
-    }
+    faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
+    handles = [entry(label, marker="o", markerfacecolor=face, **MARK) for label, face in faces.items()]
     if table.loc[table["role"] == "run", "run_flags"].notna().any():
-        looks["flagged"] = {"marker": "x"}
-    legend_below(figure, [entry(label, **MARK | look) for label, look in looks.items()], 3)
+        handles.append(entry("flagged", marker="x", **MARK))
+    legend_below(figure, handles, 3)
     return figure
 
 
@@ -118,7 +114,7 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
         levels = [setting(rows[side].iloc[0]) for side in ("left", "right")]
         shape = rows["slip_velocity"] / rows["slip_velocity"].max()
         axes.fill_between(rows["x"], shape, color=tint(colour), linewidth=0.0)
-        axes.plot(rows["x"], shape, color=colour, gid="profile")
+        axes.plot(rows["x"], shape, color=colour)
         gamma = int(rows["boundary"].iloc[0] == "displacement")
         label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(levels)}"
         axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top", fontsize=8.0)

@@ -21,6 +21,7 @@ NEEDS = {
 }
 
 PANELS = {"displacement": "a", "stress": "b"}
+COLUMNS = ["role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -42,8 +43,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         if panel == "stress":
             found.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
         parts.append(pd.concat(found).assign(panel=panel))
-    columns = ["panel", "role", "series", "time", "position", "value"]
-    return pd.concat(parts, ignore_index=True)[columns]
+    return pd.concat(parts, ignore_index=True)[["panel", *COLUMNS]]
 
 
 def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
@@ -58,11 +58,11 @@ def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
         distance, length = numbers["last_release_distance"], numbers["last_release_length"]
         ends.append(("last_release", numbers["last_release_time"], -distance, length - distance, length))
     rows = [
-        {"role": role, "series": series, "time": time, "position": position, "value": length}
+        (role, series, time, position, length)
         for role, time, left, right, length in ends
         for series, position in (("left", left), ("right", right))
     ]
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=COLUMNS)
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -71,9 +71,8 @@ def plot(table: pd.DataFrame) -> Figure:
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
     panels: dict[str, str] = {}
-    for side, (panel, letter) in zip(
-        figure.subfigures(2, 1, squeeze=False).flat, PANELS.items(), strict=True
-    ):
+    sides = figure.subfigures(2, 1, squeeze=False).flat
+    for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.3, 1.0))
         roles = {str(role): rows for role, rows in table[table["panel"] == panel].groupby("role")}
         draw_profile(profile, roles["prestress"])
@@ -85,7 +84,7 @@ def plot(table: pd.DataFrame) -> Figure:
         when = "first stick"
         if "fraction" in roles:
             when = rf"left front at {100.0 * roles['fraction']['value'].iloc[0]:g} % of its way to $x_-$"
-        side.suptitle(rf"{description(roles)}" + "\n" + rf"$T_\mathrm{{trans}}$: {when}", fontsize=9.0)
+        side.suptitle(f"{description(roles)}\n" + rf"$T_\mathrm{{trans}}$: {when}", fontsize=9.0)
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             handles[label], panels[label] = handle, panels.get(label, "") + letter
     for label, colour in (("not yet slipped", "white"), ("stuck again", STUCK)):
@@ -100,11 +99,10 @@ def plot(table: pd.DataFrame) -> Figure:
 
 def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     """Exact edges, arrows of T_trans and L_trans, the paper's estimate and the last release on the left."""
+    look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
-            rows = roles[role].sort_values("position")
-            look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
-            axes.plot(rows["time"], rows["position"], label=label, gid=role, **look)
+            axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
     # A run that is too short for its transition has none to draw.
     if np.isfinite(roles["measured"]["time"]).all():
         draw_arrows(axes, roles["measured"].set_index("series"))
@@ -114,7 +112,7 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     if "last_release" in roles:
         # Under a stress boundary the paper's estimate of the time is the way of the left front, |x_-|.
         limit = -float(paper["time"].iloc[0])
-        axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9, gid="x_-")
+        axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
         axes.text(0.02 * axes.get_xlim()[1], limit, "$x_-$", va="bottom", fontsize=8.5, zorder=4.0)
         left = roles["last_release"].iloc[:1]
         axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)
@@ -128,15 +126,14 @@ def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
     axes.set_ylim(low - 0.04 * (high - low), high)
     arrow = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9, "mutation_scale": 8.0}
     axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
+    end = axes.get_xlim()[1]
     for name, value, height, start, stop in (
         ("T", time, low, (0.0, low), (time, low)),
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
-        text = rf"${name}_\mathrm{{trans}} = {value:#.3g}$"
-        end = axes.get_xlim()[1]
-        look: Look = {"x": time + 0.025 * end}
+        look: Look = {"x": time + 0.025 * end, "s": rf"${name}_\mathrm{{trans}} = {value:#.3g}$"}
         if name == "T" and time > 0.45 * end:
             # On a long arrow, away from what is marked beyond it.
-            look = {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
-        axes.text(y=height, s=text, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0, **look)
+            look |= {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
+        axes.text(y=height, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0, **look)

@@ -50,15 +50,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
     """Rows of one run, with one block more on each side than is shown: their springs reach in."""
     low, high = window(run)
-    shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
-    x = shown["sample_position"].values
-    tau, parts = prestress_from(run.attrs)(x), []
+    shown, parts = run.sel(sample_position=slice(low - 1.5, high + 1.5)), []
+    x, times = shown["sample_position"].values, shown["sample_time"].values
+    tau = prestress_from(run.attrs)(x)
     for row, (instant, at) in enumerate(instants(run)):
-        slip, velocity = shown["sample_slip"].values[at], shown["sample_velocity"].values[at]
-        moved = np.where(slip > 0.0, "stuck after sliding", "at rest")
+        slip, velocity = (shown[key].values[at] for key in ("sample_slip", "sample_velocity"))
         frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity, "prestress": tau})
-        frame["state"] = np.where(velocity > 0.0, "sliding", moved)
-        parts.append(frame.assign(row=row, instant=instant, time=float(run["sample_time"].values[at])))
+        frame["state"] = np.select(
+            [velocity > 0.0, slip > 0.0], ["sliding", "stuck after sliding"], "at rest"
+        )
+        parts.append(frame.assign(row=row, instant=instant, time=times[at]))
     rows = pd.concat(parts, ignore_index=True)
     closer = float(-rows.groupby("row")["slip"].diff().min())
     rows["scale"] = min(FARTHEST / rows["slip"].max(), (1.0 - SHORTEST) * (1.0 - BLOCK) / closer)
@@ -112,9 +113,9 @@ def plot(table: pd.DataFrame) -> Figure:
         panel_letter(strip, letter)
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
     handles = [entry(name, markerfacecolor=colour, **square) for name, colour in COLOURS.items()]
-    square |= {"markeredgecolor": BLACK, "markeredgewidth": 1.8}
-    framed = entry("never released: stops the left front", markerfacecolor="none", **square)
-    legend_below(figure, [*handles, framed], 4)
+    square |= {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
+    handles.append(entry("never released: stops the left front", **square))
+    legend_below(figure, handles, 4)
     return figure
 
 
@@ -123,7 +124,7 @@ def draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.bar(rows["x"], rows["prestress"], width=BLOCK, color=GREY)
     axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    lowest, ticks = min(0.0, float(rows["prestress"].min())), {0.0, 1.0, float(rows["left"].iloc[0])}
+    lowest, ticks = min(0.0, rows["prestress"].min()), {0.0, 1.0, rows["left"].iloc[0]}
     axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
     axes.tick_params(axis="x", length=0, labelbottom=False)
     axes.tick_params(axis="y", labelsize=7)
@@ -148,9 +149,13 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
             axes.add_collection(LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs"))
         for now, block in zip(centre, state.itertuples(), strict=True):
             colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
-            patch = Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)
-            patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
-            axes.add_patch(patch)
+            look = {
+                "facecolor": COLOURS[block.state],
+                "edgecolor": colour,
+                "linewidth": width,
+                "gid": block.state,
+            }
+            axes.add_patch(Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, **look))
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
         axes.text(low - 0.2, base + 0.5 * HEIGHT, text, ha="right", va="center", fontsize=8)
     top = (PLATE if leaf else HEIGHT) + 0.08
@@ -161,11 +166,10 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.spines[["left", "right", "top"]].set_visible(False)
 
 
-def coil(start: float, end: float, y: float, turns: int = 4, size: float = 0.1) -> np.ndarray:
+def coil(start: float, end: float, y: float) -> np.ndarray:
     """A coil spring from ``start`` to ``end`` at height ``y``, as a zigzag."""
-    x = np.linspace(start, end, 2 * turns + 3)
-    offset = size * (-1.0) ** np.arange(x.size - 2)
-    return np.column_stack([x, y + np.pad(offset, 1)])
+    offset = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
+    return np.column_stack([np.linspace(start, end, offset.size), y + offset])
 
 
 def bow(x_top: float, y_top: float, x_bottom: float, y_bottom: float) -> np.ndarray:

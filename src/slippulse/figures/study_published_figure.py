@@ -103,7 +103,8 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
             ends = inside["damping_ratio"], inside[name] - half, inside[name] + half
             axes.fill_between(*ends, color=colour, alpha=alpha, linewidth=0.0, gid=f"{release} {level:g}")
-        axes.plot(best["damping_ratio"], best[name], marker, color=colour, mec="white", markersize=4.5)
+        look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
+        axes.plot(best["damping_ratio"], best[name], marker, **look)
     ours = table[table["part"] == "ours"].iloc[0]
     axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
     if name == "tau0":

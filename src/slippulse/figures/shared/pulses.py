@@ -41,16 +41,18 @@ POINTS, DIGITS, AHEAD, BEHIND = 300, 4, 0.08, 0.25
 PALE: Look = {"linewidth": 2.6, "alpha": 0.3}
 # The paper's scales of FIELDS, as its predictions name them.
 SCALES = ("slip", "peak_velocity", "acceleration")
+# Left and lower end, width and height, as fractions of a panel.
+Box = tuple[float, float, float, float]
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
 def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Simulated pulses of each sweep at some of its levels, and the exact one of each run.
+    """Simulated pulses of each sweep at some of its levels, and the exact one of each run; panel is the boundary.
 
     Role "run" has the parameters, roles "simulation" and "exact" are over x, both in units of the scales: width, slip,
     velocity and acceleration of the paper's pulse under a displacement boundary; under a stress boundary the width of
     the Gaussian, largest slip and velocity of the exact pulse far from nucleation, and that velocity over that width,
-    since its acceleration has no bound. Panel is the boundary.
+    since its acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
     profiles = tables["pulse_profiles"].groupby("simulation")
@@ -124,24 +126,21 @@ def plot_fields(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_prestress(
-    axes: Axes, table: pd.DataFrame, box: tuple[float, float, float, float], widths: float
-) -> None:
+def draw_prestress(axes: Axes, table: pd.DataFrame, box: Box, widths: float) -> None:
     """The pre-stress of the runs in an inset, over some widths of the widest Gaussian."""
     runs, look = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"]), looks(table)
-    colours = [look[run][0] for run in runs["run"]]
-    prestress_inset(axes, box, runs, colours, widths)
+    prestress_inset(axes, box, runs, [look[run][0] for run in runs["run"]], widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
     """Legend of one boundary: what the colours and the line styles of the exact pulses are, and what is pale."""
     runs, look = table[table["role"] == "run"].set_index("run"), looks(table)
     _, other, symbol, other_symbol = LOOKS[table["panel"].iloc[0]]
-    levels, others = (runs.drop_duplicates(column).sort_values(column) for column in ("left", other))
-    found = [entry(rf"${symbol} = {row['left']:g}$", color=look[run][0]) for run, row in levels.iterrows()]
-    for run, row in others.iterrows():
-        name = rf"exact, ${other_symbol} = {row[other]:g}$"
-        found.append(entry(name, color=BLACK, linewidth=0.8, linestyle=look[run][1]))
+    levels, others = (runs[column].drop_duplicates().sort_values() for column in ("left", other))
+    found = [entry(rf"${symbol} = {level:g}$", color=look[run][0]) for run, level in levels.items()]
+    for run, value in others.items():
+        name, line = rf"exact, ${other_symbol} = {value:g}$", look[run][1]
+        found.append(entry(name, color=BLACK, linewidth=0.8, linestyle=line))
     return [*found, entry("simulation", color=BLACK, **PALE)]
 
 
@@ -153,15 +152,12 @@ def conditions(table: pd.DataFrame) -> str:
     return rf"$\Gamma = {int(held)}$, ${symbol} = {values}$"
 
 
-def prestress_inset(
-    axes: Axes, box: tuple[float, float, float, float], runs: pd.DataFrame, colours: Sequence, widths: float
-) -> None:
+def prestress_inset(axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float) -> None:
     """Profiles of pre-stress of some runs in a box of a panel, over some widths of the widest Gaussian."""
     inset = axes.inset_axes(box)
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
-    for (_, run), colour in zip(runs.iterrows(), colours, strict=True):
-        tau = Prestress(run["left"], run["right"], run["width"])(x)
-        inset.plot(x, tau, color=colour, linewidth=0.8)
+    for run, colour in zip(runs.itertuples(), colours, strict=True):
+        inset.plot(x, Prestress(run.left, run.right, run.width)(x), color=colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
     inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=2.5)
     inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)

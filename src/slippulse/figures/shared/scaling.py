@@ -23,10 +23,8 @@ def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """One row a run: parameters, length and time as measured, by the paper, and exact."""
     runs = pd.concat(tables.values(), ignore_index=True)
     kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
-    sources = [(source, quantity) for quantity in SYMBOLS for source in ("", "paper_", "exact_")]
-    return runs[kept].assign(
-        **{source + name: runs[f"{source}transition_{name}"] for source, name in sources}
-    )
+    kept += [f"{source}transition_{name}" for name in SYMBOLS for source in ("", "paper_", "exact_")]
+    return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
 
 
 def chosen(values: pd.Series, count: int) -> np.ndarray:
@@ -41,14 +39,12 @@ def colours(runs: pd.DataFrame, column: str) -> np.ndarray:
     return colour_scale(quantity).to_rgba(runs[column].to_numpy())
 
 
-def draw_ratio(
-    axes: Axes, runs: pd.DataFrame, quantity: str, across: str, colour: str, marker: str, line: str = "-"
-) -> None:
+def draw_ratio(axes: Axes, runs: pd.DataFrame, quantity: str, across: str, colour: str, marker: str) -> None:
     """Length or time over the predicted one across a column: exact theory as lines, runs as markers."""
     for _, group in runs.groupby(colour):
         group = group.sort_values(across)
         exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
-        axes.plot(group[across], exact, line, color=colours(group, colour)[0], linewidth=0.8, gid="exact")
+        axes.plot(group[across], exact, color=colours(group, colour)[0], linewidth=0.8)
     _scatter(axes, runs, runs[across], runs[quantity] / runs[f"paper_{quantity}"], marker, colour, zorder=3)
 
 
@@ -71,7 +67,7 @@ def _scatter(
     own: Look = {"s": 9.0, "linewidths": 0.0, "marker": marker} | look
     if flagged.any():
         grey = own | {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
-        axes.scatter(x[flagged], y[flagged], gid="flagged", **grey)
+        axes.scatter(x[flagged], y[flagged], **grey)
     own |= {"c": colours(sound, face), "edgecolors": colours(sound, rim) if rim else "none"}
     axes.scatter(x[~flagged], y[~flagged], gid="runs", **own)
 

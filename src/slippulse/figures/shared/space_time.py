@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
-from ..style import BLACK, GREY, VELOCITY_MAP
+from ..style import BLACK, GREY, VELOCITY_MAP, Look
 
 # Samples kept along each axis of a map, and blocks along each front.
 MAP_SAMPLES, FRONT_POINTS = 121, 400
@@ -24,9 +24,7 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
     """Everything that a map of a run with fronts and samples shows: role, series, time, position, value.
 
-    Roles: parameter (series: its name), flag (series: the flags), map (value: slip velocity where it is not 0) and
-    largest (value: the largest of them), prestress, front and trailing (time of first release and of last stick, NaN
-    where never).
+    Roles: parameter (series: its name), flag (series: the flags), and those of the parts below.
     """
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     if run.attrs["run_flags"]:
@@ -131,9 +129,8 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
     times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
     dt, dx = np.diff(times)[0], np.diff(positions)[0]
     extent = (times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2)
-    image = axes.imshow(grid, VELOCITY_MAP, origin="lower", extent=extent, interpolation="bilinear", vmin=0.0)
-    image.set_clim(vmax=roles["largest"]["value"].iloc[0])
-    axes.set_aspect("auto")
+    look: Look = {"origin": "lower", "extent": extent, "interpolation": "bilinear", "aspect": "auto"}
+    image = axes.imshow(grid, VELOCITY_MAP, vmin=0.0, vmax=roles["largest"]["value"].iloc[0], **look)
     draw_edges(axes, roles, times[-1])
     return image
 
@@ -156,5 +153,4 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
         axes.fill_betweenx(x, stick, end + beyond, color=STUCK, linewidth=0.0, zorder=1.4)
-        dashes = (0, (3, 1.5))
-        axes.plot(stick, x, color=BLACK, linewidth=0.8, linestyle=dashes, label="trailing edge")
+        axes.plot(stick, x, color=BLACK, linewidth=0.8, linestyle=(0, (3, 1.5)), label="trailing edge")
