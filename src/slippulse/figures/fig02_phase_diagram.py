@@ -38,9 +38,8 @@ DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regim
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The study of the planes, and some runs of the sweeps (role run), those with leaf springs at the largest gamma.
-
-    Regime is the one at the end of the run, exact_regime the one that it ends in by exact theory.
+    """The study of the planes, and some runs (role run), those with leaf springs at the largest gamma. Regime is the
+    one at the end of the run, exact_regime the one that it ends in by exact theory.
     """
     parts = [tables["regime_plane"]]
     for name, count in DRAWN.items():

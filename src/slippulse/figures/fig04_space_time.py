@@ -25,11 +25,9 @@ COLUMNS = ["role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The first run of both sweeps (panel: the boundary), as `run_rows` has it, and further roles.
-
-    Exact_front and exact_trailing; measured, paper and last_release (the transition: its time, positions of the left
-    and right front then; value: the length); fraction (value: of |x_minus| that the left front has covered at T_trans
-    under a stress boundary).
+    """`run_rows` of the first run of both sweeps (panel: the boundary); exact_front and exact_trailing; measured, paper
+    and last_release (the transition: its time, positions of the left and right front then; value: the length); fraction
+    (value: of |x_minus| that the left front has covered at T_trans under a stress boundary).
     """
     parts = []
     for panel in PANELS:

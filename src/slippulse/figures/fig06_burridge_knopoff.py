@@ -38,10 +38,9 @@ TITLES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """State of the blocks at a few instants of the first run of each sweep, one row a panel, instant and block.
-
-    X is the position at rest, arresting_block the first one that the left front never releases, scale the drawn
-    displacement over slip. Source: the paper's discussion of the Burridge-Knopoff model.
+    """The first run of each sweep, one row a panel, instant and block: x is the position at rest, arresting_block the
+    first one that the left front never releases, scale the drawn displacement over slip. Source: the paper's discussion
+    of the Burridge-Knopoff model.
     """
     parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PITCH]
     return pd.concat(parts, ignore_index=True)

@@ -27,9 +27,7 @@ COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx", "
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Simulated speeds with theory joined to each, and lines of theory.
-
-    Role theory is the study front_law; role simulation has speed, theory (but for refined), undamped (the paper's
+    """Role theory is the study front_law; role simulation has speed, theory (but for refined), undamped (the paper's
     formula) and sound (whether theory should hold); each of panel prestress, springs or refined.
     """
     lines = tables["front_law"].assign(role="theory")

@@ -28,9 +28,8 @@ APART = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """A row of each claim at each combination, or at the one that there is.
-
-    Over is deviation over tolerance, choice what matters most, release the rule, solution exact or lattice.
+    """A row of each claim at each combination, or at the one that there is: over is deviation over tolerance, choice
+    what matters most, release the rule, solution exact or lattice.
     """
     rows, names = [], ["id", "label", "verdict", "tolerance", "choice"]
     for claim in tables["claims"].to_dict("records"):

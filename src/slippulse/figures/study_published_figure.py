@@ -24,10 +24,9 @@ NAMES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The study with interpolated curves of the best trials.
-
-    By release rule part "curve" (damping_ratio, dx, tau0, gamma, their errors, chi2) and part "best" (one row a
-    reading: pull, with the parameters that fit best); part "ours": the scene of our space-time figure, of the settings.
+    """The study, and by release rule interpolated part "curve" (damping_ratio, dx, tau0, gamma, their errors, chi2) and
+    part "best" (one row a reading: pull, with the parameters that fit best); part "ours": the scene of our space-time
+    figure.
     """
     study = tables["published_figure"]
     parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]

@@ -20,9 +20,8 @@ MARKERS = ("o", "s", "^", "D")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Peak velocity, width and slip of each simulated pulse with theory, and theory over the damping ratio.
-
-    Role simulation has value, theory and paper, theory over_paper, refined value over dx, and theory: the limit.
+    """Of each quantity role simulation (value, theory and paper), theory (over_paper) and refined (value over dx, and
+    theory: the limit).
     """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     lines = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})

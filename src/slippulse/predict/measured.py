@@ -74,10 +74,9 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
 
 
 def shape_deviation(run: xr.Dataset, pulse: LeadingPulse) -> float:
-    """Largest distance of the right pulse's slip velocity from the paper's cosine, over its peak, the peaks aligned.
-
-    Two blocks at each end of the cosine are left out, where the lattice rounds its corner. NaN without a pulse, or
-    where the paper has none. Source: equations (9) and (C10) of the paper.
+    """Largest distance of the right pulse's slip velocity from the paper's cosine, equations (9) and (C10), over its
+    peak, the peaks aligned; NaN where there is none. Two blocks at each end of the cosine are left out, where the
+    lattice rounds its corner.
     """
     tau = run.attrs["right"]
     if run.attrs["boundary"] != "displacement" or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:

@@ -14,10 +14,9 @@ from .numbers import NAN, known, level, or_nan, ratio
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
     """exact_transition_time and _length; of a displacement boundary exact_first_stick_time; of a stress boundary
-    exact_balance_distance, and exact_largest_velocity and exact_half_width of the far pulse.
-
-    Settings: share, of |x_minus| that the left front has covered at T_trans under a stress boundary. Source: `theory`;
-    but for the balance, for a Gaussian of peak 1 without steps and bumps.
+    exact_balance_distance, and exact_largest_velocity and exact_half_width of the far pulse. Settings: share, of
+    |x_minus| that the left front has covered at T_trans under a stress boundary. Source: `theory`; but for the balance,
+    for a Gaussian of peak 1 without steps and bumps.
     """
     rows = []
     for scene in scenes:
@@ -62,9 +61,8 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
 
 
 def _half_width(crack: ArrestingCrack) -> float:
-    """Width of the far pulse at half of its peak.
-
-    Source: du/dt is half the integral of tau from the entry point on, on each side of its zero (`ArrestingCrack`).
+    """Width of the far pulse at half of its peak: du/dt is half the integral of tau from the entry point on, on each
+    side of its zero (`ArrestingCrack`).
     """
     far = 4.0 * crack.far
 

@@ -45,11 +45,9 @@ QUANTITIES = (
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Scenes at every setting, and both schemes against their step.
-
-    Returns rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work
-    (stencil passes over one block), block_updates and one error a quantity; rows of part "locking": scheme, step,
-    front_speed, exact (in the continuum limit at fixed beta/dx, as the exact numbers behind the errors)
+    """Rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
+    passes over one block), block_updates and one error a quantity; of part "locking": scheme, step, front_speed, exact.
+    Exact is the continuum limit at fixed beta/dx.
     """
     window = settings["measure"]["front_window"]
     presets = {
@@ -77,10 +75,8 @@ transition_of, crack_of = cache(exact_transition_displacement), cache(ArrestingC
 
 
 def errors(scheme: str, order: int, step: float, dx: float, window: float) -> dict[str, float]:
-    """Work of all scenes, and the largest relative error of each quantity over them.
-
-    A pulse at each damping ratio, and at the largest one the crack: without damping the ringing of the lattice decides
-    where its left front stands still.
+    """Work, and the largest relative error of each quantity, over a pulse at each damping ratio, and at the largest one
+    the crack: without damping the ringing of the lattice decides where its left front stands still.
     """
     # The textbook scheme and the exact solution have no order to choose.
     known = max(order, 3)

@@ -33,13 +33,10 @@ CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Exact depths, lattice depths at each spacing, and barriers shorter and longer than the depth.
-
-    Returns rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1; it scales like 1/sqrt(gamma))
-    and paper (the later estimate; it scales like 1/gamma); "depth": gamma and dx too, measured, exact, paper;
-    "passing": length (of the barrier, over the exact depth), measured (1 where the front went past, 0 where it did not)
-
-    Source: `barrier_depth`; lattice runs whose barrier lies where the pulse is steady, by its finite memory.
+    """Rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1; it scales like 1/sqrt(gamma)) and
+    paper (the later estimate; it scales like 1/gamma); "depth": gamma and dx too, measured, exact, paper; "passing":
+    length (of the barrier, over the exact depth), measured (1 where the front went past, 0 where it did not). Lattices
+    have the barrier where the pulse is steady, by its finite memory.
     """
     rows, passing = [], []
     for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):

@@ -12,12 +12,8 @@ ROCK, SLIP, IMPOSED, STIFFNESS_RATIO = 1.6, 1.1, 1.9, 0.2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Curves of the stress drop, and one example of the displacement over the height.
-
-    Returns role curve: thickness_ratio (H_r/H), stiffness_ratio (G/G_r), stress_drop (over G delta/H); roles before and
-    after (slip): y, displacement, in thicknesses of the zone
-
-    Source: section IV C 2 of the paper.
+    """Role curve: thickness_ratio (H_r/H), stiffness_ratio (G/G_r), stress_drop (over G delta/H); roles before and
+    after (slip): y, displacement, in thicknesses of the zone. Source: section IV C 2 of the paper.
     """
     wanted = settings["figures"]["fig07_damage_zone"]
     ratios, parts = np.geomspace(*(wanted["stiffness_ratios"][key] for key in ("from", "to", "count"))), []

@@ -16,10 +16,8 @@ DAMPING = np.linspace(0.0, 1.0, 61) ** 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Peak velocity, width and slip.
-
-    Returns left (the level), damping_ratio and value: role curve (in units of the paper's formulas) and limit (dx -> 0
-    at the fixed ratio of the refined lattices, where beta vanishes too; with the front speed)
+    """Left (the level), damping_ratio, quantity and value: role curve (in units of the paper's formulas) and limit (dx
+    -> 0 at the fixed ratio of the refined lattices, where beta vanishes too; with the front speed).
     """
     swept, (scene, *_) = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
     left, ratio = scene.prestress.left, scene.damping_ratio

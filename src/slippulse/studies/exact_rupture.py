@@ -22,11 +22,9 @@ EDGES = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
 
 
 def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Exact curves, marks of a lattice, two halves of a map, and the differences.
-
-    Returns scene and role: scene (boundary, left, right, gamma, damping_ratio), exact and lattice (position, release,
-    stick, slip), map_exact and map_lattice (time, position, slip_velocity > 0), difference (quantity, dx, difference in
-    the mean over the mean, places: how many it is over)
+    """Scene and role: scene (boundary, left, right, gamma, damping_ratio), exact and lattice (position, release, stick,
+    slip), map_exact and map_lattice (time, position, slip_velocity > 0), difference (quantity, dx, difference in the
+    mean over the mean, places: how many it is over).
     """
     parts = []
     for name in NEEDS["data"]:

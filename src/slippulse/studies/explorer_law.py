@@ -14,10 +14,8 @@ SCALE, LARGEST_RATIO, RATIOS = 0.005, 5.0, 33
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The pre-stress at which a front has a speed: one row a point of the grid.
-
-    Returns release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)),
-    logit (ln(tau/(1 - tau)), to 6 decimals)
+    """One row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)), excess_log (ln(v - 1)), logit
+    (ln(tau/(1 - tau)) of the pre-stress, to 6 decimals).
     """
     positions = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
     position, excess = (grid.ravel() for grid in np.meshgrid(positions, EXCESS, indexing="ij"))

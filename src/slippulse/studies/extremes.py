@@ -62,18 +62,14 @@ class Edge(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Run every edge.
-
-    Returns one row an edge: family, value, quantity, should, tolerance, expected, measured, error, verdict, message
-    (flags or the refusal), block_updates
+    """One row an edge: family, value, quantity, should, tolerance, expected, measured, error, verdict, message (flags
+    or the refusal), block_updates.
     """
     return pd.DataFrame([row(edge, settings["measure"]["front_window"]) for edge in edges()])
 
 
 def edges() -> Iterator[Edge]:
-    """Every edge, and what should happen there.
-
-    Flagged are pulses of fewer blocks than a Scene asks for, fronts with a damped layer that is not thin against the
+    """Flagged are pulses of fewer blocks than a Scene asks for, fronts with a damped layer that is not thin against the
     pulse, and fronts into negative pre-stress that the lattice stalls or that slide in reverse.
     """
     of: dict[str, Any]
@@ -252,9 +248,8 @@ def drift(run: xr.Dataset, quantity: str) -> float:
 
 
 def single_precision_error(gamma: float) -> float:
-    """What a state in float32 would cost, against float64: slip velocity of a crack from a Gaussian of W = 8 dx.
-
-    Source: symplectic Euler on slip in plain numpy, the force from second differences of slip; no damping.
+    """What a state in float32 would cost, against float64: slip velocity of a crack from a Gaussian of W = 8 dx, by
+    symplectic Euler on slip, the force from second differences of slip; no damping.
     """
     dx, step, duration = 0.1, 0.4 * 0.1, 0.9 * math.pi / math.sqrt(gamma)
     x, found = dx * np.arange(int(1.5 * duration / dx) + 32), []

@@ -26,11 +26,9 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Speeds of theory alone.
-
-    Returns panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over springs =
+    """Panel, release, left (the level), damping_ratio, speed: panel prestress (over left), springs (over springs =
     gamma dx^2; NaN where no front outruns the waves), refined (over dx; held: b or beta, at the value fixed), and limit
-    (dx -> 0 under the elastic rule at fixed beta)
+    (dx -> 0 under the elastic rule at fixed beta).
     """
     swept, springs, fixed_ratio, *fixed_beta = (
         pd.DataFrame([scene.attributes() for scene in expand(settings["sweeps"][name])[0]])

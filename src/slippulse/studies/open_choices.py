@@ -26,11 +26,9 @@ NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """T_trans and L_trans of each run of figure 5, with the paper's estimates, by the exact theory.
-
-    Returns boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends), fraction (of the path
-    that counts as arrest, under a stress boundary), left, width, gamma, transition_time and transition_length, and
-    paper_transition_time and paper_transition_length
+    """Of each run of figure 5 boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends),
+    fraction (of the path that counts as arrest, under a stress boundary), left, width, gamma, and exact transition_time
+    and transition_length and the same of the paper.
     """
     springs, cracks = (
         pd.DataFrame([scene.attributes() for scene in expand(settings["sweeps"][name])[0]])
@@ -74,9 +72,8 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> Iterator[dic
 
 
 def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float]) -> Iterator[dict]:
-    """When fractions of |x_minus| are covered, and when all of it is where the tail ends.
-
-    Without leaf springs nothing but W is a length: every number of a level is proportional to it.
+    """When fractions of |x_minus| are covered, and when all of it is where the tail ends. Without leaf springs nothing
+    but W is a length: every number of a level is proportional to it.
     """
     # A tent of half-width 1 on both sides of x = 0: the last characteristic enters at its end.
     crossing = float(WEIGHTS @ (1.0 / front_speed(0.5 + 0.5 * NODES, ratio, release))) / 2.0

@@ -18,10 +18,7 @@ BLOCKS, SPACING, STEP, BETA = 1000, 0.05005, 1e-3, 0.01
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Numbers of one scene by the published scheme, by the localised one on the same lattice, and exactly.
-
-    Returns quantity (front_speed, first_stick_time, pulse_slip), published, localised and exact
-    """
+    """Quantity (front_speed, first_stick_time, pulse_slip), published, localised (on the same lattice) and exact."""
     pulse = steady_pulse(PROFILE.left, GAMMA, BETA, damping_ratio=BETA / SPACING)
     first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
     run = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))

@@ -16,11 +16,9 @@ BEYOND = np.concatenate([np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Final slip around the step of each scene.
-
-    Returns level (beyond the step), x (distance beyond it) and slip; and the same in every row of a level: before (the
+    """Level (beyond the step), x (distance beyond it) and final slip; and the same in every row of a level: before (the
     level there), steady and steady_before (exact slip of both steady pulses), memory (the distance W_p/(v - 1) beyond
-    which the past of the trailing edge does not reach)
+    which the past of the trailing edge does not reach).
     """
     parts = []
     for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:

@@ -39,12 +39,10 @@ LATTICE = [
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Lattices of both boundaries, and the exact theory.
-
-    Returns role: lattice (LATTICE; over_critical: over the critical one, which limit has at each level), steady
+    """Role: lattice (LATTICE; over_critical: over the critical one, which limit has at each level), steady
     (rate_strengthening, pulse_width, pulse_slip), map (regime, time, position, slip_velocity), arrest (dx,
     rate_strengthening, time, largest_velocity, gap: distance of the left front from the balance of the pre-stress) and
-    asymptote (the same)
+    asymptote (the same).
     """
     lattices = [row for level in LEVELS for each in FRACTIONS if (row := _lattice(level, each))]
     limit = [(level, _front(level)[1]) for level in np.linspace(0.05, 0.9, 60)]

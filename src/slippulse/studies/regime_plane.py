@@ -25,10 +25,8 @@ TIME, POINTS = 12.0, 241
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Outlines of the regimes, and slip velocity over position in some of them.
-
-    Returns boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends
-    of a line on which one level is 0 and the other negative) and profile (time, x, slip_velocity, at W = 1)
+    """Boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends of a
+    line on which one level is 0 and the other negative) and profile (time, x, slip_velocity, at W = 1).
     """
     still, model = settings["measure"]["still"], settings["model"]
     rules = model["damping_ratio"], model["release"]

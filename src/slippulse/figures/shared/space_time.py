@@ -22,9 +22,8 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
-    """Everything that a map of a run with fronts and samples shows: role, series, time, position, value.
-
-    Roles: parameter (series: its name), flag (series: the flags), and those of the parts below.
+    """Role, series, time, position and value of all that a map shows: parameter (series: its name), flag (series: the
+    flags), and the roles of the parts below.
     """
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     if run.attrs["run_flags"]:
