@@ -55,9 +55,8 @@ def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
     for row, (instant, at) in enumerate(instants(run)):
         slip, velocity = (shown[key].values[at] for key in ("sample_slip", "sample_velocity"))
         frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity, "prestress": tau})
-        frame["state"] = np.select(
-            [velocity > 0.0, slip > 0.0], ["sliding", "stuck after sliding"], "at rest"
-        )
+        state = np.where(slip > 0.0, "stuck after sliding", "at rest")
+        frame["state"] = np.where(velocity > 0.0, "sliding", state)
         parts.append(frame.assign(row=row, instant=instant, time=times[at]))
     rows = pd.concat(parts, ignore_index=True)
     closer = float(-rows.groupby("row")["slip"].diff().min())
@@ -148,13 +147,9 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
             axes.add_collection(LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs"))
         for now, block in zip(centre, state.itertuples(), strict=True):
             colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
-            look = {
-                "facecolor": COLOURS[block.state],
-                "edgecolor": colour,
-                "linewidth": width,
-                "gid": block.state,
-            }
-            axes.add_patch(Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, **look))
+            patch = Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)
+            patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
+            axes.add_patch(patch)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
         axes.text(low - 0.2, base + 0.5 * HEIGHT, text, ha="right", va="center", fontsize=8)
     top = (PLATE if leaf else HEIGHT) + 0.08

@@ -19,10 +19,24 @@ MUTED = "0.25"
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Above: the sketch. Below: stress drop against G/G_r."""
-    figure, (above, below) = new_panels(COLUMN, 4.6, 2, 1, height_ratios=[1.15, 1.0])
+    """Above: the sketch. Below: stress drop against G/G_r, and the limit of rock that does not yield."""
+    figure, (above, axes) = new_panels(COLUMN, 4.6, 2, 1, height_ratios=[1.15, 1.0])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])
-    draw_stress_drop(below, table[table["role"] == "curve"])
+    curves = table[table["role"] == "curve"]
+    groups = curves.groupby("thickness_ratio")
+    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
+    for colour, (thickness, curve) in zip(colours, groups, strict=True):
+        name = rf"$H_r/H = {thickness:g}$"
+        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve")
+        look: Look = {"xytext": (3, 0), "textcoords": "offset points", "va": "center", "fontsize": 8.0}
+        end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
+        axes.annotate(name, end, color=colour, annotation_clip=False, **look)
+    limit = r"$G \ll G_r$: imposed at $y = H$"
+    line = axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
+    ends = curves["stiffness_ratio"].agg(["min", "max"])
+    axes.set(xscale="log", xlim=tuple(ends), ylim=(0.0, 1.08), xlabel="ratio of shear moduli $G/G_r$")
+    axes.set_ylabel(r"stress drop $\Delta\tau\,/\,(G\delta/H)$")
+    axes.legend(handles=[line], loc="lower left")
     return figure
 
 
@@ -58,21 +72,3 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     label(axes, -0.04, top + 0.32, "$y$", MUTED, ha="left")
     axes.set(xlim=(-1.0, WIDTH + 0.65), ylim=(-0.55, top + 0.55), aspect="equal")
     axes.set_axis_off()
-
-
-def draw_stress_drop(axes: Axes, curves: pd.DataFrame) -> None:
-    """One curve a thickness ratio, and the limit of rock that does not yield."""
-    groups = curves.groupby("thickness_ratio")
-    colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
-    for colour, (thickness, curve) in zip(colours, groups, strict=True):
-        name = rf"$H_r/H = {thickness:g}$"
-        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve")
-        look: Look = {"xytext": (3, 0), "textcoords": "offset points", "va": "center", "fontsize": 8.0}
-        end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
-        axes.annotate(name, end, color=colour, annotation_clip=False, **look)
-    limit = r"$G \ll G_r$: imposed at $y = H$"
-    line = axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
-    ends = curves["stiffness_ratio"].agg(["min", "max"])
-    axes.set(xscale="log", xlim=tuple(ends), ylim=(0.0, 1.08), xlabel="ratio of shear moduli $G/G_r$")
-    axes.set_ylabel(r"stress drop $\Delta\tau\,/\,(G\delta/H)$")
-    axes.legend(handles=[line], loc="lower left")

@@ -48,6 +48,5 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
 
 def save_animation(animation: FuncAnimation, path: str | Path) -> None:
     """Write an animated GIF."""
-    write_whole(
-        path, lambda part: animation.save(part, writer=PillowWriter(fps=PER_SECOND), dpi=DOTS_PER_INCH)
-    )
+    writer = PillowWriter(fps=PER_SECOND)
+    write_whole(path, lambda part: animation.save(part, writer=writer, dpi=DOTS_PER_INCH))

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .style import CYCLE, GREY, PAGE, Look, colour_scale, legend_above, new_panels
@@ -41,7 +40,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a to c) each quantity in units of the paper's formula; (d) the distance from the limit on refined lattices."""
-    figure, (*grid, refined_axes) = new_panels(PAGE, 4.6, 2, 2)
+    figure, (*grid, refined) = new_panels(PAGE, 4.6, 2, 2)
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
         axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
         for left, rows in table[table["quantity"] == quantity].groupby("left"):
@@ -56,21 +55,22 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", loc="right")
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula", xlim=(-0.02, None))
     grid[0].plot([], [], "o", color=GREY, label="simulation")
-    _draw_refined(refined_axes, table[table["role"] == "refined"])
     legend_above(figure, grid[0], columnspacing=1.0)
-    return figure
-
-
-def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
-    for quantity, colour, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
+    rows = table[table["role"] == "refined"]
+    for quantity, shade, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
-        look: Look = {"color": colour, "label": QUANTITIES.get(quantity, "front speed")}
-        axes.plot(line["dx"], error, marker=marker, **look)
+        look = {"color": shade, "label": QUANTITIES.get(quantity, "front speed")}
+        refined.plot(line["dx"], error, marker=marker, **look)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
-    axes.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")
+    refined.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
+    refined.set(
+        xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|"
+    )
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
-    axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right")
-    axes.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
-    axes.set_ylim(1e-6, None)
+    refined.set_title(
+        rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right"
+    )
+    refined.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
+    refined.set_ylim(1e-6, None)
+    return figure

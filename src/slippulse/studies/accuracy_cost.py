@@ -50,8 +50,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     Exact is the continuum limit at fixed beta/dx.
     """
     window = settings["measure"]["front_window"]
+    given = settings["presets"].items()
     presets = {
-        ("localised", p["order"], p["max_step"], p["dx"]): name for name, p in settings["presets"].items()
+        ("localised", preset["order"], preset["max_step"], preset["dx"]): name for name, preset in given
     }
     ladder = [("fixed_step", 1, step, TEXTBOOK_SPACING) for step in TEXTBOOK_STEPS]
     ladder += [("localised", order, step, dx) for dx, order, step in product(SPACINGS, ORDERS, STEPS)]

@@ -72,9 +72,7 @@ def entered(scene: dict[str, Any], dx: float, *steps: tuple[float, float]) -> fl
     pulse = steady_pulse(tau0, gamma, damping_ratio=ratio)
     start = (math.floor((TAIL * WIDTH + pulse.width / (pulse.speed - 1.0)) / dx) + 0.5) * dx
     both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
-    profile, duration = (
-        Prestress(tau0, tau0, WIDTH, steps=both),
-        start + CROSSINGS * scene["exact"] + pulse.width,
-    )
+    profile = Prestress(tau0, tau0, WIDTH, steps=both)
+    duration = start + CROSSINGS * scene["exact"] + pulse.width
     run = run_scene(Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4))
     return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

@@ -39,19 +39,15 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
             rows.append(pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)))
             released = np.flatnonzero(np.isfinite(shown["release_time"].values))
             kept = shown.isel(x=released[:: max(1, released.size // MARKS)])
-            marks = {"position": "x"} | EDGES
-            rows.append(
-                pd.DataFrame({key: kept[of].values for key, of in marks.items()}).assign(role="lattice")
-            )
+            marks = {key: kept[of].values for key, of in ({"position": "x"} | EDGES).items()}
+            rows.append(pd.DataFrame(marks).assign(role="lattice"))
         if name == NEEDS["data"][0]:
             rows += _map(shown, rupture)
         stops = rupture.front_ends[0][0].reason == "stops" or rupture.gamma == 0.0
         x = np.linspace(left * FRACTIONS[0 if stops else 1], right * FRACTIONS[1], POSITIONS)
         known = _exact(rupture, x)
         known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
-        rows += [
-            _differences(run, rupture, x, known).assign(role="difference", dx=run.attrs["dx"]) for run in runs
-        ]
+        rows += [_differences(run, rupture, x, known) for run in runs]
         parts.append(pd.concat(rows).assign(scene=name))
     return pd.concat(parts, ignore_index=True)
 
@@ -95,4 +91,4 @@ def _differences(
             expected = known[quantity][both]
             mean = float(np.mean(np.abs(found[quantity][both] - expected)) / np.mean(np.abs(expected)))
             rows.append({"quantity": quantity, "difference": mean, "places": int(both.sum())})
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows).assign(role="difference", dx=run.attrs["dx"])

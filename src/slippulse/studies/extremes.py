@@ -169,12 +169,11 @@ def first_stick(dx: float, width: float = 1.0, gamma: float = GAMMA) -> tuple[fl
 
 
 def scene(
-    dx: float, duration: float, level: float = LEVEL, ratio: float = RATIO, gamma: float = GAMMA, **more: Any
-) -> Scene:
+    dx: float, duration: float, level: float = LEVEL, right: float | None = None, width: float = 1.0, peak: float = 1.0,
+    bumps: Any = (), ratio: float = RATIO, gamma: float = GAMMA, **more: Any,
+) -> Scene:  # fmt: skip
     """A scene under the displacement boundary, or under the stress boundary when gamma is 0."""
-    names = ("width", "right", "peak", "bumps")
-    shape: dict[str, Any] = {"right": level} | {name: more.pop(name) for name in names if name in more}
-    profile = Prestress(level, **shape)
+    profile = Prestress(level, level if right is None else right, width, peak, bumps=bumps)
     step = min(0.5, MARGIN * largest_step("localised", 4, ratio, gamma * dx**2))
     boundary = "displacement" if gamma > 0.0 else "stress"
     return Scene(boundary, profile, duration, dx, gamma, ratio * dx, **{"max_step": step} | more)

@@ -30,10 +30,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     gamma dx^2; NaN where no front outruns the waves), refined (over dx; held: b or beta, at the value fixed), and limit
     (dx -> 0 under the elastic rule at fixed beta).
     """
-    swept, springs, fixed_ratio, *fixed_beta = (
-        pd.DataFrame([scene.attributes() for scene in expand(settings["sweeps"][name])[0]])
-        for name in NEEDS["sweeps"]
-    )
+    sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    tabulated = (pd.DataFrame([scene.attributes() for scene in scenes]) for scenes in sweeps)
+    swept, springs, fixed_ratio, *fixed_beta = tabulated
     parts, rows = [], []
     for release, ratio in swept[["release", "damping_ratio"]].drop_duplicates().values:
         line = {"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS, "panel": "prestress"}

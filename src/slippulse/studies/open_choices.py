@@ -13,10 +13,7 @@ from ..theory.front_law import front_speed
 from ..theory.part import roots_between
 from ..theory.pulse import paper_transition_displacement
 
-NEEDS = {
-    "lists": ["manuscript/open_choices.yaml"],
-    "sweeps": ["scaling_displacement", "scaling_stress"],
-}
+NEEDS = {"lists": ["manuscript/open_choices.yaml"], "sweeps": ["scaling_displacement", "scaling_stress"]}
 
 # The first stick, over pi/sqrt(gamma), lies between these; beyond this number of widths a Gaussian is 0 to rounding;
 # the error of a time.
@@ -30,18 +27,14 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     fraction (of the path that counts as arrest, under a stress boundary), left, width, gamma, and exact transition_time
     and transition_length and the same of the paper.
     """
-    springs, cracks = (
-        pd.DataFrame([scene.attributes() for scene in expand(settings["sweeps"][name])[0]])
-        for name in NEEDS["sweeps"]
-    )
+    sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
+    springs, cracks = (pd.DataFrame([scene.attributes() for scene in scenes]) for scenes in sweeps)
+    springs, cracks = springs.query("left > 0"), cracks.query("left < 0")
     choices = tables["open_choices"].groupby("choice")
     fractions = [each for each in choices.get_group("fraction")["value"] if isinstance(each, float)]
     parts = []
     for ratio, release in choices.get_group("damping_ratio")[["value", "release"]].values:
-        rows = [
-            displacement(springs.query("left > 0"), ratio, release),
-            stress(cracks.query("left < 0"), ratio, release, fractions),
-        ]
+        rows = displacement(springs, ratio, release), stress(cracks, ratio, release, fractions)
         parts += [pd.DataFrame(each).assign(damping_ratio=ratio, release=release) for each in rows]
     return pd.concat(parts, ignore_index=True)
 

@@ -24,8 +24,7 @@ from ..theory.rupture import Rupture
 
 NEEDS = {"settings": ["published"]}
 
-# As the paper states for the figure; where its left panel ends, as read off; and tau_0 and gamma from
-# which the fit converges.
+# As the paper states for the figure; where its left panel ends, as read off; tau_0 and gamma where the fit begins.
 BETA, END, NEAR = 1.0e-3, 10.8, np.array([0.25, 0.55])
 # Evenly in their logarithm about the best fit of each rule, as far as a fit is accepted and beyond.
 DAMPING_RATIOS = {
@@ -43,12 +42,8 @@ WINDOW = 0.3
 # Positions of the exact trailing edge and of the last profile of slip velocity.
 EDGE, PROFILE = 241, 401
 KNOWN = (
-    "front_speed_right",
-    "front_intercept_right",
-    "first_stick_time",
-    "transition_length",
-    "largest_velocity",
-)
+    "front_speed_right", "front_intercept_right", "first_stick_time", "transition_length", "largest_velocity"
+)  # fmt: skip
 TRAILING = "trailing_edge_"
 # Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
 DIFFERENCE, FIRST = 0.01, 2
@@ -161,10 +156,8 @@ class LeftPanel:
             correction = self.lattice(trial, ratio, release, dx) - exact
             misfit = (exact + correction - self.drawn) / self.error
             if step < steps:
-                changes = [
-                    (self.exact(trial + change, ratio, release) - exact) / change.sum()
-                    for change in np.diag(DIFFERENCE * trial)
-                ]
+                nudges = np.diag(DIFFERENCE * trial)
+                changes = [(self.exact(trial + each, ratio, release) - exact) / each.sum() for each in nudges]
                 slopes = np.column_stack(changes) / self.error[:, None]
                 trial = trial - np.linalg.lstsq(slopes[fitted], misfit[fitted], rcond=None)[0]
         near = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]

@@ -23,9 +23,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
     run = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
     ours = [run[name].values for name in ("x", "release_time", "stick_time", "slip")]
-    published, localised = (
-        numbers(run, settings["measure"]["front_window"]) for run in (published_run(), ours)
-    )
+    window = settings["measure"]["front_window"]
+    published, localised = numbers(published_run(), window), numbers(ours, window)
     found = {"published": published, "localised": localised, "exact": [pulse.speed, first_stick, pulse.slip]}
     return pd.DataFrame({"quantity": ["front_speed", "first_stick_time", "pulse_slip"]} | found)
 

@@ -16,11 +16,8 @@ GAMMAS = {"displacement": 1.0, "stress": 0.0}
 BORDER = np.linspace(0.0, 0.15, 31)[1:]
 # Boundary, and levels on the left and on the right, of the velocity profiles; their time and points.
 PROFILES = (
-    ("displacement", 0.5, 0.5),
-    ("displacement", -0.5, 0.5),
-    ("stress", 0.3, 0.3),
-    ("stress", -0.5, 0.0),
-)
+    ("displacement", 0.5, 0.5), ("displacement", -0.5, 0.5), ("stress", 0.3, 0.3), ("stress", -0.5, 0.0)
+)  # fmt: skip
 TIME, POINTS = 12.0, 241
 
 

@@ -21,13 +21,12 @@ BETWEEN, RESOLUTION = (0.7, 1.2), 0.01
 BLOCKS, STEPS = 400, 400
 # Far below any stress: blocks there never slide.
 HELD = -1.0e9
+WALLS = (BLOCKS + 0.5, HELD), (-BLOCKS - 0.5, HELD)
 # Steps between two looks at whether anything has stuck: a run that blows up sticks and is released over and over.
 LOOK_AFTER = 100
 PROFILES = {
     # Blocks between two walls, all released at once by a stress far above the threshold: no event until they turn.
-    "measured": Prestress(
-        0.9, 0.9, 10.0 * BLOCKS, peak=100.9, steps=((BLOCKS + 0.5, HELD), (-BLOCKS - 0.5, HELD))
-    ),
+    "measured": Prestress(0.9, 0.9, 10.0 * BLOCKS, peak=100.9, steps=WALLS),
     # A crack that grows for ever: an event in almost every step.
     "measured_rupture": Prestress(0.5, 0.5, 8.0),
 }

@@ -72,19 +72,15 @@ def _rows(sweep: xr.Dataset, runs: pd.DataFrame, profiles: pd.DataFrame, window:
             peak, width = numbers["exact_largest_velocity"], numbers["width"]
             scale = {"slip": exact["slip"].max(), "slip_velocity": peak, "slip_acceleration": peak / width}
             scale["x"], span, reach = width, float(np.ptp(exact["x"])), 1.0
-        found = pd.concat([simulation(point(sweep, int(index)), window, span, reach), exact])
+        run = point(sweep, int(index))
+        pulse = leading_pulse(run, window)
+        found = pd.DataFrame(comoving(run, pulse)).assign(role="simulation")
+        inside = found[found["xi"].between(-reach * span, AHEAD * span)]
+        thinned = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
+        found = pd.concat([thinned.assign(x=thinned["xi"] - (pulse.peak_distance - pulse.front)), exact])
         curves = {key: (found[key] / scale[key]).round(DIGITS) for key in ("x", *FIELDS)}
         parts.append(pd.DataFrame({"role": found["role"], "run": index, **curves}))
     return pd.concat(parts, ignore_index=True).assign(panel=runs["boundary"].iloc[0])
-
-
-def simulation(run: xr.Dataset, window: float, span: float, reach: float) -> pd.DataFrame:
-    """One simulated pulse over the distance from its largest velocity, thinned."""
-    pulse = leading_pulse(run, window)
-    found = pd.DataFrame(comoving(run, pulse)).assign(role="simulation")
-    inside = found[found["xi"].between(-reach * span, AHEAD * span)]
-    kept = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
-    return kept.assign(x=kept["xi"] - (pulse.peak_distance - pulse.front))
 
 
 def looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
