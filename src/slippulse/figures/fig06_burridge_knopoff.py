@@ -105,8 +105,15 @@ def plot(table: pd.DataFrame) -> Figure:
         rows = table[table["panel"] == name]
         axes = figure.add_subplot(grid[2 * index + 1])
         draw_rows(axes, rows, name)
-        strip = figure.add_subplot(grid[2 * index], sharex=axes)
-        draw_prestress(strip, rows[rows["row"] == 0])
+        strip, first = figure.add_subplot(grid[2 * index], sharex=axes), rows[rows["row"] == 0]
+        strip.axhline(0.0, color=BLACK, linewidth=0.6)
+        strip.bar(first["x"], first["prestress"], width=BLOCK, color=GREY)
+        strip.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
+        lowest, ticks = min(0.0, first["prestress"].min()), {0.0, 1.0, first["left"].iloc[0]}
+        strip.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
+        strip.tick_params(axis="x", length=0, labelbottom=False)
+        strip.tick_params(axis="y", labelsize=7)
+        strip.spines[["right", "top", "bottom"]].set_visible(False)
         strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
@@ -115,18 +122,6 @@ def plot(table: pd.DataFrame) -> Figure:
     handles.append(entry("never released: stops the left front", **square))
     legend_below(figure, handles, 4)
     return figure
-
-
-def draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
-    """Pre-stress of every block as a bar."""
-    axes.axhline(0.0, color=BLACK, linewidth=0.6)
-    axes.bar(rows["x"], rows["prestress"], width=BLOCK, color=GREY)
-    axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    lowest, ticks = min(0.0, rows["prestress"].min()), {0.0, 1.0, rows["left"].iloc[0]}
-    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
-    axes.tick_params(axis="x", length=0, labelbottom=False)
-    axes.tick_params(axis="y", labelsize=7)
-    axes.spines[["right", "top", "bottom"]].set_visible(False)
 
 
 def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:

@@ -39,9 +39,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             ("fine", x, 1.0, {"exact": 0.5}),
             ("curve", np.array(LEVELS), GAMMA, {"exact": 0.5, "paper": 1.0}),
         ):
-            out = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"]).to_frame(
-                index=False
-            )
+            pairs = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"])
+            out = pairs.to_frame(index=False)
             for name, power in powers.items():
                 depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
                 depth = np.exp(_between(at[0], levels) @ np.log(depths) @ _between(at[1], y).T)
@@ -59,7 +58,7 @@ def _between(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Above: maps without and with damping. Below: curves with the estimate, and convergence."""
-    figure, (*maps, curve_axes, convergence_axes) = new_panels(PAGE, 5.4, 2, 2)
+    figure, (*maps, curve_axes, last) = new_panels(PAGE, 5.4, 2, 2)
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()
@@ -76,7 +75,17 @@ def plot(table: pd.DataFrame) -> Figure:
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
     _draw_curves(curve_axes, curves, marked)
     curve_axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
-    _draw_convergence(convergence_axes, runs)
+    for style, (ratio, chosen) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
+        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio), "markersize": 2.4}
+        look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
+        for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
+            line, label = line.sort_values("dx"), None if number else rf"$b = {ratio:g}$"
+            last.plot(line["dx"], line["measured"] / line["exact"], style, label=label, **look)
+    last.axhline(1.0, color=BLACK, linewidth=0.8)
+    last.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
+    scenes = runs.groupby(["tau0", "barrier", "gamma"]).ngroups
+    last.set_title(rf"$\Gamma = 1$, {scenes} scenes a ratio", loc="right")
+    last.legend(loc="upper left")
     return figure
 
 
@@ -117,25 +126,5 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
     axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
-    look: Look = {
-        "ncols": 2,
-        "columnspacing": 0.6,
-        "handletextpad": 0.3,
-        "handlelength": 1.3,
-        "fontsize": 7.0,
-    }
-    axes.legend(loc="lower left", borderaxespad=0.2, **look)
-
-
-def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
-    for style, (ratio, chosen) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
-        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio), "markersize": 2.4}
-        look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
-        for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
-            line, label = line.sort_values("dx"), None if number else rf"$b = {ratio:g}$"
-            axes.plot(line["dx"], line["measured"] / line["exact"], style, label=label, **look)
-    axes.axhline(1.0, color=BLACK, linewidth=0.8)
-    axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
-    scenes = runs.groupby(["tau0", "barrier", "gamma"]).ngroups
-    axes.set_title(rf"$\Gamma = 1$, {scenes} scenes a ratio", loc="right")
-    axes.legend(loc="upper left")
+    look: Look = {"ncols": 2, "columnspacing": 0.6, "handletextpad": 0.3, "handlelength": 1.3}
+    axes.legend(loc="lower left", borderaxespad=0.2, fontsize=7.0, **look)

@@ -37,12 +37,23 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a, b) measured over the paper's and over the exact T_trans and L_trans; (c) refined; (d) exact T_trans alone."""
-    figure, (*scatter, refined_axes, gaussian_axes) = new_panels(PAGE, 5.0, 2, 2)
+    figure, (*scatter, refined_axes, last) = new_panels(PAGE, 5.0, 2, 2)
     for axes, quantity in zip(scatter, QUANTITIES, strict=True):
         _draw_ratios(axes, table[table["role"] == "sweep"], quantity)
     _draw_refinement(refined_axes, table[table["role"] == "refinement"])
-    _draw_gaussian(gaussian_axes, table[table["role"] == "gaussian"])
     legend_above(figure, scatter[0])
+    # T_trans over the paper's pi/sqrt(gamma): uniform pre-stress, and with the Gaussian.
+    rows = table[table["role"] == "gaussian"]
+    line = rows[rows["gamma"].isna()]
+    last.axhline(1.0, color=BLACK, linewidth=0.6)
+    last.plot(line["left"], line["over_paper"], "--", color=BLACK, label="uniform")
+    for gamma, line in rows.groupby("gamma"):
+        look: Look = {"color": colour_scale("gamma").to_rgba(gamma), "label": rf"$\gamma = {gamma:g}$"}
+        last.plot(line["left"], line["over_paper"], **look)
+    last.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
+    last.set_ylabel(r"exact $T_\mathrm{trans}\,\gamma^{1/2}/\pi$")
+    last.set_title(r"$\Gamma = 1$, $b = 0$, exact", loc="right")
+    last.legend(loc="upper right", ncols=2)
     return figure
 
 
@@ -75,17 +86,3 @@ def _draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
     few_ticks(axes.xaxis, np.unique(spacing))
     axes.set_title(r"$\Gamma = 1$, refining", loc="right")
     axes.legend(loc="lower right")
-
-
-def _draw_gaussian(axes: Axes, rows: pd.DataFrame) -> None:
-    """T_trans over the paper's pi/sqrt(gamma): uniform pre-stress, and with the Gaussian."""
-    axes.axhline(1.0, color=BLACK, linewidth=0.6)
-    line = rows[rows["gamma"].isna()]
-    axes.plot(line["left"], line["over_paper"], "--", color=BLACK, label="uniform")
-    for gamma, line in rows.groupby("gamma"):
-        look: Look = {"color": colour_scale("gamma").to_rgba(gamma), "label": rf"$\gamma = {gamma:g}$"}
-        axes.plot(line["left"], line["over_paper"], **look)
-    axes.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
-    axes.set_ylabel(r"exact $T_\mathrm{trans}\,\gamma^{1/2}/\pi$")
-    axes.set_title(r"$\Gamma = 1$, $b = 0$, exact", loc="right")
-    axes.legend(loc="upper right", ncols=2)

@@ -40,7 +40,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """(a to c) each quantity in units of the paper's formula; (d) the distance from the limit on refined lattices."""
-    figure, (*grid, refined) = new_panels(PAGE, 4.6, 2, 2)
+    figure, (*grid, fine) = new_panels(PAGE, 4.6, 2, 2)
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
         axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
         for left, rows in table[table["quantity"] == quantity].groupby("left"):
@@ -61,16 +61,12 @@ def plot(table: pd.DataFrame) -> Figure:
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
         look = {"color": shade, "label": QUANTITIES.get(quantity, "front speed")}
-        refined.plot(line["dx"], error, marker=marker, **look)
+        fine.plot(line["dx"], error, marker=marker, **look)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
-    refined.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
-    refined.set(
-        xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|"
-    )
+    fine.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
+    fine.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
-    refined.set_title(
-        rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right"
-    )
-    refined.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
-    refined.set_ylim(1e-6, None)
+    fine.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right")
+    fine.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
+    fine.set_ylim(1e-6, None)
     return figure

@@ -25,7 +25,15 @@ def plot(table: pd.DataFrame) -> Figure:
     parts = dict(list(table.groupby("role")))
     _draw_plane(plane, parts["lattice"], parts["limit"])
     shown = parts["lattice"]["level"] == parts["map"]["level"].iloc[0]
-    _draw_pulses(pulses, parts["lattice"][shown], parts["steady"])
+    runs, steady = parts["lattice"][shown], parts["steady"]
+    sizes = {"pulse_width": (BLACK, "o", r"width $W_\mathrm{p}$"), "pulse_slip": (GREY, "s", r"slip $u$")}
+    for column, (colour, marker, label) in sizes.items():
+        pulses.plot(steady["over"], steady[column], color=colour, label=label)
+        pulses.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
+    pulses.set(xlabel=RATE, ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
+    level = runs["level"].iloc[0]
+    pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice", loc="right")
+    pulses.legend(loc="upper center")
     _draw_maps(figure, maps, parts["map"])
     _draw_arrest(arrest, parts["arrest"], parts["asymptote"])
     return figure
@@ -47,16 +55,6 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$", loc="right")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2, columnspacing=0.8, handletextpad=0.4)
-
-
-def _draw_pulses(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame) -> None:
-    sizes = {"pulse_width": (BLACK, "o", r"width $W_\mathrm{p}$"), "pulse_slip": (GREY, "s", r"slip $u$")}
-    for column, (colour, marker, label) in sizes.items():
-        axes.plot(steady["over"], steady[column], color=colour, label=label)
-        axes.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
-    axes.set(xlabel=RATE, ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
-    axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {runs['level'].iloc[0]:g}$; points: lattice", loc="right")
-    axes.legend(loc="upper center")
 
 
 def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:

@@ -36,12 +36,10 @@ def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
             row["pulse_state"] = pulse_state(run, pulse)
             row["pulse_shape_deviation"] = shape_deviation(run, pulse)
         if "transition_time" in row:
-            held, of = run.attrs["boundary"] == "displacement", (run.attrs["left"], run.attrs["gamma"])
-            paper = (
-                paper_transition_displacement(*of)
-                if held
-                else paper_transition_stress(prestress_from(run.attrs))
-            )
+            if run.attrs["boundary"] == "displacement":
+                paper = paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
+            else:
+                paper = paper_transition_stress(prestress_from(run.attrs))
             row["paper_transition_time"], row["paper_transition_length"] = paper
         rows.append(row)
     return pd.DataFrame(rows)

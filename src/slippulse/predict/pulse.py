@@ -24,9 +24,8 @@ def _pulse(scene: Scene, speed: float) -> dict[str, float]:
             exact = known(lambda: pulse_behind_front(ahead, scene.gamma, scene.beta, speed))
     out: dict[str, float] = {}
     for kind, pulse in (("paper", paper), ("exact", exact)):
-        out |= {
-            f"{kind}_pulse_{name}": getattr(pulse, name, NAN) for name in ("width", "slip", "peak_velocity")
-        }
+        for name in ("width", "slip", "peak_velocity"):
+            out[f"{kind}_pulse_{name}"] = getattr(pulse, name, NAN)
         out[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
     return out
 

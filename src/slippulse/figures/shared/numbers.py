@@ -6,21 +6,16 @@ import pandas as pd
 from ...model.prestress import prestress_from
 
 EITHER = {
-    "front_speed_left": "front speed, left",
-    "front_speed_right": "front speed, right",
-    "transition_time": "T_trans",
+    "front_speed_left": "front speed, left", "front_speed_right": "front speed, right", "transition_time": "T_trans",
     "transition_length": "L_trans",
-}
+}  # fmt: skip
 LABELS = {
-    "displacement": EITHER
-    | {
-        "first_stick_time": "first stick",
-        "pulse_width": "pulse width, right",
-        "pulse_peak_velocity": "peak velocity, right",
-        "pulse_slip": "final slip, right",
+    "displacement": EITHER | {
+        "first_stick_time": "first stick", "pulse_width": "pulse width, right",
+        "pulse_peak_velocity": "peak velocity, right", "pulse_slip": "final slip, right",
     },
     "stress": EITHER | {"balance_distance": "|x_minus|", "largest_velocity": "largest velocity"},
-}
+}  # fmt: skip
 
 
 def with_symbols(label: str) -> str:
