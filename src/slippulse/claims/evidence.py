@@ -1,7 +1,4 @@
-"""What was measured on three lattices, with what is predicted, and from it a claim of each kind.
-
-Which runs, and what is to hold in them, are expressions over the columns of a table (`pandas.DataFrame.eval`).
-"""
+"""What was measured on three lattices, with what is predicted, and from it a claim of each kind."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
@@ -62,13 +59,10 @@ def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
 
 
 class Evidence:
-    """What the ledger is computed from.
+    """What the ledger is computed from; ``steady``: change of the largest velocity below which a pulse is steady.
 
-    Parameters
-    ----------
-    tables : of each simulation, with coarser/NAME and uncertainties/NAME of its grid study, and of each study
-    entries : of claims, as in manuscript/claims.yaml
-    steady : change of the largest velocity below which a pulse is steady
+    Tables are of each simulation, with coarser/NAME and uncertainties/NAME of its grid study, and of each study. Which
+    of their runs, and what is to hold in them, are expressions over columns (`pandas.DataFrame.eval`).
     """
 
     def __init__(
@@ -137,10 +131,9 @@ class Evidence:
     def approximate(
         self, id: str, tables: Sequence[pd.DataFrame], measured: str, predicted: str, *levels: str
     ) -> Claim:
-        """An estimate, by the median deviation of its runs and, where a tolerance is given for it, the exponent.
+        """An estimate, by the median deviation of the same runs on three lattices, or of exact values, and by exponent.
 
-        Tables are the same runs on the finest lattice, the middle and the coarsest, or one of exact values; of the
-        columns ``levels`` one level at a time is left out, for the uncertainty of the exponent.
+        One level of the columns ``levels`` at a time is left out, for the uncertainty of the exponent.
         """
         numbers = [np.array([evaluated(t, name) for name in (predicted, measured)], float) for t in tables]
         ratio = [pd.Series(found / expected) for expected, found in numbers]
@@ -187,8 +180,7 @@ class Evidence:
     ) -> list[bool | None]:
         """Whether something holds in each chosen run: by both finest lattices, else by the exact solution, else None.
 
-        Lattices are asked of runs that last long enough, ``told``; the exact solution whether a run ``ends`` in one of
-        some regimes, if any are given.
+        Lattices are asked of runs that last long enough, ``told``; the exact solution which regime a run ``ends`` in.
         """
         finest, middle, *_ = self.lattices(simulation, where=where)
         both = agreeing(evaluated(finest, holds), evaluated(middle, holds))

@@ -13,12 +13,9 @@ CONFIDENCE = (0.68, 0.95)
 
 
 def curve(profile: pd.DataFrame) -> pd.DataFrame:
-    """Best trials of one release rule over the damping ratio, from its rows of one part.
+    """Best trials of one release rule, from its rows, over the damping ratio, cubic in its logarithm.
 
-    Returns
-    -------
-    damping_ratio, dx, tau0, gamma, their errors, chi2, and of each reading the pull, (predicted - drawn)/reading_error;
-    cubic in the logarithm of the damping ratio
+    With dx, tau0, gamma, their errors, chi2, and of each reading the pull, (predicted - drawn)/reading_error.
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     numbers = profile.groupby("damping_ratio")[["dx", "tau0", "gamma", "tau0_error", "gamma_error"]].first()
@@ -36,18 +33,10 @@ def likely(level: float, parameters: int = 1) -> float:
 
 
 def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
-    """What the figure says of its parameters, per release rule, for the "best" rule, and by how much chi2 differs.
+    """What the study of the published figure says of its parameters, per release rule and for the "best" one.
 
-    Parameters
-    ----------
-    table : results/studies/published_figure.csv, or the figure's own table
-    part : "profile", or "arrows" for the fit of the drawn arrows too
-
-    Returns
-    -------
-    of each rule release, chi2, dof, p_value, damping_ratio, dx, tau0, gamma, pulls by reading, and regions of the
-    damping ratio, tau0 and gamma by confidence level
-
+    Of each rule chi2, dof, p_value, damping_ratio, dx, tau0, gamma, pulls by reading, and regions of parameters;
+    of the part "profile", or of "arrows" for the fit of the drawn arrows too.
     Source: profile likelihood; the readings have independent Gaussian errors.
     """
     found: dict[str, Any] = {}
@@ -69,10 +58,7 @@ def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
 
 
 def right_panel(table: pd.DataFrame) -> dict[str, Any]:
-    """chi2, dof and p_value of the largest velocity of the right panel, its pre-stress being read off and not fitted.
-
-    Of the run that fits worst, over all damping ratios and rules.
-    """
+    """chi2, dof and p_value of the right panel's largest velocity, without a fit: of the run that fits worst."""
     chi2 = float((table.loc[table["part"] == "stress", "pull"] ** 2).max())
     return {"chi2": chi2, "dof": 1, "p_value": float(chdtrc(1, chi2))}
 

@@ -48,9 +48,9 @@ ROWS: dict[Judge, Collection[str]] = {
 
 
 def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mapping]) -> list[dict]:
-    """The ledger, as in claims.json: of each claim its entry in manuscript/claims.yaml and what was found.
+    """The ledger as in claims.json; ``readings``: numbers read off the published figure.
 
-    ``readings``: numbers read off the published figure. Refused if entries and code are not about the same claims.
+    Raises ValueError: if entries of manuscript/claims.yaml and code are not about the same claims.
     """
     evidence.assign("regimes_beyond", pulses.meet)
     judges: dict[str, Judge] = {id: judge for judge, ids in ROWS.items() for id in ids}
@@ -64,7 +64,7 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
 
 
 def published_figure(evidence: Evidence, readings: Mapping) -> dict[str, Claim]:
-    """The published space-time figure, a claim a panel: is there a run of this model that it may show?
+    """A claim a panel of the published space-time figure: is there a run of this model that it may show?
 
     The left one at the best fit of its readings, the drawn arrows among them; the right one without a fit.
     """

@@ -1,7 +1,4 @@
-"""Claims about ruptures on lattices: pulses and cracks, their equations, whether they are unique and stable.
-
-A function is named as its claim.
-"""
+"""Claims about ruptures on lattices, in functions named as they are: equations, uniqueness and stability of pulses."""
 
 from collections.abc import Mapping, Sequence
 from itertools import chain, combinations
@@ -26,17 +23,14 @@ UNDAMPED = "damping_ratio == 0"
 ALONE = {"steady_displacement": UNDAMPED}
 # What is known to a block at either end of a pulse is judged where blocks are narrow.
 NARROW = {"undamped_pulses": ""}
+# Without leaf springs, and at the smallest gamma with them.
+AT_ZERO = {"front_speed_undamped": "", "speed_against_gamma": "gamma == gamma.min()"}
 # Pulses that meet another pre-stress, and come back from it or not; and those that began in each.
 PERTURBED = ("pulses_across_a_step", "pulses_across_wide_steps", "pulses_perturbed_elsewhere")
 UNPERTURBED = ("any_prestress", "steady_displacement", "steady_elsewhere")
 # Of each equation what is measured, what the paper has for it, and in which runs.
 EQUATIONS: dict[str, tuple[str, str, dict[str, str]]] = {
-    # Without leaf springs, and at the smallest gamma with them.
-    "front_speed": (
-        "front_speed_right",
-        "paper_front_speed_right",
-        {"front_speed_undamped": "", "speed_against_gamma": "gamma == gamma.min()"},
-    ),
+    "front_speed": ("front_speed_right", "paper_front_speed_right", AT_ZERO),
     "pulse_profile": ("pulse_shape_deviation", "0", ALONE),
     **{id: (id, f"paper_{id}", ALONE) for id in ("pulse_peak_velocity", "pulse_slip")},
     **{id: (id, f"paper_{id}", NARROW) for id in ("pulse_width", "pulse_acceleration")},
@@ -50,14 +44,8 @@ DECIDED = 0.08
 class Always(NamedTuple):
     """What is to hold on a lattice in which runs of some sweeps: an expression, or one of some regimes at the end.
 
-    With regimes the exact solution decides runs that are too short, and those on which lattices disagree.
-
-    Attributes
-    ----------
-    sweeps : with blanks between
-    told : which runs last long enough for a lattice to tell
-    counted : besides the runs judged, others whose regimes are counted, by words; None if none are
-    numbers : of the whole first sweep, by words
+    With regimes the exact solution decides runs that are too short for a lattice to tell (``told``), and those on which
+    lattices disagree. Besides the runs judged others are ``counted`` by regime; ``numbers`` are of the first sweep.
     """
 
     sweeps: str
@@ -125,7 +113,7 @@ def always(evidence: Evidence, id: str) -> Claim:
 
 
 def meet(table: pd.DataFrame) -> dict[str, pd.Series]:
-    """Of each run that meets another level whether its pulse grows (1), decays (-1) or neither, and so for its width.
+    """Whether the pulse of each run that meets another level grows (1), decays (-1) or neither, and widens, likewise.
 
     By more than in the run that began alike and meets level 0; one that is gone has decayed.
     """
@@ -146,11 +134,8 @@ def shown(evidence: Evidence, held: dict[str, int], **further: float) -> Claim:
 def no_weakening_needed(evidence: Evidence, id: str) -> Claim:
     """There are steady pulses under both boundary conditions, and friction is one constant while sliding."""
     cases = {"displacement": ("any_prestress", TWO_WAY), "stress": ("stress_pulses", STEADY)}
-    held = {
-        f"with the {boundary} held": evidence.agreed(name, "", f"regime == {regime!r}").count(True)
-        for boundary, (name, regime) in cases.items()
-    }
-    return shown(evidence, held)
+    decided = {on: evidence.agreed(name, "", f"regime == {end!r}") for on, (name, end) in cases.items()}
+    return shown(evidence, {f"with the {on} held": each.count(True) for on, each in decided.items()})
 
 
 def only_positive_velocities(evidence: Evidence, id: str) -> Claim:
@@ -176,10 +161,9 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Claim:
     chain, spike = (evidence.lattices(f"burridge_knopoff_{name}")[0] for name in ("chain", "stress"))
     one_way = spike[spike["regime"].str.startswith("pulse, one-way")]["sliding_at_once"]
     two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
-    held = {"with leaf springs": len(two_way), "without": len(one_way)}
     fewest, most = two_way.min(), two_way.max()
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
-    claim = shown(evidence, held, **further)
+    claim = shown(evidence, {"with leaf springs": len(two_way), "without": len(one_way)}, **further)
     if claim["verdict"] != "reproduced" or fewest <= ABOUT_ONE:
         return claim
     why = f"The two kinds of pulse are reproduced, their width is not: {number(fewest)} to {number(most)} blocks."
@@ -258,12 +242,11 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Claim:
 
 def damping_reduces_oscillations(evidence: Evidence, id: str) -> Claim:
     """Damping takes power from the waves of the lattice."""
-
-    def falls(table: pd.DataFrame) -> list[bool]:
+    falls = []
+    for table in evidence.lattices("steady_displacement")[:2]:
         by_level = table.sort_values("damping_ratio").groupby(["left", "gamma"])["lattice_noise"]
-        return [after < before for _, noise in by_level for before, after in combinations(noise, 2)]
-
-    decided = agreeing(*map(falls, evidence.lattices("steady_displacement")[:2]))
+        falls.append([after < before for _, noise in by_level for before, after in combinations(noise, 2)])
+    decided = agreeing(*falls)
     why = "It needs the sign opposite to the printed one." if all(decided) else ""
     return evidence.qualitative(decided, condition=True) | {"why": why}
 
@@ -284,23 +267,21 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Claim:
     table = evidence.lattices("stress_pulses", where="damping_ratio > 0")[0]
     # At the damping of the figures; without any, the lattice rings.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]
-    sizes = ["pulse_peak_velocity", "pulse_half_width"]
-    return evidence.qualitative(apart(table, sizes, evidence.tolerance(id), True))
+    return evidence.qualitative(
+        apart(table, ["pulse_peak_velocity", HALF_WIDTH], evidence.tolerance(id), True)
+    )
 
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Claim:
     """Peak and half-width on the damped lattices are the functionals of the pre-stress that the exact solution has."""
     table, allowed = evidence.lattices("stress_pulses", where="damping_ratio > 0")[0], evidence.tolerance(id)
-    off, sure = pd.DataFrame(), pd.DataFrame()
-    for name, ours, exact in (
-        ("peak", "pulse_peak_velocity", "exact_largest_velocity"),
-        ("half-width", "pulse_half_width", "exact_half_width"),
-    ):
-        off[name] = (table[ours] / table[exact] - 1.0).abs()
-        sure[name] = off[name] - table[f"uncertainty_{ours}"] / table[exact]
-    near, far = (off <= allowed).all(axis=1), (sure > allowed).any(axis=1)
-    further = {f"{name} on the lattice, with damping, off by at most": float(off[name].max()) for name in off}
-    return evidence.qualitative(agreeing(near, ~far)) | {"further": further}
+    exact = table[["exact_largest_velocity", "exact_half_width"]].to_numpy()
+    off = (table[["pulse_peak_velocity", HALF_WIDTH]] / exact - 1.0).abs()
+    sure = off - table[[f"uncertainty_{name}" for name in off]].to_numpy() / exact
+    decided = agreeing((off <= allowed).all(axis=1), ~(sure > allowed).any(axis=1))
+    most = "{} on the lattice, with damping, off by at most".format
+    further = {most(name): float(size) for name, size in zip(("peak", "half-width"), off.max(), strict=True)}
+    return evidence.qualitative(decided) | {"further": further}
 
 
 # With other friction laws, as far as friction linear in slip rate tests it
@@ -338,12 +319,9 @@ def pulses_whatever_friction(evidence: Evidence, id: str) -> Claim:
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Claim:
     """Width and slip at the strongest dependences that still have pulses are not those without one."""
-    held, further = [], {}
-    for name in ("width", "slip"):
-        of = lattices_with_rate(evidence).pivot(
-            index="level", columns="over_critical", values=f"pulse_{name}"
-        )
-        change = (of[[-0.9, 0.9]].div(of[0.0], axis=0) - 1.0).abs()
-        held += list((change > evidence.tolerance(id)).to_numpy().ravel())
-        further[f"smallest change of the {name}"] = float(change.min().min())
+    runs = lattices_with_rate(evidence).set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
+    of = {factor: runs.xs(factor, level=1) for factor in (-0.9, 0.0, 0.9)}
+    change = pd.concat([(of[factor] / of[0.0] - 1.0).abs() for factor in (-0.9, 0.9)])
+    held = (change > evidence.tolerance(id)).to_numpy().ravel()
+    further = {f"smallest change of the {name[6:]}": float(least) for name, least in change.min().items()}
     return evidence.qualitative(held, condition=True) | {"further": further}

@@ -82,15 +82,10 @@ class Ledger:
         """Measured value, as `measured_text`."""
         return measured_text(self(id))
 
-    def deviation(self, id: str) -> float:
-        """What stands beside the tolerance; NaN where nothing was measured."""
-        deviation = self(id).deviation
-        return float("nan") if deviation is None else deviation
-
-    def deviation_at(self, id: str, **chosen: float | str) -> float:
-        """The deviation of a claim at a combination of choices; NaN where it was not judged at it."""
-        rows = [row["deviation"] for row in self(id).choices if chosen.items() <= row.items()]
-        return rows[0] if rows else float("nan")
+    def deviation_at(self, id: str, **chosen: float | str) -> float | None:
+        """The deviation of a claim at a combination of choices; None where it was not judged at it."""
+        rows = (row["deviation"] for row in self(id).choices if chosen.items() <= row.items())
+        return next(rows, None)
 
     def listed(self, id: str, words: str) -> str:
         """The further numbers of a claim whose name has these words before its colon, each with what is behind it."""

@@ -59,9 +59,9 @@ def approximate(
     exponent: tuple[float, float] | None = None,
     tolerance_exponent: float = 0.0,
 ) -> str:
-    """Verdict on an estimate: the worse of those on the median deviation, and on the exponent if one is claimed.
+    """Verdict on an estimate: the worse of those on the median deviation, and on the distance of its exponent from 1.
 
-    Both with their uncertainties, the exponent by its distance from 1. The single worst run does not decide.
+    Each with its uncertainty; the single worst run does not decide.
     """
     found = within(*median, tolerance)
     if exponent is None:
@@ -92,10 +92,7 @@ def flips(at: Callable[[float], str], tolerance: float) -> list[dict]:
 
 
 def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:
-    """Verdict on an always, never or every, from how many runs it holds in, and fails in, by both finest lattices.
-
-    ``condition``: whether it needs one that the paper does not state.
-    """
+    """Verdict on an always, never or every; ``condition``: whether it needs one that the paper does not state."""
     if not held + failed + undecided:
         return "not testable"
     if failed:
@@ -106,10 +103,7 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
 
 
 def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
-    """Verdict on a figure read off, from the probability p of a chi-square at least as large as that of the best fit.
-
-    The degrees of freedom are the readings less the fitted parameters.
-    """
+    """Verdict on a figure read off, by p of the best fit; degrees of freedom: readings less fitted parameters."""
     if not np.isfinite(p):
         return "not testable"
     if degrees_of_freedom < 2:

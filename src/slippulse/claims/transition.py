@@ -1,6 +1,6 @@
-"""Claims about the transition from crack to pulse, and where a front ends, at every choice the paper leaves open.
+"""Claims about the transition from crack to pulse, and where a front ends, in functions named as they are.
 
-The choices are those of manuscript/open_choices.yaml. A function is named as its claim.
+Each is judged at every choice that the paper leaves open (manuscript/open_choices.yaml).
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -51,15 +51,10 @@ Tables = list[tuple[Chosen, list[pd.DataFrame]]]
 
 
 def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = None) -> Claim:
-    """One claim with the verdict over all combinations of choices, each given with the claim judged at it.
-
-    ``shown``: whose numbers stand with it; without, those of the first combination.
-    """
+    """One claim from those at all combinations of choices, with the numbers of the first one, or of ``shown``."""
     claims = [claim for _, claim in pairs]
     rows: list[dict[str, Any]] = [
-        choice
-        | {name: claim.get(name) for name in ("deviation", "exponent", "verdict")}
-        | {"holds": rules.HOLDS.get(claim["verdict"])}
+        choice | {name: claim.get(name) for name in FOUND} | {"holds": rules.HOLDS.get(claim["verdict"])}
         for choice, claim in pairs
     ]
     verdict, decided = rules.over_choices([row["verdict"] for row in rows]), decisive(rows)
@@ -75,7 +70,9 @@ def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = No
         found["why"] += f" It depends on {'; on '.join(pairs_of)}."
     elif verdict == "reproduced with caveat":
         unsure = next(row for row in rows if row["verdict"] == verdict)
-        where = " and ".join(f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure)
+        where = " and ".join(
+            f"{words} {named(unsure[name])}" for name, words in NAMES.items() if name in unsure
+        )
         found["why"] = f"With {where} it is within the tolerance, but not together with its uncertainty."
     return found
 
@@ -152,18 +149,10 @@ def arrests(evidence: Evidence) -> Tables:
     Columns are distance (|x_minus|), covered, time, length (between the fronts).
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    return [
-        (choice, [rows.rename(columns=SOLVED) for rows in tables])
-        for choice, tables in solved(evidence, "stress")
-    ] + [
-        (choice | last, [rows.rename(columns=SIMULATED) for rows in tables])
-        for choice, tables in simulated(evidence, "stress", INSIDE)
+    exact, lattices = solved(evidence, "stress"), simulated(evidence, "stress", INSIDE)
+    return [(choice, [rows.rename(columns=SOLVED) for rows in tables]) for choice, tables in exact] + [
+        (choice | last, [rows.rename(columns=SIMULATED) for rows in tables]) for choice, tables in lattices
     ]
-
-
-def judged(tables: Tables, judge: Callable[[list[pd.DataFrame]], Claim]) -> list[tuple[Chosen, Claim]]:
-    """Each combination with its claim."""
-    return [(choice, judge(found)) for choice, found in tables]
 
 
 def at_ours(tables: Sequence[tuple[Chosen, Any]]) -> list[tuple[Chosen, Any]]:
@@ -184,17 +173,16 @@ def medians(evidence: Evidence, measured: str, predicted: str) -> dict[float, fl
 def under_displacement(evidence: Evidence, id: str) -> Claim:
     """An estimate under a displacement boundary, at the first stick."""
     quantity = f"transition_{ESTIMATES[id[0]][0]}"
-
-    def judge(tables: list[pd.DataFrame]) -> Claim:
-        return evidence.approximate(id, tables, quantity, f"paper_{quantity}", "left", "gamma")
-
-    tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(judged(tables, judge)) | evidence.compared("scaling_displacement", quantity)
+    pairs = [
+        (choice, evidence.approximate(id, found, quantity, f"paper_{quantity}", "left", "gamma"))
+        for choice, found in simulated(evidence, "displacement") + solved(evidence, "displacement")
+    ]
+    return over_choices(pairs) | evidence.compared("scaling_displacement", quantity)
 
 
 def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim]) -> Claim:
     """A claim judged at each combination; beside its numbers the medians at each fraction, the rest being ours."""
-    pairs = judged(arrests(evidence), judge)
+    pairs = [(choice, judge(found)) for choice, found in arrests(evidence)]
     further = {
         f"median ratio: at {named(choice['fraction'])}": claim["measured"]
         for choice, claim in sorted(at_ours(pairs), key=lambda pair: named(pair[0]["fraction"]))
@@ -205,11 +193,8 @@ def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim
 def under_stress(evidence: Evidence, id: str) -> Claim:
     """An estimate under a stress boundary, at each fraction and at the last release."""
     estimate = ESTIMATES[id[0]]
-
-    def judge(tables: list[pd.DataFrame]) -> Claim:
-        return evidence.approximate(id, tables, *estimate, "left", "width")
-
-    claim = at_fractions(evidence, judge) | evidence.compared("scaling_stress", f"transition_{estimate[0]}")
+    claim = at_fractions(evidence, lambda found: evidence.approximate(id, found, *estimate, "left", "width"))
+    claim |= evidence.compared("scaling_stress", f"transition_{estimate[0]}")
     fractions, ratio = zip(*sorted(medians(evidence, *estimate).items()), strict=True)
     over = np.array(ratio) - 1.0
     claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(
@@ -235,12 +220,11 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> Claim:
 
 def T_trans_stress_underestimate(evidence: Evidence, id: str) -> Claim:
     """T_trans is longer than |x_minus|, in every run."""
-
-    def judge(tables: list[pd.DataFrame]) -> Claim:
+    pairs = []
+    for choice, tables in arrests(evidence):
         longer = [table["time"] > table["distance"] for table in tables[:2]]
-        return evidence.qualitative(agreeing(longer[0], longer[-1]))
-
-    return over_choices(judged(arrests(evidence), judge))
+        pairs.append((choice, evidence.qualitative(agreeing(longer[0], longer[-1]))))
+    return over_choices(pairs)
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> Claim:
@@ -256,15 +240,13 @@ def front_arrest_position(evidence: Evidence, id: str) -> Claim:
         return claim | {"verdict": rules.worst([claim["verdict"], far]), "further": further}
 
     whole = evidence.lattices(*sweeps, where=INSIDE)
-    each = [
-        evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {ratio}")
-        for ratio in sorted(
-            {*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}
-        )
-    ]
     shown, ratio = judge(whole), ratios(whole[0], *what)
     shown["further"] |= {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
-    return over_choices([(chosen(tables, solution="lattice"), judge(tables)) for tables in each], shown)
+    pairs = []
+    for damping in sorted({*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}):
+        tables = evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {damping}")
+        pairs.append((chosen(tables, solution="lattice"), judge(tables)))
+    return over_choices(pairs, shown)
 
 
 def transition_diverges(evidence: Evidence, id: str) -> Claim:
@@ -301,7 +283,9 @@ def rises(evidence: Evidence, table: pd.DataFrame, quantity: str) -> Claim:
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
     """The transition gets longer with the pre-stress."""
     tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(judged(tables, lambda found: rises(evidence, found[0], "transition_length")))
+    return over_choices(
+        [(choice, rises(evidence, found[0], "transition_length")) for choice, found in tables]
+    )
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:

@@ -35,7 +35,7 @@ def promise_of(simulation: Mapping) -> float | None:
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     """Scenes of a resolved simulation or of a chunk of it, in the order of its lists, and what each records.
 
-    Raises ValueError: if a scene is refused, naming the key, the value and what is allowed.
+    Raises ValueError: of a scene that is refused, naming the key, the value and what is allowed.
     """
     scenes, accuracy, order = [], simulation["accuracy"], simulation["accuracy"]["order"]
     for place, run in enumerate(runs(simulation)):

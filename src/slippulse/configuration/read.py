@@ -2,8 +2,7 @@
 
     python -m slippulse.configuration.read mine.yaml      says in one line what is wrong, before Snakemake reads it
 
-Files are YAML 1.2 without tags, anchors, templates or keys given twice. Snakemake reads a --configfile itself, and can
-evaluate expressions in it; a file that passes here holds none.
+Files are YAML 1.2 without tags, anchors, templates (which Snakemake would obey) or keys given twice.
 """
 
 import json
@@ -42,16 +41,12 @@ def read_config(
     command_line: Mapping | None = None,
     every_run: bool = True,
 ) -> Configuration:
-    """The configuration, checked.
+    """The configuration, checked; ConfigError has one line a problem, with the key, the value, what is allowed.
 
-    Parameters
-    ----------
     shipped : config/config.yaml
     overlays : what differs, one after the other; null removes a key
     command_line : what was given by --config, in which Snakemake leaves nested numbers text
     every_run : whether the scenes of all simulations are checked too
-
-    Raises ConfigError: one line a problem, with the key, the value, what is allowed.
     """
     merged = dict(shipped)
     for overlay in (*overlays, _typed(command_line or {})):
@@ -102,10 +97,7 @@ def _typed(value: Any, place: str = "") -> Any:
 
 
 def read_overlay(path: str | Path) -> dict[str, Any]:
-    """Read an overlay of the configuration, a YAML or JSON file with a mapping at the top level.
-
-    Raises ConfigError: one line that names the file, what was found and what is allowed.
-    """
+    """Read an overlay, a YAML or JSON file with a mapping; a ConfigError names the file and what is allowed."""
     path = Path(path)
     try:
         if path.exists() and not path.is_file():

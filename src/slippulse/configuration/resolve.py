@@ -50,11 +50,8 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 def resolve(
     simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping, coarser: float = 1.0
 ) -> dict[str, Any]:
-    """A simulation with everything that its data depend on, as builtins.
+    """A simulation with everything that its data depend on, as builtins, without the number of its chunks.
 
-    Parameters
-    ----------
-    simulation, model : entries of the configuration; the number of chunks is left out, since the runs are the same
     accuracy : as `accuracy_of` returns it
     coarser : multiplies the spacing, at fixed beta/dx and step/dx; a fixed spacing stays, and its step is multiplied
     """

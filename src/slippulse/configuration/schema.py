@@ -1,7 +1,7 @@
 """Every key of the configuration, once: type, range, default, meaning with unit (in brackets) and origin.
 
-From these come the refusals (`read`), and through docs/describe.py the JSON Schema in workflow/schemas and the
-tables of config/README.md. What a key says of a mapping is not said again of its class.
+From these come the refusals (`read`), and by docs/describe.py the JSON Schema and the tables of config/README.md.
+What a key says of a mapping is not said again of its class.
 """
 
 from collections.abc import Iterable

@@ -4,13 +4,7 @@ from collections.abc import Mapping
 
 
 def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """What an overlay changed: one entry a value, with key, shipped and here; None where one side has nothing.
-
-    Parameters
-    ----------
-    shipped, config : the configuration without and with overlays
-    key : where in the configuration both stand
-    """
+    """What an overlay changed below a key: one entry a value, shipped and here; None where one has nothing."""
     if isinstance(shipped, Mapping) and isinstance(config, Mapping):
         return [
             change

@@ -37,14 +37,9 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[str] = ()) -> None:
-    """Put tables together that have one row a run, or several such tables below each other.
+    """Put tables of one row a run together, or several below each other, which the columns ``last`` tell apart.
 
     A column that no run of a chunk has is empty there; it stands behind those of the chunk that has the first run.
-
-    Parameters
-    ----------
-    paths : the table of each chunk, in the order of their numbers
-    last : columns that stand behind all others; by these, several tables are told from each other
     """
     chunks = _texts(paths)
     keys = [name for name in last if name in chunks[0]]
@@ -71,15 +66,10 @@ def join_grid_studies(
     quantities: Callable[[pd.DataFrame, Sequence[str]], list[str]],
     joined: str | Path,
 ) -> None:
-    """Put the grid studies of the chunks of a sweep together.
+    """Put the grid studies of the chunks of a sweep together; ``finest`` is the joined table of measured numbers.
 
-    Parameters
-    ----------
-    paths : the grid study of each chunk, in the order of their numbers
-    finest : the joined table of measured numbers
     keys : columns that name a run
-    quantities : names, of a measured table, what its grid study has a row for; a chunk may have more, and lack what
-        none of its runs has
+    quantities : names what the grid study of a table has a row for; that of a chunk may have more, or fewer
     """
     (named,) = _texts([finest])
     chunks = _texts(paths)

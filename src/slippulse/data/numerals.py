@@ -50,8 +50,7 @@ def percent(value: float | None, digits: int = 2) -> str:
 def with_uncertainty(value: float | None, uncertainty: float | None, unknown: str = "") -> str:
     """A value with its uncertainty in the last digits, as in 1.476(13), rounded as the Particle Data Group does.
 
-    A value that is known to more than `MOST_WITH_UNCERTAINTY` digits is cut there, and its uncertainty rounded up;
-    ``unknown`` follows one without an uncertainty.
+    Of at most `MOST_WITH_UNCERTAINTY` digits, with that rounded up; ``unknown`` follows one without an uncertainty.
     """
     if value is None or not math.isfinite(value) or uncertainty == 0.0:
         return number(value, MOST)

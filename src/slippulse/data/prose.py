@@ -10,11 +10,7 @@ from .numerals import FILTERS, number
 
 
 class Prose(Environment):
-    """Where the expressions of a text are evaluated.
-
-    An unknown name is an error; what belongs to None, such as the width of a pulse where theory has none, is None. A
-    number without a filter has three significant digits.
-    """
+    """Where the expressions of a text are evaluated: an unknown name is an error, and what belongs to None is None."""
 
     def __init__(self) -> None:
         super().__init__(undefined=StrictUndefined, finalize=_text)
@@ -39,10 +35,7 @@ PROSE = Prose()
 
 
 def fill(text: str, names: Mapping[str, object]) -> str:
-    """Markdown with each ``{{ expression }}`` replaced by its value.
-
-    Raises ValueError: if an expression fails, with the line it stands on and the reason.
-    """
+    """Markdown with each ``{{ expression }}`` replaced by its value; a ValueError has the line of one that fails."""
     try:
         return PROSE.from_string(text).render(names)
     except (TemplateError, ValueError, TypeError, ArithmeticError, LookupError) as error:

@@ -37,7 +37,7 @@ def git_state(root: str | Path) -> dict | None:
 
     def ask(*arguments: str) -> str:
         command = ["git", "-C", str(root), *arguments]
-        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=True).stdout.strip()
+        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=True).stdout.rstrip()
 
     try:
         changed = ask("status", "--porcelain", "--untracked-files=no").splitlines()
@@ -75,8 +75,6 @@ def provenance(
 ) -> dict:
     """Everything that a result depends on.
 
-    Parameters
-    ----------
     root, results : folders of the project, and of the results with the records of their jobs
     sources : digest of `source_files`
     config, shipped : the configuration with and without overlays

@@ -24,7 +24,7 @@ SETTLED = 2.0
 
 
 class Origin(NamedTuple):
-    """A job: what it makes from which results, by path below results/, and by which step of `slippulse.steps`.
+    """A job: what it makes from which results, by path below results/, by which step of `slippulse.steps`.
 
     With digests of the configuration behind it, and of the sources and texts that the step reads.
     """
@@ -147,10 +147,7 @@ class Tree:
         }
 
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
-        """One line for each file that is not as a complete run would make it, and how many files were compared.
-
-        ``complete`` is what such a run makes with all that this is made from; others are compared where they are there.
-        """
+        """One line for each file that is not as a run makes it, of those there or ``complete``; and their number."""
         paths = (path.relative_to(self.results) for path in self.results.rglob("*") if path.is_file())
         there = {path.as_posix() for path in paths if path.parts[0] not in BESIDE and path.name[0] != "."}
         wanted = there.union(complete)
@@ -181,10 +178,7 @@ class Tree:
 
 
 class Digests:
-    """SHA-256 of files, remembered in a file with what tells that one is still the same: size, inode and its two times.
-
-    The time of the inode changes with every change of content, and no program sets it.
-    """
+    """SHA-256 of files, remembered with size, inode and both times; no program sets that of the inode."""
 
     def __init__(self, path: Path) -> None:
         self._path, self._known = path, {}

@@ -20,10 +20,7 @@ BARE = "This is a netCDF dimension but not a netCDF variable."
 
 
 def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
-    """Write a Dataset without coordinates that are no dimension as netCDF-4; equal data give equal bytes.
-
-    Through memory: HDF5 that meets a full disk half way does not always leave the interpreter standing.
-    """
+    """Write a Dataset without coordinates that are no dimension as netCDF-4; equal data give equal bytes."""
     if configuration():
         dataset = dataset.assign_attrs(configuration=configuration())
     content = BytesIO()
@@ -45,10 +42,7 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
 
 
 def load_dataset(path: str | Path) -> xr.Dataset:
-    """Read a Dataset into memory and close the file.
-
-    Raises UnreadableFile: naming the file and the remedy.
-    """
+    """Read a Dataset into memory and close the file; UnreadableFile names the file and the remedy."""
     try:
         with h5py.File(path) as file:
             variables = {

@@ -15,10 +15,7 @@ def save_table(table: pd.DataFrame, path: str | Path, digits: int = 9) -> None:
 
 
 def load_table(path: str | Path, whole: Collection[str] | None = None) -> pd.DataFrame:
-    """Read a table. With ``whole``, only these columns may hold whole numbers, others fractions.
-
-    Raises UnreadableFile: naming the file and the remedy.
-    """
+    """Read a table; of ``whole``, only these columns hold whole numbers. Raises UnreadableFile."""
     try:
         table = pd.read_csv(path, low_memory=False)
         if whole is None:

@@ -31,10 +31,7 @@ def claims_page(
     findings: Sequence[Mapping] = (),
     tables: Iterable[str] = (),
 ) -> str:
-    """The ledger and the findings, as in their JSON, with links to tables, files from the folder of the page on.
-
-    ``altered``: what differs from the shipped configuration.
-    """
+    """The ledger and the findings, as in their JSON, with links to tables, files from the folder of the page on."""
     return page(
         "claims.html",
         findings=findings,

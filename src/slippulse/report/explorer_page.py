@@ -23,14 +23,7 @@ COLOURS = 32
 
 
 def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: str) -> str:
-    """The page, one file that loads nothing.
-
-    Parameters
-    ----------
-    law : the front law, as `slippulse.studies.explorer_law` has it
-    measured : measured tables of sweeps
-    colours : colour map of slip velocity, by its name
-    """
+    """The page, from the front law (`studies.explorer_law`), measured tables of sweeps and the name of a colour map."""
     shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, COLOURS))
     largest = float(law["damping_ratio"].max())
     data = {
@@ -61,10 +54,7 @@ def front_law(law: pd.DataFrame) -> dict:
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
-    """Rows of tau_0, gamma, W, beta, b, release rule and `MEASURED` of the runs that the page can compare with.
-
-    They have equal positive levels, a plain peak, and no larger damping ratio than the law.
-    """
+    """tau_0, gamma, W, beta, b, release rule and `MEASURED` of each run with equal positive levels and a plain peak."""
     kept = []
     for run in table[table["boundary"] == "displacement"].to_dict("records"):
         prestress = prestress_from(run)

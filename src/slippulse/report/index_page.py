@@ -45,8 +45,6 @@ def index_page(
 ) -> str:
     """The page in the folder of the results; files that are not there get no link.
 
-    Parameters
-    ----------
     texts : files of the `captions` and of the `summary`
     galleries : names of figures by the heading that they stand under
     scenes : titles by name

@@ -125,7 +125,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "claim": ledger,
         "found": ledger.found,
         "cite": cite,
-        "off": lambda id: cite(id, percent(ledger.deviation(id))),
+        "off": lambda id: cite(id, percent(ledger(id).deviation)),
         "measured": lambda id: cite(id, ledger.measured(id)),
         "runs": partial(parameters, config),
         "entries": read_text(folder / "claims.yaml"),

@@ -20,13 +20,7 @@ NONE = "\N{EN DASH}"
 
 
 def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping) -> str:
-    """A page that stands alone, with the file of the scene's figure.
-
-    Parameters
-    ----------
-    numbers : as `slippulse.figures.shared.numbers.scene_numbers`
-    attributes : of the run's data, with the state of its leading pulse
-    """
+    """A page that stands alone, with its figure; ``attributes``: of the data, with the state of the leading pulse."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         # In words, what its pre-stress has beside the Gaussian and its levels.

@@ -1,7 +1,4 @@
-"""Tables of the report, as Markdown: ledger, sentences of the paper, errata, and how exact the numbers are.
-
-The cells of the report import them.
-"""
+"""Tables of the report, as Markdown: ledger, sentences of the paper, errata, how exact the numbers are."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -15,11 +15,8 @@ from ..data.tables import load_table
 def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame]]:
     """Datasets by simulation; tables by simulation or study, of grid studies as uncertainties/NAME and coarser/NAME.
 
-    Predictions are joined to the measurements of the same runs.
-
-    Parameters
-    ----------
-    files : lists of paths by kind: data, measured, predicted, studies, coarser, uncertainties, lists (YAML or JSON)
+    Predictions are joined to the measurements of the same runs. Files are lists of paths by kind: data, measured,
+    predicted, studies, coarser, uncertainties, lists (YAML or JSON).
     """
     tables: dict[str, pd.DataFrame] = {}
     for kind in ("measured", "studies", "predicted", "uncertainties", "coarser"):

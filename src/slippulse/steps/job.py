@@ -79,10 +79,7 @@ class Jobs:
 
 
 def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path) -> None:
-    """Run one step, a module with ``run(files, outputs, settings)``, as all that a process does.
-
-    Files and outputs are paths, or lists of paths, by name; settings are what it takes from the configuration.
-    """
+    """Run one step as all that a process does; files and outputs are paths, or lists of them, by name."""
     began = time.monotonic()
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log):

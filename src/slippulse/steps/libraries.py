@@ -1,7 +1,4 @@
-"""Libraries that most steps use, loaded once for all jobs of a run.
-
-Nothing of the project's own: that may be edited while a run goes on.
-"""
+"""Libraries that most steps use, loaded once for all jobs of a run; nothing of ours, which may be edited meanwhile."""
 
 import gc
 import os

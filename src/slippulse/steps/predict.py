@@ -22,9 +22,6 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def predictions(topics: Iterable[str], scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
-    """What the paper and the exact theory say of each run, one row a run: NaN where they say nothing.
-
-    topics : modules of `predict`, each with ``predictions(scenes, settings)``
-    """
+    """What the paper and the exact theory say of each run by some modules of `predict`; NaN where they say nothing."""
     found = [import_module(f"slippulse.predict.{topic}").predictions(scenes, settings) for topic in topics]
     return pd.concat(found, axis=1)

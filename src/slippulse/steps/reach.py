@@ -103,10 +103,7 @@ def needs_of(room: str) -> dict[str, dict]:
 
 
 def sources(*modules: str) -> list[str]:
-    """Files that any of some modules, dotted below slippulse, reaches by its imports, and the FILES that these name.
-
-    Their paths are relative to the project, and sorted.
-    """
+    """Files that any of some modules, dotted below slippulse, reaches by its imports, and their FILES, sorted."""
     reached: set[Path] = set()
     pending = [_file(module) for module in modules]
     while pending:

@@ -1,7 +1,6 @@
 """Run and measure one simulation on coarser lattices, and write the numerical uncertainty of every number.
 
-The coarser data are not kept; their measured tables are, one below the other with their factor. The study of a chunk
-has every number that the whole simulation's may have.
+The coarser data are not kept; their measured tables are, one below the other with their factor.
 """
 
 import sys

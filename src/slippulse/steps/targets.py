@@ -37,10 +37,7 @@ class Plan:
         self.tree = Tree(RESULTS, self.origins)
 
     def wanted(self, targets: Iterable[str]) -> list[str]:
-        """Results that rules and files are, with all that they are made from, below results/.
-
-        Raises ConfigError: naming a target that there is not, and the one that was probably meant.
-        """
+        """Results that rules and files are, with all they are made from; ConfigError has the target probably meant."""
         known = [*self.named, *(f"{RESULTS}/{name}" for name in self.origins)]
         files: list[str] = []
         for target in targets:
@@ -70,10 +67,9 @@ class Plan:
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
-        """Remove what is not as its record says, of some results and of what they are made from.
+        """Lock the folder, and remove what is not as its record says of some results and of what they are made from.
 
-        Other locks, below a folder, are left by a run that was killed. Returns what holds that of this run; raises
-        ConfigError where another one is at work.
+        Other locks, below a folder, are left by a run that was killed. Raises ConfigError where another run is at work.
         """
         held = take(locks / "run.lock")
         if held is None:

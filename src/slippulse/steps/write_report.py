@@ -65,13 +65,7 @@ def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
 
 
 def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
-    """The names of the cells for a notebook that is opened inside a project with finished results.
-
-    Parameters
-    ----------
-    document : one of `DOCUMENTS`
-    show : what is shown goes there; by default below the cell
-    """
+    """The names of a document's cells, for a notebook in a project with results; what is shown goes below the cell."""
     if show is None:
         from IPython.display import Markdown, display
 
