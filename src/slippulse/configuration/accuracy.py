@@ -83,13 +83,8 @@ def settings_for(
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
     spacings = _spacings(FRACTION * accuracy, prestress, gamma, damping_ratio, release, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    bound = MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2)
-    settings: dict[str, Any] = {
-        "dx": dx,
-        "beta": damping_ratio * dx,
-        "max_step": min(STEP, bound),
-        "order": ORDER,
-    }
+    step = min(STEP, MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2))
+    settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step, "order": ORDER}
     # Refuses what is left to refuse.
     Scene(boundary=boundary, prestress=prestress, gamma=gamma, release=release, duration=1.0, **settings)
     return settings
@@ -98,12 +93,10 @@ def settings_for(
 def promised(simulation: Mapping) -> Mapping[str, Any]:
     """A resolved simulation, with the spacing of each run where an accuracy is promised; raises ConfigError."""
     promise = promise_of(simulation)
-    if promise is None:
-        return simulation
-    if simulation["scheme"] != "localised":
+    if promise is not None and simulation["scheme"] != "localised":
         # The error of another scheme's step is not seen by a grid study.
         raise ConfigError(f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given")
-    if math.isnan(promise):
+    if promise is None or math.isnan(promise):
         return simulation
     if any(alphas := simulation.get("rate_strengthening", [])):
         # The constants above are those without it; beyond alpha_c no pulse has a width, near -alpha_c slip diverges.
@@ -140,12 +133,11 @@ def _spacings(
             if fields:
                 spacings.append(error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer))
         return spacings
-    spacings = [peak / BLOCKS]
-    if max(levels) > 0.0:
-        spacings.append(error * peak / FREE_SPEED)
     negative = [level for level in levels if level < 0.0 < prestress.peak]
     reaches = [prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level)) for level in negative]
-    spacings += [reach / BLOCKS for reach in reaches]
+    spacings = [length / BLOCKS for length in (peak, *reaches)]
+    if max(levels) > 0.0:
+        spacings.append(error * peak / FREE_SPEED)
     if prestress.left < 0.0 == prestress.right and reaches:
         if not prestress.steps:
             spacings.append(error * reaches[0] / (SHARE_TIME + SHARE_TIME_DAMPED * ratio))

@@ -46,19 +46,14 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
         step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
         if "promise" in accuracy:
             step = min(step, accuracy["max_step"])
-        scene = Scene(
-            prestress=run.profile,
-            duration=_duration(simulation["duration"], run.profile, run.gamma),
-            dx=dx,
-            gamma=run.gamma,
-            beta=beta,
-            release=run.release,
-            rate_strengthening=run.alpha,
-            max_step=step * simulation["coarser"] if "fixed" in simulation["spacing"] else step,
-            order=order,
-            **{key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")},
+        if "fixed" in simulation["spacing"]:
+            step *= simulation["coarser"]
+        duration = _duration(simulation["duration"], run.profile, run.gamma)
+        own = {key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")}
+        own |= {"order": order, "max_step": step, "release": run.release, "rate_strengthening": run.alpha}
+        scenes.append(
+            Scene(prestress=run.profile, duration=duration, dx=dx, gamma=run.gamma, beta=beta, **own)
         )
-        scenes.append(scene)
     return scenes, [_samples(simulation.get("samples"), scene.duration) for scene in scenes]
 
 
@@ -79,11 +74,11 @@ def run_count(simulation: Mapping) -> int:
 def _axes(simulation: Mapping) -> list[Sequence]:
     """The lists whose product the runs are."""
     release, right, rule = simulation["release"], simulation.get("right"), simulation.get("beyond")
-    # One step a level, at the position from which the level holds.
-    steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
     if "profiles" in simulation:
         shapes = [simulation["profiles"]]
     else:
+        # One step a level, at the position from which the level holds.
+        steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
         shapes = [simulation["left"], [None] if right == "same" else right, simulation["width"], steps]
     return [
         [release] if isinstance(release, str) else release,

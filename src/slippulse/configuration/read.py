@@ -52,10 +52,11 @@ def read_config(
     for overlay in (*overlays, _typed(command_line or {})):
         merged = _merge(merged, overlay)
     sweeps = merged.get("simulations")
-    for name in shipped["simulations"]:
-        if isinstance(sweeps, Mapping) and name not in sweeps:
-            allowed = "what is shipped stays, since figures and verdicts need it"
-            raise ConfigError(f"simulations.{name}: null; allowed: {allowed}")
+    if isinstance(sweeps, Mapping) and (
+        gone := [name for name in shipped["simulations"] if name not in sweeps]
+    ):
+        allowed = "what is shipped stays, since figures and verdicts need it"
+        raise ConfigError(f"simulations.{gone[0]}: null; allowed: {allowed}")
     try:
         config = Configuration.model_validate(merged)
     except ValidationError as error:
@@ -142,9 +143,8 @@ class _PlainComposer(Composer):
         elif event.tag:
             found = f"tag {short_repr(str(event.tag))}; allowed: no tags"
         elif not isinstance(event, ScalarEvent):
-            found = "a collection as a key; allowed: text" * (
-                isinstance(parent, MappingNode) and index is None
-            )
+            if isinstance(parent, MappingNode) and index is None:
+                found = "a collection as a key; allowed: text"
         elif event.implicit[0] and not event.value and parent is not None:
             found = "no value; allowed: a value, or null, which removes the key"
         if found:
@@ -223,9 +223,7 @@ def words(node: dict[str, Any]) -> str:
         different = "different " if node.get("uniqueItems") else ""
         return f"a list of {different}{item}" + (", at least one" if node.get("minItems") else "")
     if kind in ("number", "integer"):
-        limits = {
-            key: f"{node[key]:g}".replace("e+0", "e").replace("e-0", "e-") for key in SIGNS if key in node
-        }
+        limits = {key: re.sub(r"e\+?(-?)0", r"e\1", f"{node[key]:g}") for key in SIGNS if key in node}
         text = " and ".join(f"{SIGNS[key]} {limit}" for key, limit in limits.items())
         if {*limits} == {"minimum", "maximum"}:
             text = f"from {limits['minimum']} to {limits['maximum']}"
@@ -236,9 +234,8 @@ def words(node: dict[str, Any]) -> str:
 def _dotted(place: Sequence[str | int]) -> str:
     """A key as a refusal names it."""
     plain = re.compile(r"\w{1,80}", re.ASCII).fullmatch
-    return (
-        ".".join(str(part) if plain(str(part)) else short_repr(part) for part in place) or "the configuration"
-    )
+    parts = [str(part) if plain(str(part)) else short_repr(part) for part in place]
+    return ".".join(parts) or "the configuration"
 
 
 def _remedy(value: object) -> str:

@@ -85,11 +85,10 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     profile = {key: given.pop(key) for key in Profile.model_fields}
     listed = ("gamma", "damping_ratio", "beta", "dx", "rate_strengthening")
     given |= {key: [given[key]] for key in listed if key in given}
-    given["profiles"], given["duration"] = [profile], {"time": scene.duration}
-    given["record"] = ["fronts", "fields", "samples"]
-    # Of a map and of an animation.
-    given["samples"] = {"times": 241, "positions": 801, "extent": extent}
-    return Simulation.model_validate(given)
+    # Samples of a map and of an animation.
+    samples = {"times": 241, "positions": 801, "extent": extent}
+    given |= {"profiles": [profile], "duration": {"time": scene.duration}, "samples": samples}
+    return Simulation.model_validate(given | {"record": ["fronts", "fields", "samples"]})
 
 
 @np.errstate(all="ignore")
@@ -117,9 +116,7 @@ def _largest(profile: Prestress, dx: float) -> float:
     """The largest pre-stress of a block, at the peak and the bumps and around them."""
     if not profile.bumps:
         return max(profile.peak, *(level for *_, level in profile.intervals))
-    centres, widths = np.array(
-        [(0.0, profile.width), *((centre, width) for centre, _, width in profile.bumps)]
-    ).T
+    centres, _, widths = np.array([(0.0, 1.0, profile.width), *profile.bumps]).T
     near = centres[:, None] + np.linspace(-3.0, 3.0, 601)[:, None, None] * widths
     return float(np.max(profile(np.round(np.append(near, centres) / dx) * dx)))
 
