@@ -22,16 +22,14 @@ class ChunksDiffer(ValueError):
     """Files that are not the chunks of one sweep."""
 
     def __init__(self, paths: Sequence[str | Path]) -> None:
-        super().__init__(
-            f"{paths[0]} and the other {len(paths) - 1}: not the runs of one sweep; delete them and run again"
-        )
+        others = f"{paths[0]} and the other {len(paths) - 1}"
+        super().__init__(f"{others}: not the runs of one sweep; delete them and run again")
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
     """All runs in the order of the sweep, from the data of its chunks in the order of their numbers."""
     chunks = [load_dataset(path) for path in paths]
-    runs = _runs(paths, [chunk.sizes["point"] for chunk in chunks])
-    of_chunks = zip(chunks, runs, strict=True)
+    of_chunks = zip(chunks, _runs(paths, [chunk.sizes["point"] for chunk in chunks]), strict=True)
     found = {run: point(chunk, index) for chunk, own in of_chunks for index, run in enumerate(own)}
     return described(combine([found[run] for run in sorted(found)], record))
 
@@ -43,9 +41,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
     """
     chunks = _texts(paths)
     keys = [name for name in last if name in chunks[0]]
-    blocks = [
-        chunk.groupby(keys, sort=False).ngroup() if keys else pd.Series(0, chunk.index) for chunk in chunks
-    ]
+    blocks = [chunk.groupby(keys or (lambda row: 0), sort=False).ngroup() for chunk in chunks]
     if len({block.max() for block in blocks}) > 1:
         raise ChunksDiffer(paths)
     runs = _runs(paths, [int((block == 0).sum()) for block in blocks])
@@ -73,16 +69,14 @@ def join_grid_studies(
     """
     (named,) = _texts([finest])
     chunks = _texts(paths)
-    numbers = [chunk["point"].astype(int) for chunk in chunks]
-    runs = _runs(paths, [int(number.max()) + 1 for number in numbers])
+    runs = _runs(paths, [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks])
     if sum(map(len, runs)) != len(named):
         raise ChunksDiffer(paths)
-    for chunk, number, own in zip(chunks, numbers, runs, strict=True):
-        chunk["point"] = np.array(own)[number]
+    for chunk, own in zip(chunks, runs, strict=True):
+        chunk["point"] = np.array(own)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
-    rows = pd.MultiIndex.from_product(
-        [range(len(named)), quantities(load_table(finest), keys)], names=study.index.names
-    )
+    of_each = quantities(load_table(finest), keys)
+    rows = pd.MultiIndex.from_product([range(len(named)), of_each], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
     of_runs = named[list(keys)].iloc[table["point"]].reset_index(drop=True)
     save_table(pd.concat([table[["point"]], of_runs, table.drop(columns="point")], axis=1), joined)

@@ -40,9 +40,7 @@ def rounded(value: float | None, digits: int = 4) -> str:
 
 def percent(value: float | None, digits: int = 2) -> str:
     """A fraction as a percentage, or as it is where a percentage would need a power of ten."""
-    if value is None or math.isnan(value):
-        return MISSING
-    if 0.0 < 100.0 * abs(value) < SMALL:
+    if value is None or math.isnan(value) or 0.0 < 100.0 * abs(value) < SMALL:
         return number(value, digits)
     return f"{number(100.0 * value, digits)} %"
 
@@ -58,10 +56,9 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
         return number(value, MOST) + unknown
     from uncertainties import ufloat
 
-    if value != 0.0:
-        last = 10.0 ** (math.floor(math.log10(abs(value))) + 1 - MOST_WITH_UNCERTAINTY)
-        if abs(uncertainty) < last:
-            return _minus(f"{ufloat(value, last):.1uSP}")
+    last = 10.0 ** (math.floor(math.log10(abs(value))) + 1 - MOST_WITH_UNCERTAINTY) if value else 0.0
+    if abs(uncertainty) < last:
+        return _minus(f"{ufloat(value, last):.1uSP}")
     return _minus(f"{ufloat(value, abs(uncertainty)):SP}")
 
 
@@ -72,9 +69,7 @@ def short(value: object, longest: int = 80) -> str:
 
 
 # What texts and templates may write a value with.
-FILTERS = {
-    function.__name__: function for function in (number, percent, rounded, setting, short, with_uncertainty)
-}
+FILTERS = {write.__name__: write for write in (number, percent, rounded, setting, short, with_uncertainty)}
 
 
 def _power_of_ten(text: str) -> str:

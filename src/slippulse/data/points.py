@@ -19,9 +19,8 @@ def point(sweep: xr.Dataset, index: int, indexes: bool = True) -> xr.Dataset:
     Raises TypeError: if it is not a sweep; ValueError: if it has no such run, or its blocks are not those of its runs.
     """
     if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
-        raise TypeError(
-            f"sweep: {short_repr(sweep)}; allowed: a Dataset that run_sweep returned, or of results/data"
-        )
+        allowed = "a Dataset that run_sweep returned, or of results/data"
+        raise TypeError(f"sweep: {short_repr(sweep)}; allowed: {allowed}")
     check_number("index", index, whole=True, at_least=0, at_most=sweep.sizes["point"] - 1)
     values: dict[Hashable, np.ndarray] = {name: variable.values for name, variable in sweep.variables.items()}
     names: dict[tuple, list] = {}
@@ -33,9 +32,8 @@ def point(sweep: xr.Dataset, index: int, indexes: bool = True) -> xr.Dataset:
         names["point",].remove("row_size")
         size = values["row_size"]
         if "x" not in values or np.any(size < 0) or np.sum(size) != values["x"].size:
-            raise ValueError(
-                f"row_size: {short_repr(size.tolist())}; allowed: numbers of blocks whose sum is the length of x"
-            )
+            allowed = "numbers of blocks whose sum is the length of x"
+            raise ValueError(f"row_size: {short_repr(size.tolist())}; allowed: {allowed}")
         end = int(np.sum(size[: index + 1]))
         fields = {name: ("x", values[name][end - int(size[index]) : end]) for name in names["block",]}
         coordinates["x"] = fields.pop("x")

@@ -17,18 +17,17 @@ class Prose(Environment):
         self.filters |= FILTERS
 
     def getattr(self, obj: object, attribute: str) -> object:
-        """The attribute; None of None."""
         return None if obj is None else super().getattr(obj, attribute)
 
     def getitem(self, obj: object, argument: object) -> object:
-        """The item; None of None."""
         return None if obj is None else super().getitem(obj, argument)
 
 
 def _text(value: object) -> object:
+    """A number without a filter has three significant digits."""
     if isinstance(value, Real):
-        value = float(value)
-    return number(value) if value is None or isinstance(value, float) else value
+        return number(float(value))
+    return number(None) if value is None else value
 
 
 PROSE = Prose()

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from itertools import chain
 from pathlib import Path
 
 import yaml
@@ -25,10 +26,8 @@ PAPER = {
 
 def source_files(root: str | Path) -> list[Path]:
     """Everything that a result may depend on besides the configuration: library, workflow, report."""
-    folders = (Path(root, folder).rglob("*") for folder in ("src", "workflow", "manuscript"))
-    below = [
-        path for found in folders for path in found if path.is_file() and "__pycache__" not in path.parts
-    ]
+    found = chain(*(Path(root, folder).rglob("*") for folder in ("src", "workflow", "manuscript")))
+    below = [path for path in found if path.is_file() and "__pycache__" not in path.parts]
     return [Path(root, "Snakefile"), *below]
 
 
@@ -48,15 +47,12 @@ def git_state(root: str | Path) -> dict | None:
 
 def machine_class() -> dict:
     """What kind of machine: no name of a host or a user."""
-    cpuinfo, lines = Path("/proc/cpuinfo"), []
-    if cpuinfo.exists():
-        lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
+    cpuinfo = Path("/proc/cpuinfo")
+    text = cpuinfo.read_text(encoding="utf-8", errors="replace") if cpuinfo.exists() else ""
     return {
         "system": platform.system(),
         "architecture": platform.machine(),
-        "processor": next(
-            (line.partition(":")[2].strip() for line in lines if line[:10] == "model name"), ""
-        ),
+        "processor": text.partition("\nmodel name")[2].partition("\n")[0].strip("\t :"),
         "cores": os.cpu_count(),
         "memory_GiB": round(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30),
     }
@@ -79,6 +75,8 @@ def provenance(
     sources : digest of `source_files`
     config, shipped : the configuration with and without overlays
     """
+    packages = (*PACKAGES, "snakemake", "matplotlib", "pandas")
+    written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     return {
         "paper": PAPER,
         "overlay": changes(shipped, config),
@@ -86,14 +84,10 @@ def provenance(
         "source_digest": sources,
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
-        "versions": {"python": platform.python_version()}
-        | {package: version(package) for package in (*PACKAGES, "snakemake", "matplotlib", "pandas")},
+        "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
         "implementation": sys.implementation.name,
         "machine": machine_class(),
-        "times": {
-            "written": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
-            "seconds_of_jobs": job_times(results),
-        },
+        "times": {"written": written, "seconds_of_jobs": job_times(results)},
     }
 
 
@@ -105,22 +99,17 @@ def checksums(files: Sequence[str], base: str | Path) -> str:
 
 def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
     """A CODECHECK manifest that lists every output, with what it is."""
-
-    def comment(name: str) -> str:
-        path = Path(name)
+    entries = []
+    for path in sorted((Path(file).relative_to(base) for file in files), key=str):
+        comment = COMMENTS.get(path.parts[0], "result")
         if path.stem in comments:
-            return f"{comments[path.stem]} ({path.suffix[1:].upper()})"
-        return COMMENTS.get(path.parts[0], COMMENTS.get(name, "result"))
-
-    names = sorted(str(Path(file).relative_to(base)) for file in files)
+            comment = f"{comments[path.stem]} ({path.suffix[1:].upper()})"
+        entries.append({"file": str(path), "comment": comment})
+    authors = [{"name": name} for name in PAPER["authors"]]
     content = {
         "version": "https://codecheck.org.uk/spec/config/1.0/",
-        "paper": {
-            "title": PAPER["title"],
-            "authors": [{"name": name} for name in PAPER["authors"]],
-            "reference": PAPER["doi"],
-        },
-        "manifest": [{"file": name, "comment": comment(name)} for name in names],
+        "paper": {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]},
+        "manifest": entries,
     }
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=110)
 

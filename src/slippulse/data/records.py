@@ -61,10 +61,8 @@ def file_digest(path: str | Path) -> str:
 
 def write_record(origin: Origin, used: Mapping, results: str | Path = "results") -> None:
     """Note what a job has made, and what it used."""
-    made, taken = (
-        {name: file_digest(Path(results, name)) for name in names}
-        for names in (origin.outputs, sorted(origin.inputs))
-    )
+    names = (origin.outputs, sorted(origin.inputs))
+    made, taken = ({name: file_digest(Path(results, name)) for name in group} for group in names)
     record = Record(origin.step, origin.configuration, origin.sources, made, taken, dict(used))
     write_json(record._asdict(), Path(results, record_path(origin)))
 
@@ -128,10 +126,8 @@ class Tree:
 
     def outdated(self) -> dict[str, str]:
         """Results that are there and would be made anew, whatever their content, with the reason; the last first."""
-        reasons = {name: self._compared(name)[0] for name in [*self.origins][::-1]}
-        return {
-            name: reason for name, reason in reasons.items() if reason and (self.results / name).is_file()
-        }
+        there = [name for name in [*self.origins][::-1] if (self.results / name).is_file()]
+        return {name: reason for name in there for reason in self._compared(name)[:1] if reason}
 
     def to_remove(self, names: Iterable[str]) -> dict[str, str]:
         """What is in the way of making anew what is faulty of some results and of what they are made from.
@@ -141,10 +137,8 @@ class Tree:
         found = self.faults(self.behind(names))
         parts = {part: found.get(part, PARTED) for name in found for part in self.origins[name].outputs}
         # A link to nowhere, or to something else than a file, is in the way too.
-        places = {name: self.results / name for name in parts}
-        return {
-            name: parts[name] for name in parts if os.path.lexists(places[name]) and not places[name].is_dir()
-        }
+        there = [name for name in parts if os.path.lexists(self.results / name)]
+        return {name: parts[name] for name in there if not (self.results / name).is_dir()}
 
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
         """One line for each file that is not as a run makes it, of those there or ``complete``; and their number."""
@@ -193,9 +187,8 @@ class Digests:
         match self._known.get(path.as_posix()):
             case [*known, str(digest)] if known == state:
                 return digest
-        settled = time.time() - max(status.st_mtime, status.st_ctime) > SETTLED
-        digest = file_digest(path)
-        if settled:
+        now, digest = time.time(), file_digest(path)
+        if now - max(status.st_mtime, status.st_ctime) > SETTLED:
             self._known[path.as_posix()] = [*state, digest]
         return digest
 

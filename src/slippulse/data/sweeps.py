@@ -18,18 +18,13 @@ FILE = {
 
 def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
     """Put the runs of a sweep into one Dataset."""
-    first = results[0]
 
     def of_all(name: str) -> list[np.ndarray]:
         return [result.variables[name].values for result in results]
 
-    out = xr.Dataset(
-        {
-            name: ("point", np.array([result.attrs[name] for result in results]))
-            for name in first.attrs
-            if name != "versions"
-        }
-    )
+    versions = {"versions": results[0].attrs["versions"]}
+    names = [name for name in results[0].attrs if name not in versions]
+    out = xr.Dataset({name: ("point", np.array([run.attrs[name] for run in results])) for name in names})
     kept = (*(FRONTS if "fronts" in record else ()), *(FIELDS if "fields" in record else ()))
     if kept:
         out["row_size"] = ("point", np.array([result.sizes["x"] for result in results]))
@@ -39,7 +34,7 @@ def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
         axes = {"sample_time": ("time",), "sample_position": ("position",)}
         for name in (*axes, "sample_slip", "sample_velocity"):
             out[name] = (("point", *axes.get(name, ("time", "position"))), np.stack(of_all(name)))
-    out.attrs = FILE | {"versions": first.attrs["versions"]}
+    out.attrs = FILE | versions
     if kept:
         # CF's contiguous ragged array: the profiles of the runs over x, one after the other.
         out["row_size"].attrs["sample_dimension"] = "block"

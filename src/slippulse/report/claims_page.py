@@ -14,9 +14,8 @@ from ..data.numerals import rounded
 from .html import markup_of, page
 
 # Each verdict has a sign, so that colour is not needed.
-SIGNS = dict(
-    zip(VERDICTS, "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{MULTIPLICATION SIGN}?\N{EN DASH}", strict=True)
-)
+MARKS = "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{MULTIPLICATION SIGN}?\N{EN DASH}"
+SIGNS = dict(zip(VERDICTS, MARKS, strict=True))
 # The bar of a deviation ends at this many tolerances.
 LONGEST = 2.0
 # Folders of tables whose kind has another name.
@@ -62,21 +61,19 @@ def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
     """Files of the simulations and studies that a source names, by name and kind of table."""
     found: dict[str, dict[str, str]] = {}
-    if not source.startswith("every simulation"):
-        found = {name: {} for name in re.findall(r"\w+", source)}
     for path in map(Path, tables):
-        kind = KINDS.get(path.parts[0], path.parts[0])
-        if source.startswith("every simulation") or path.stem in found:
-            found.setdefault(path.stem, {})[kind] = path.as_posix()
-    return {name: kinds for name, kinds in found.items() if kinds}
+        found.setdefault(path.stem, {})[KINDS.get(path.parts[0], path.parts[0])] = path.as_posix()
+    if source.startswith("every simulation"):
+        return found
+    return {name: found[name] for name in dict.fromkeys(re.findall(r"\w+", source)) if name in found}
 
 
 def command(behind: Mapping[str, Mapping[str, str]]) -> str:
     """The command that makes some tables anew."""
+    if len(behind) > FEW:
+        return "make replicate"
     paths = [f"results/{path}" for kinds in behind.values() for path in kinds.values()]
-    if not paths:
-        return "make test"
-    return f'make replicate TARGET="{" ".join(paths)}"' if len(behind) <= FEW else "make replicate"
+    return f'make replicate TARGET="{" ".join(paths)}"' if paths else "make test"
 
 
 def bar(claim: SimpleNamespace) -> tuple[str, float] | None:

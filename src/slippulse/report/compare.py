@@ -30,14 +30,14 @@ SHOWN = 10
 
 @dataclass
 class Comparison:
-    """Numbers of two trees of results."""
+    """How many numbers two trees have, agree within both uncertainties, and differ on two lattices without any.
 
-    # How many measured numbers both have, and how many differ by no more than both uncertainties.
+    With a line for each number or text that differs otherwise, and for what is not comparable, or another verdict.
+    """
+
     compared: int = 0
     agree: int = 0
-    # How many differ, are of two lattices, and have no uncertainty on either side.
     unknown: int = 0
-    # A line for each number or text that differs otherwise; and what is not comparable, and other verdicts.
     apart: list[str] = field(default_factory=list)
     other: list[str] = field(default_factory=list)
 
@@ -79,36 +79,28 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
     alike = (one[lattice] == two[lattice]).all(axis=1).to_numpy()[:, None]
     texts = [column for column in both if "O" in (one[column].dtype.kind, two[column].dtype.kind)]
     numbers = [column for column in both if column not in texts + LATTICE]
-    value, value_there = (table[numbers].astype(float) for table in (one, two))
-    bars = [
+    ours, theirs = (table[numbers].astype(float) for table in (one, two))
+    bars, bars_there = (
         _uncertainties(tree / "uncertainties" / name, values)
-        for tree, values in zip(trees, (value, value_there), strict=True)
-    ]
-    known = bars[0].notna() | bars[1].notna()
-    allowed = bars[0].fillna(0.0) + bars[1].fillna(0.0) + DIGITS * value.abs()
-    allowed = allowed.mask(~known & alike, ROUNDING * value.abs().clip(lower=1.0))
-    within = (value - value_there).abs() <= allowed
-    counted = (value.notna() & value_there.notna()) | ((value.notna() | value_there.notna()) & alike)
-    off = counted & ~within
-    unknown = off & ~known & ~alike
-    found.compared += len(_where(counted))
-    found.agree += len(_where(counted & within))
-    found.unknown += len(_where(unknown))
-    found.apart += [
-        f"{name}: point {point}, {quantity}: {value[quantity][point]:.6g} against"
-        f" {value_there[quantity][point]:.6g}; allowed: a difference of {allowed[quantity][point]:.2g}"
-        for point, quantity in _where(off & ~unknown)
-    ]
+        for tree, values in zip(trees, (ours, theirs), strict=True)
+    )
+    bar = bars.add(bars_there, fill_value=0.0)
+    allowed = bar.fillna(0.0) + DIGITS * ours.abs()
+    allowed = allowed.mask(bar.isna() & alike, ROUNDING * ours.abs().clip(lower=1.0))
+    counted = (ours.notna() & theirs.notna()) | ((ours.notna() | theirs.notna()) & alike)
+    off = counted & ~((ours - theirs).abs() <= allowed)
+    unknown = off & bar.isna() & ~alike
+    compared, differ, unsure = (int(cells.to_numpy().sum()) for cells in (counted, off, unknown))
+    found.compared, found.agree = found.compared + compared, found.agree + compared - differ
+    found.unknown += unsure
+    for point, quantity in np.argwhere((off & ~unknown).to_numpy()):
+        values = f"{ours.iat[point, quantity]:.6g} against {theirs.iat[point, quantity]:.6g}"
+        most = f"allowed: a difference of {allowed.iat[point, quantity]:.2g}"
+        found.apart.append(f"{name}: point {point}, {numbers[quantity]}: {values}; {most}")
     ours, theirs = (table[texts].astype(object).fillna("") for table in (one, two))
-    found.apart += [
-        f"{name}: point {point}, {column}: {ours[column][point]!r} against {theirs[column][point]!r}"
-        for point, column in _where((ours != theirs) & alike)
-    ]
-
-
-def _where(cells: pd.DataFrame) -> list[tuple[int, str]]:
-    """Row and column of every cell that is true."""
-    return [(int(row), str(cells.columns[column])) for row, column in np.argwhere(cells.to_numpy())]
+    for point, text in np.argwhere(((ours != theirs) & alike).to_numpy()):
+        values = f"{ours.iat[point, text]!r} against {theirs.iat[point, text]!r}"
+        found.apart.append(f"{name}: point {point}, {texts[text]}: {values}")
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
@@ -150,11 +142,10 @@ def _readable(path: Path) -> Iterator[None]:
         yield
     except UnreadableFile:
         raise
-    except (OSError, ValueError, LookupError, TypeError, RecursionError) as error:
-        reason = (
-            f"no {error}" if isinstance(error, LookupError) else getattr(error, "strerror", None) or error
-        )
-        raise UnreadableFile(path, reason) from None
+    except LookupError as error:
+        raise UnreadableFile(path, f"no {error}") from None
+    except (OSError, ValueError, TypeError, RecursionError) as error:
+        raise UnreadableFile(path, getattr(error, "strerror", None) or error) from None
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -164,10 +155,8 @@ def main(arguments: Sequence[str]) -> int:
     except ValueError as error:
         print(error)
         return 1
-    print(
-        f"{result.agree} of {result.compared} numbers agree within both uncertainties together;"
-        f" {result.unknown} differ and have no uncertainty"
-    )
+    agree = f"{result.agree} of {result.compared} numbers agree within both uncertainties together"
+    print(f"{agree}; {result.unknown} differ and have no uncertainty")
     for title, lines in (("Apart", result.apart), ("Not comparable", result.other)):
         if lines:
             rest = [f"... and {len(lines) - SHOWN} more"] if len(lines) > SHOWN else []

@@ -50,10 +50,8 @@ def index_page(
     scenes : titles by name
     """
     results = Path(results)
-    claims, findings, facts = (
-        json.loads((results / f"{name}.json").read_text(encoding="utf-8"))
-        for name in ("claims", "findings", "provenance")
-    )
+    made = (results / f"{name}.json" for name in ("claims", "findings", "provenance"))
+    claims, findings, facts = (json.loads(path.read_text(encoding="utf-8")) for path in made)
     ledger, config = Ledger(claims, findings), facts["config"]
     names = {"claim": ledger, "found": ledger.found, "config": config, "runs": partial(parameters, config)}
     filled = partial(fill, names=names)

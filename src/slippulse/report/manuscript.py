@@ -111,11 +111,8 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
     altered = changes(inputs.shipped, config)
-
-    def cite(id: str, text: str) -> str:
-        """A number as a link to its claim or finding, where the tables behind it are."""
-        return f"[{text}](../claims.html#{id})"
-
+    # A number as a link to its claim or finding, where the tables behind it are.
+    cite = "[{1}](../claims.html#{0})".format
     names: dict[str, object] = {
         **FILTERS,
         "config": config,
@@ -157,8 +154,9 @@ def execute(source: str | Path, inputs: Inputs) -> str:
 
     Cells tagged `BY_HAND` are left out; one that fails raises a ValueError with its first line.
     """
-    source, shown = Path(source), []
-    names = names_for(inputs, lambda markdown: shown.append(markdown) if markdown else None, source.stem)
+    source = Path(source)
+    shown: list[str] = []
+    names = names_for(inputs, shown.append, source.stem)
     for cell in jupytext.read(source).cells:
         if BY_HAND in cell.metadata.get("tags", []):
             continue
@@ -171,4 +169,4 @@ def execute(source: str | Path, inputs: Inputs) -> str:
             start, reason = cell.source.strip().splitlines()[0][:70], " ".join(str(error).split())
             raise ValueError(f"{source.name}: {type(error).__name__}: {reason} (cell {start!r})") from error
     # No line ends between a number and its per cent sign.
-    return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(shown)) + "\n"
+    return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(filter(None, shown))) + "\n"

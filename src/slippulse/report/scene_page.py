@@ -24,11 +24,9 @@ def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, at
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         # In words, what its pre-stress has beside the Gaussian and its levels.
-        profile = prestress_from(attributes)
+        profile, bump = prestress_from(attributes), "bump of {1:s} and width {2:s} at x = {0:s}".format
         parts = [f"step to {setting(level)} at x = {setting(at)}" for at, level in profile.steps]
-        for centre, size, width in profile.bumps:
-            parts.append(f"bump of {setting(size)} and width {setting(width)} at x = {setting(centre)}")
-        shown["steps_and_bumps"] = "; ".join(parts)
+        shown["steps_and_bumps"] = "; ".join([*parts, *(bump(*map(setting, each)) for each in profile.bumps)])
     return page(
         "scene.html",
         name=name,

@@ -5,16 +5,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from ..claims.reading import (
-    Ledger,
-    claims_of,
-    compared_text,
-    coverage,
-    evidence_text,
-    measured_text,
-    positions,
-    predicted_text,
-)
+from ..claims import reading
+from ..claims.reading import Ledger, claims_of, coverage, positions
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
@@ -76,30 +68,25 @@ def code(names: Iterable[str]) -> str:
 
 def verdicts(lines: Iterable[Line]) -> str:
     """The lines of the answer, each with its verdict as a link to the claim that it has it from."""
-    rows = [
-        (line.topic, f"[{line.claim.verdict}](../claims.html#{line.claim.id})", line.text) for line in lines
-    ]
+    link = "[{0.verdict}](../claims.html#{0.id})".format
+    rows = [(line.topic, link(line.claim), line.text) for line in lines]
     return table("what the paper says l28 | verdict l16 | what was found l56", rows)
 
 
 def failures(ledger: Ledger) -> str:
     """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
     order = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
-    rows = [
-        (f"{claim.statement} `{claim.id}`", claim.verdict, claim.why)
-        for claim in order
-        if claim.verdict != WORST_FIRST[-1]
-    ]
+    found = [claim for claim in order if claim.verdict != WORST_FIRST[-1]]
+    rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in found]
     return table("claim l34 | verdict l13 | why l53", rows)
 
 
 def whole_ledger(ledger: Ledger) -> str:
     """Every claim with its position in the paper, numbers, tolerance, verdict and note."""
-    texts = (predicted_text, measured_text, compared_text, lambda claim: claim.verdict, evidence_text)
-    rows = [
-        (f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`", *(text(claim) for text in texts))
-        for claim in ledger
-    ]
+    texts, rows = (reading.predicted_text, reading.measured_text, reading.compared_text), []
+    for claim in ledger:
+        what = f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`"
+        rows.append((what, *(text(claim) for text in texts), claim.verdict, reading.evidence_text(claim)))
     head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
     return table(f"{head} | verdict l9 | rests on l29", rows)
 
@@ -168,10 +155,8 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
         found = tables[f"uncertainties/{simulation}"]
         found = found[found["quantity"] == quantity]
         relative, orders = (found["uncertainty"] / found["value"].abs()).dropna(), found["observed_order"]
-        order, *off = DASH, DASH, DASH
-        if len(relative):
-            order = number(orders.median(), 2) if orders.notna().any() else DASH
-            off = [percent(size) for size in (relative.median(), relative.max())]
+        order = number(orders.median(), 2) if len(relative) and orders.notna().any() else DASH
+        off = [percent(size) if len(relative) else DASH for size in (relative.median(), relative.max())]
         rows.append((name, len(relative) or len(found), order, *off))
     return table("quantity l40 | runs r10 | order r12 | median uncertainty r20 | largest r18", rows)
 
@@ -207,22 +192,14 @@ def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mappin
     def literal(value: object) -> str:
         return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
 
-    keys = "; ".join(
-        f"`{change['key']}`: {literal(change['here'])} (shipped: {literal(change['shipped'])})"
-        for change in altered
-    )
-    judged = "; ".join(
-        f"`{claim.id}`: {claim.verdict} (shipped: {verdicts.get(claim.id, 'absent')})"
-        for claim in ledger
-        if claim.verdict != verdicts.get(claim.id)
-    )
-    lines = []
+    pair, lines = "`{}`: {} (shipped: {})".format, []
+    keys = "; ".join(pair(each["key"], literal(each["here"]), literal(each["shipped"])) for each in altered)
+    judged = [(claim.id, claim.verdict, verdicts.get(claim.id, "absent")) for claim in ledger]
+    others = "; ".join(pair(*each) for each in judged if each[1] != each[2])
     if keys:
-        lines.append(
-            f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."
-        )
-    if judged:
-        lines.append(f"> **Verdicts that differ from the shipped report:** {judged}.")
+        lines = [f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."]
+    if others:
+        lines.append(f"> **Verdicts that differ from the shipped report:** {others}.")
     elif keys:
         lines.append("> No verdict differs from the shipped report.")
     return "\n>\n".join(lines)

@@ -1,6 +1,7 @@
 """The texts of the manuscript: captions, errata, the parameters of a simulation in words, and the answer."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -76,29 +77,23 @@ def parameters(config: Mapping, name: str) -> str:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
     profiles = simulation.get("profiles") or [simulation]
-    left, right, width = (_flat(each.get(key) for each in profiles) for key in ("left", "right", "width"))
-    springs = simulation["boundary"] == "displacement"
-    values = {r"$\gamma$": simulation["gamma"]} if springs else {}
-    if right == ["same"]:
-        values |= {r"$\tau_0$": left}
-    else:
-        values |= {r"$\tau_{0,l}$": left, r"$\tau_{0,r}$": right}
-    if "beyond" in simulation:
-        values |= {r"then $\tau$": simulation["beyond"]["levels"]}
-    if width:
-        values |= {"$W$": width}
-    if "beta" in simulation:
-        values |= {r"$\beta$": simulation["beta"]}
-    else:
-        values |= {"$b$": simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]}
-    parts = [f"{symbol} = {_values(found)}" for symbol, found in values.items()]
+    # Of lists, single values or missing.
+    given = ([each[key] for each in profiles if key in each] for key in ("left", "right", "width"))
+    lists = ([one if isinstance(one, list) else [one] for one in found] for found in given)
+    left, right, width = ([*dict.fromkeys(chain.from_iterable(found))] for found in lists)
+    springs, same = simulation["boundary"] == "displacement", right == ["same"]
+    ratios = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
+    values = {
+        r"$\gamma$": simulation["gamma"] if springs else [],
+        r"$\tau_0$" if same else r"$\tau_{0,l}$": left,
+        r"$\tau_{0,r}$": [] if same else right,
+        r"then $\tau$": simulation.get("beyond", {}).get("levels"),
+        "$W$": width,
+        r"$\beta$": simulation.get("beta"),
+        "$b$": [] if "beta" in simulation else ratios,
+    }
+    parts = [f"{symbol} = {_values(found)}" for symbol, found in values.items() if found]
     return ", ".join([r"$\Gamma=1$" if springs else r"$\Gamma=0$", *parts])
-
-
-def _flat(values: Iterable) -> list:
-    """All values, each once, of entries that are lists, single values or missing."""
-    lists = (entry if isinstance(entry, list) else [entry] for entry in values)
-    return [*dict.fromkeys(value for entry in lists for value in entry if value is not None)]
 
 
 def _values(values: Sequence[float]) -> str:
@@ -132,8 +127,8 @@ def answer(lines: Sequence[Line]) -> str:
     """One sentence: whether what the first line says is reproduced, and which of the others are not, as Markdown."""
     first, *rest = lines
     parts = []
-    for verdict, (one, several) in EXCEPTIONS.items():
+    for verdict, says in EXCEPTIONS.items():
         if named := [line.named for line in rest if line.claim.verdict == verdict]:
-            parts.append(f"{listed(named)} {one if len(named) == 1 else several}")
+            parts.append(f"{listed(named)} {says[len(named) > 1]}")
     start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
     return f"**{start}**, {first.named}{', except that ' if parts else ''}{', and '.join(parts)}."

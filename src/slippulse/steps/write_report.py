@@ -25,9 +25,7 @@ NEEDS = {
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["arrest_path", "derivations", "extremes"],
 }
-HEAD = (
-    "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one.\n"
-)
+HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one."
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
@@ -46,7 +44,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     for writing in writings:
         writing.result()
     verdicts = {claim["id"]: claim["verdict"] for claim in inputs.claims}
-    write_text(HEAD + yaml.safe_dump(verdicts, sort_keys=False), outputs["verdicts"])
+    write_text(f"{HEAD}\n" + yaml.safe_dump(verdicts, sort_keys=False), outputs["verdicts"])
 
 
 def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
@@ -77,17 +75,11 @@ def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[st
     results = project / "results"
     folders = {"measured": "measurements", "predicted": "predictions"}
     figures = sorted((results / "figures").glob("*.pdf"))
-    files: dict[str, object] = {
-        kind: [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
-        for kind, names in NEEDS.items()
-    } | {
-        "claims": results / "claims.json",
-        "findings": results / "findings.json",
-        "figures": figures,
-        "shipped": project / "config/config.yaml",
-        "citation": project / "CITATION.cff",
-        "sources": [project / f"manuscript/{document}.md"],
-    }
+    files: dict[str, object] = {name: results / f"{name}.json" for name in ("claims", "findings")}
+    for kind, names in NEEDS.items():
+        files[kind] = [results / folders.get(kind, kind) / f"{name}.csv" for name in names]
+    files |= {"shipped": project / "config/config.yaml", "citation": project / "CITATION.cff"}
+    files |= {"figures": figures, "sources": [project / f"manuscript/{document}.md"]}
     config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]
-    names = [figure.stem for figure in figures]
-    return names_for(inputs_of(files, {"config": config, "figures": names}), show, document)
+    settings = {"config": config, "figures": [figure.stem for figure in figures]}
+    return names_for(inputs_of(files, settings), show, document)
