@@ -1,6 +1,8 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
 for study, needs in STUDY_NEEDS.items():
+    # The resolved simulations that it names.
+    swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
 
     rule:
         name:
@@ -17,13 +19,7 @@ for study, needs in STUDY_NEEDS.items():
         params:
             step="run_study",
             study=study,
-            # Under `sweeps` the resolved simulations that it names.
-            values=selected(config, needs.get("settings", ()), {})
-            | {
-                key: {name: settings_of(name)["sweep"] for name in needs[key]}
-                for key in needs
-                if key == "sweeps"
-            },
+            values=selected(config, needs.get("settings", ()), {"sweeps": swept}),
         message:
             f"Studying {study}"
         run:

@@ -57,8 +57,7 @@ def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
             inside = frozenset(below(path) for path in job.inputs if is_result(path))
             behind = sorted({origin(source).configuration for source in inside})
             outside = tuple(sorted(path for path in job.inputs if not is_result(path)))
-            made = tuple(below(output) for output in job.outputs)
-            configuration = digest_of([job.settings, *behind])
+            made, configuration = tuple(map(below, job.outputs)), digest_of([job.settings, *behind])
             digest = _source_digest(tuple(modules_of(job.step, job.settings)), outside)
             found.update(dict.fromkeys(made, Origin(made, job.step, configuration, digest, inside)))
         return found[name]

@@ -61,8 +61,8 @@ class Plan:
         """Say what is not as a complete run would make it; returns the exit code."""
         problems, count = self.tree.problems(complete)
         print("\n".join(problems) or f"{count} files are as made by what is here now")
-        whole = [name for name in self.wanted(["everything"]) if not (RESULTS / name).exists()]
-        if left := [name for name in whole if name not in complete]:
+        others = [name for name in self.wanted(["everything"]) if name not in complete]
+        if left := [name for name in others if not (RESULTS / name).exists()]:
             print(f"Not looked at: {len(left)} files that TARGET=everything makes besides, as {left[0]}")
         return int(bool(problems))
 

@@ -12,8 +12,8 @@ HEADINGS = {"fig": "The figures of the paper", "study_": "Beyond the paper", "sw
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: captions, summary, provenance. Outputs: html. Settings: figures (names), scenes (titles)."""
-    texts, figures = {key: files[key] for key in ("captions", "summary")}, settings["figures"]
+    figures = settings["figures"]
     named = {text: [name for name in figures if name.startswith(key)] for key, text in HEADINGS.items()}
     galleries = {heading: names for heading, names in named.items() if names}
-    page = index_page(Path(outputs["html"]).parent, texts, galleries, settings["scenes"])
+    page = index_page(Path(outputs["html"]).parent, files, galleries, settings["scenes"])
     write_text(page, outputs["html"])
