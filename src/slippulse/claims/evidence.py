@@ -1,6 +1,7 @@
 """What was measured on three lattices, with what is predicted, and from it a claim of each kind."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -66,16 +67,15 @@ class Evidence:
     """
 
     def __init__(
-        self, tables: Mapping[str, pd.DataFrame], entries: Mapping[str, Mapping], steady: float = 0.02
+        self, tables: Mapping[str, pd.DataFrame], entries: Mapping[str, Mapping], steady: float
     ) -> None:
         self.tables, self.entries, self.steady = tables, entries, steady
         self.swept = [path.removeprefix("coarser/") for path in tables if path.startswith("coarser/")]
         self._lattices = {}
         for name in self.swept:
             finest, coarser = tables[name], tables[f"coarser/{name}"]
-            study = tables[f"uncertainties/{name}"].pivot(
-                index="point", columns="quantity", values=["extrapolated", "uncertainty"]
-            )
+            study = tables[f"uncertainties/{name}"].set_index(["point", "quantity"])
+            study = study[["extrapolated", "uncertainty"]].unstack()
             study.columns = ["_".join(column) for column in study.columns]
             predicted = finest[finest.columns.difference(coarser.columns)]
             parts = [part.reset_index(drop=True) for _, part in coarser.groupby("factor")]
@@ -89,15 +89,9 @@ class Evidence:
         self._lattices[simulation] = [level.assign(**more(level)) for level in self._lattices[simulation]]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
-        """Runs of some simulations one below the other: on the finest lattice, which decides on them, and two coarser.
-
-        The finest has uncertainty_QUANTITY and, for its value at spacing 0, extrapolated_QUANTITY.
-        """
-        chosen = []
-        for name in simulations:
-            kept = evaluated(self._lattices[name][0], where)
-            chosen.append([level[kept] for level in self._lattices[name]])
-        return [pd.concat(level) for level in zip(*chosen, strict=True)]
+        """Runs on three lattices, the finest with uncertainty_QUANTITY and extrapolated_QUANTITY, at spacing 0."""
+        chosen = [(self._lattices[name], evaluated(self._lattices[name][0], where)) for name in simulations]
+        return [pd.concat([levels[i][kept] for levels, kept in chosen]) for i in range(3)]
 
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
@@ -112,15 +106,11 @@ class Evidence:
         scale = np.where(paper == 0.0, 1.0, np.abs(paper))
         numbers = {"predicted": paper, "measured": value, "uncertainty": blur}
         numbers["deviation"] = off = np.abs(value - paper) / scale
-        verdict, run = rules.exact(off, blur / scale, self.tolerance(id))
-        usable = int(np.isfinite(off + blur).sum())
-        return {
-            "verdict": verdict,
-            "at": lambda tolerance: rules.exact(off, blur / scale, tolerance)[0],
-            "runs": usable,
-            "left_out": len(value) - usable,
-            **({} if run is None else {name: float(each[run]) for name, each in numbers.items()}),
-        }
+        judge, usable = partial(rules.exact, off, blur / scale), int(np.isfinite(off + blur).sum())
+        verdict, run = judge(self.tolerance(id))
+        counts = {"runs": usable, "left_out": len(value) - usable}
+        shown = {} if run is None else {name: float(each[run]) for name, each in numbers.items()}
+        return {"verdict": verdict, "at": lambda tolerance: judge(tolerance)[0]} | counts | shown
 
     def studied(self, tables: Sequence[pd.DataFrame], values: Sequence[float]) -> GridStudy:
         """Grid study of a number that was computed from each table, as a median is; of one table, no uncertainty."""
@@ -131,10 +121,7 @@ class Evidence:
     def approximate(
         self, id: str, tables: Sequence[pd.DataFrame], measured: str, predicted: str, *levels: str
     ) -> Claim:
-        """An estimate, by the median deviation of the same runs on three lattices, or of exact values, and by exponent.
-
-        One level of the columns ``levels`` at a time is left out, for the uncertainty of the exponent.
-        """
+        """An estimate, by median deviation and exponent, which leaves out one of the ``levels`` at a time too."""
         numbers = [np.array([evaluated(t, name) for name in (predicted, measured)], float) for t in tables]
         ratio = [pd.Series(found / expected) for expected, found in numbers]
         off = [(each - 1.0).abs() for each in ratio]
@@ -178,10 +165,7 @@ class Evidence:
     def agreed(
         self, simulation: str, where: str, holds: str, told: str = "", ends: Sequence[str] = ()
     ) -> list[bool | None]:
-        """Whether something holds in each chosen run: by both finest lattices, else by the exact solution, else None.
-
-        Lattices are asked of runs that last long enough, ``told``; the exact solution which regime a run ``ends`` in.
-        """
+        """Whether it holds in each run: by both finest lattices if long enough (``told``), else by its exact regime."""
         finest, middle, *_ = self.lattices(simulation, where=where)
         both = agreeing(evaluated(finest, holds), evaluated(middle, holds))
         exact = finest["exact_regime"] if ends else [UNDECIDED] * len(finest)

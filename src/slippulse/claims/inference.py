@@ -45,14 +45,12 @@ def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
         best = line.loc[line["chi2"].idxmin()]
         # tau_0, gamma and the damping ratio.
         dof = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
-        found[str(release)] = {
-            "release": release,
-            "dof": dof,
-            "p_value": float(chdtrc(dof, best["chi2"])),
-            **{name: float(best[name]) for name in ("chi2", "damping_ratio", "dx", "tau0", "gamma")},
-            "regions": {level: _regions(line, level) for level in CONFIDENCE},
-            "pulls": {name: float(best[name]) for name in rows["reading"].unique()},
+        one: dict[str, Any] = {
+            name: float(best[name]) for name in ("chi2", "damping_ratio", "dx", "tau0", "gamma")
         }
+        one |= {"release": release, "dof": dof, "p_value": float(chdtrc(dof, best["chi2"]))}
+        one["regions"] = {level: _regions(line, level) for level in CONFIDENCE}
+        found[str(release)] = one | {"pulls": {name: float(best[name]) for name in rows["reading"].unique()}}
     order = sorted(found.values(), key=lambda entry: entry["chi2"])
     return found | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
 

@@ -48,10 +48,7 @@ ROWS: dict[Judge, Collection[str]] = {
 
 
 def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mapping]) -> list[dict]:
-    """The ledger as in claims.json; ``readings``: numbers read off the published figure.
-
-    Raises ValueError: if entries of manuscript/claims.yaml and code are not about the same claims.
-    """
+    """The ledger as in claims.json, by readings of the figure; a ValueError names claims of texts or code alone."""
     evidence.assign("regimes_beyond", pulses.meet)
     judges: dict[str, Judge] = {id: judge for judge, ids in ROWS.items() for id in ids}
     for module in (pulses, transition):
@@ -64,10 +61,7 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
 
 
 def published_figure(evidence: Evidence, readings: Mapping) -> dict[str, Claim]:
-    """A claim a panel of the published space-time figure: is there a run of this model that it may show?
-
-    The left one at the best fit of its readings, the drawn arrows among them; the right one without a fit.
-    """
+    """A claim a panel of the published space-time figure: the left one at the best fit of its readings."""
     study = evidence.tables["published_figure"]
     left = inference(study, part="arrows")["best"]
     arrows = {name: entry["statement"] for name, entry in readings.items() if entry.get("arrow")}
@@ -154,9 +148,7 @@ def collapse(evidence: Evidence) -> dict[str, float]:
     out: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
         table = evidence.lattices(f"damping_{boundary}")[0].fillna({"gamma": 0.0})
-        lengths = table.pivot(
-            index=["left", "width", "gamma"], columns="damping_ratio", values="transition_length"
-        )
+        lengths = table.set_index(["left", "width", "gamma", "damping_ratio"])["transition_length"].unstack()
         if lengths.empty:
             raise NoRuns(boundary)
         change = lengths.iloc[:, -1] / lengths.iloc[:, 0]

@@ -146,14 +146,10 @@ def only_positive_velocities(evidence: Evidence, id: str) -> Claim:
     back = int((finest["min_stuck_stress"] <= -1.0).sum())
     why = f"Blocks here cannot slide back; at the printed threshold, which has two sides, some would in {back} of"
     why += f" {len(finest)} runs. It needs {FRICTION} of at least {number(needed, 3)}."
-    return evidence.qualitative(decided, condition=needed > 0.0) | {
-        "further": {
-            f"{FRICTION} needed": needed,
-            "smallest velocity": smallest,
-            "runs in which blocks would slide back at the printed threshold": float(back),
-        },
-        "why": why if all(decided) and needed > 0.0 else "",
-    }
+    further = {f"{FRICTION} needed": needed, "smallest velocity": smallest}
+    further["runs in which blocks would slide back at the printed threshold"] = float(back)
+    claim = evidence.qualitative(decided, condition=needed > 0.0)
+    return claim | {"further": further, "why": why if all(decided) and needed > 0.0 else ""}
 
 
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Claim:
@@ -267,9 +263,8 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Claim:
     table = evidence.lattices("stress_pulses", where="damping_ratio > 0")[0]
     # At the damping of the figures; without any, the lattice rings.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]
-    return evidence.qualitative(
-        apart(table, ["pulse_peak_velocity", HALF_WIDTH], evidence.tolerance(id), True)
-    )
+    sizes = ["pulse_peak_velocity", HALF_WIDTH]
+    return evidence.qualitative(apart(table, sizes, evidence.tolerance(id), True))
 
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Claim:

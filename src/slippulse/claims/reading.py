@@ -89,10 +89,8 @@ class Ledger:
 
     def listed(self, id: str, words: str) -> str:
         """The further numbers of a claim whose name has these words before its colon, each with what is behind it."""
-        found = [(name.partition(": "), value) for name, value in self(id).further.items()]
-        return "; ".join(
-            f"{number(value)} {name}" for (before, colon, name), value in found if colon and words in before
-        )
+        found = [(*name.split(": ", 1), value) for name, value in self(id).further.items() if ": " in name]
+        return "; ".join(f"{number(value)} {name}" for before, name, value in found if words in before)
 
     def count(self, *verdicts: str) -> int:
         """How many counted claims have one of these verdicts; all of them if none is named."""

@@ -18,6 +18,8 @@ HOLDS = {"reproduced": True, "reproduced with caveat": True, "not reproduced": F
 SCANNED, BISECTED = 41, 12
 # More undecided runs than this fraction leave a qualitative claim open.
 UNDECIDED = 0.1
+# A number with its uncertainty.
+Known = tuple[float, float]
 # Below this p the readings exclude every parameter, not only most.
 EXCLUDED = 0.003
 
@@ -43,9 +45,7 @@ def worst_tested(verdicts: Iterable[str]) -> str:
     return worst(verdict for verdict in verdicts if verdict != "not testable")
 
 
-def exact(
-    deviations: Sequence[float] | np.ndarray, uncertainties: Sequence[float] | np.ndarray, tolerance: float
-) -> tuple[str, int | None]:
+def exact(deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float) -> tuple[str, int | None]:
     """Verdict on an equation, the worst of the runs that have numbers, and of the runs with it the farthest off."""
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
     if (found := worst_tested(verdicts)) == "not testable":
@@ -53,20 +53,12 @@ def exact(
     return found, max((i for i in range(len(verdicts)) if verdicts[i] == found), key=deviations.__getitem__)
 
 
-def approximate(
-    median: tuple[float, float],
-    tolerance: float,
-    exponent: tuple[float, float] | None = None,
-    tolerance_exponent: float = 0.0,
-) -> str:
-    """Verdict on an estimate: the worse of those on the median deviation, and on the distance of its exponent from 1.
-
-    Each with its uncertainty; the single worst run does not decide.
-    """
+def approximate(median: Known, tolerance: float, exponent: Known | None = None, allowed: float = 0.0) -> str:
+    """Verdict on an estimate: the worse of those on its median deviation and, if one is claimed, on its exponent."""
     found = within(*median, tolerance)
     if exponent is None:
         return found
-    return worst([found, within(abs(exponent[0] - 1.0), exponent[1], tolerance_exponent)])
+    return worst([found, within(abs(exponent[0] - 1.0), exponent[1], allowed)])
 
 
 def over_choices(verdicts: Sequence[str]) -> str:

@@ -1,7 +1,4 @@
-"""Claims about the transition from crack to pulse, and where a front ends, in functions named as they are.
-
-Each is judged at every choice that the paper leaves open (manuscript/open_choices.yaml).
-"""
+"""Claims about the transition from crack to pulse, and where a front ends, at every choice the paper leaves open."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
@@ -40,12 +37,8 @@ SHOWN = 0.95
 
 # What is compared of the exact solution, and of lattices.
 SOLVED = {"paper_transition_time": "distance", "transition_time": "time", "transition_length": "length"}
-SIMULATED = {
-    "balance_distance": "distance",
-    "last_release_distance": "covered",
-    "last_release_time": "time",
-    "last_release_length": "length",
-}
+SIMULATED = {"balance_distance": "distance", "last_release_distance": "covered"}
+SIMULATED |= {f"last_release_{name}": name for name in ("time", "length")}
 # One table, or one a lattice, by combination of choices.
 Tables = list[tuple[Chosen, list[pd.DataFrame]]]
 
@@ -70,10 +63,10 @@ def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = No
         found["why"] += f" It depends on {'; on '.join(pairs_of)}."
     elif verdict == "reproduced with caveat":
         unsure = next(row for row in rows if row["verdict"] == verdict)
-        where = " and ".join(
-            f"{words} {named(unsure[name])}" for name, words in NAMES.items() if name in unsure
+        at = [f"{words} {named(unsure[name])}" for name, words in NAMES.items() if name in unsure]
+        found["why"] = (
+            f"With {' and '.join(at)} it is within the tolerance, but not together with its uncertainty."
         )
-        found["why"] = f"With {where} it is within the tolerance, but not together with its uncertainty."
     return found
 
 
@@ -197,9 +190,8 @@ def under_stress(evidence: Evidence, id: str) -> Claim:
     claim |= evidence.compared("scaling_stress", f"transition_{estimate[0]}")
     fractions, ratio = zip(*sorted(medians(evidence, *estimate).items()), strict=True)
     over = np.array(ratio) - 1.0
-    claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(
-        np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN)
-    )
+    left = np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN)
+    claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(left)
     return claim
 
 
@@ -282,10 +274,8 @@ def rises(evidence: Evidence, table: pd.DataFrame, quantity: str) -> Claim:
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
     """The transition gets longer with the pre-stress."""
-    tables = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(
-        [(choice, rises(evidence, found[0], "transition_length")) for choice, found in tables]
-    )
+    both = simulated(evidence, "displacement") + solved(evidence, "displacement")
+    return over_choices([(each, rises(evidence, found[0], "transition_length")) for each, found in both])
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:

@@ -33,10 +33,7 @@ def promise_of(simulation: Mapping) -> float | None:
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
-    """Scenes of a resolved simulation or of a chunk of it, in the order of its lists, and what each records.
-
-    Raises ValueError: of a scene that is refused, naming the key, the value and what is allowed.
-    """
+    """Scenes of a resolved simulation, or of a chunk, and what each records; a ValueError names what is refused."""
     scenes, accuracy, order = [], simulation["accuracy"], simulation["accuracy"]["order"]
     for place, run in enumerate(runs(simulation)):
         dx = _spacing(simulation, run, place)
@@ -48,12 +45,10 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
             step = min(step, accuracy["max_step"])
         if "fixed" in simulation["spacing"]:
             step *= simulation["coarser"]
-        duration = _duration(simulation["duration"], run.profile, run.gamma)
+        time = _duration(simulation["duration"], run.profile, run.gamma)
         own = {key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")}
         own |= {"order": order, "max_step": step, "release": run.release, "rate_strengthening": run.alpha}
-        scenes.append(
-            Scene(prestress=run.profile, duration=duration, dx=dx, gamma=run.gamma, beta=beta, **own)
-        )
+        scenes.append(Scene(prestress=run.profile, duration=time, dx=dx, gamma=run.gamma, beta=beta, **own))
     return scenes, [_samples(simulation.get("samples"), scene.duration) for scene in scenes]
 
 
@@ -80,14 +75,14 @@ def _axes(simulation: Mapping) -> list[Sequence]:
         # One step a level, at the position from which the level holds.
         steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
         shapes = [simulation["left"], [None] if right == "same" else right, simulation["width"], steps]
-    return [
-        [release] if isinstance(release, str) else release,
-        *shapes,
-        simulation.get("gamma", [0.0]),
-        simulation.get("dx", [None]),
-        simulation.get("beta", simulation["damping_ratio"]),
-        simulation.get("rate_strengthening", [0.0]),
-    ]
+    defaults = {
+        "gamma": [0.0],
+        "dx": [None],
+        "beta": simulation["damping_ratio"],
+        "rate_strengthening": [0.0],
+    }
+    others = [simulation.get(key, default) for key, default in defaults.items()]
+    return [[release] if isinstance(release, str) else release, *shapes, *others]
 
 
 def _profile(left, right=None, width=1.0, steps=()) -> Prestress:

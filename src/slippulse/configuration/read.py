@@ -36,20 +36,17 @@ SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "max
 
 
 def read_config(
-    shipped: Mapping,
-    overlays: Sequence[Mapping] = (),
-    command_line: Mapping | None = None,
-    every_run: bool = True,
+    shipped: Mapping, overlays: Sequence[Mapping] = (), said: Mapping | None = None, every_run: bool = True
 ) -> Configuration:
     """The configuration, checked; ConfigError has one line a problem, with the key, the value, what is allowed.
 
     shipped : config/config.yaml
     overlays : what differs, one after the other; null removes a key
-    command_line : what was given by --config, in which Snakemake leaves nested numbers text
+    said : what was given by --config, in which Snakemake leaves nested numbers text
     every_run : whether the scenes of all simulations are checked too
     """
     merged = dict(shipped)
-    for overlay in (*overlays, _typed(command_line or {})):
+    for overlay in (*overlays, _typed(said or {})):
         merged = _merge(merged, overlay)
     sweeps = merged.get("simulations")
     if isinstance(sweeps, Mapping) and (

@@ -312,12 +312,10 @@ class Configuration(Block):
             require(not taken, found, "neither index nor SCENE_numbers")
         known = QUANTITIES | {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
         for entry, reading in self.published.items():
-            where, quantity = f"published.{entry}", reading.quantity
-            check_name(
-                f"{where}.simulation", reading.simulation, self.simulations, "a name under simulations"
-            )
+            where, quantity, sweep = f"published.{entry}", reading.quantity, reading.simulation
+            check_name(f"{where}.simulation", sweep, self.simulations, "a name under simulations")
             check_name(f"{where}.quantity", quantity, known, "a column of the measured table")
-            needed, recorded = known[quantity], self.simulations[reading.simulation].record
-            allowed = f"what simulations.{reading.simulation} records; this takes record: [fronts, {needed}]"
+            needed, recorded = known[quantity], self.simulations[sweep].record
+            allowed = f"what simulations.{sweep} records; this takes record: [fronts, {needed}]"
             require(needed in recorded, f"{where}.quantity: {short_repr(quantity)}", allowed)
         return self

@@ -1,7 +1,4 @@
-"""The chunks of a sweep put together again: the bytes are those of the sweep in one piece.
-
-Cells of tables are text: a column of whole numbers in one chunk may be one of fractions in the next.
-"""
+"""The chunks of a sweep put together again: the bytes are those of the sweep in one piece."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -35,10 +32,7 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[str] = ()) -> None:
-    """Put tables of one row a run together, or several below each other, which the columns ``last`` tell apart.
-
-    A column that no run of a chunk has is empty there; it stands behind those of the chunk that has the first run.
-    """
+    """Put tables of one row a run together, or several below each other, which the columns ``last`` tell apart."""
     chunks = _texts(paths)
     keys = [name for name in last if name in chunks[0]]
     blocks = [chunk.groupby(keys or (lambda row: 0), sort=False).ngroup() for chunk in chunks]
@@ -56,11 +50,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
 
 
 def join_grid_studies(
-    paths: Sequence[str | Path],
-    finest: str | Path,
-    keys: Sequence[str],
-    quantities: Callable[[pd.DataFrame, Sequence[str]], list[str]],
-    joined: str | Path,
+    paths: Sequence[str], finest: str, keys: Sequence[str], quantities: Callable, joined: str
 ) -> None:
     """Put the grid studies of the chunks of a sweep together; ``finest`` is the joined table of measured numbers.
 
@@ -83,6 +73,7 @@ def join_grid_studies(
 
 
 def _texts(paths: Sequence[str | Path]) -> list[pd.DataFrame]:
+    # A column of whole numbers in one chunk may be one of fractions in the next.
     return [pd.read_csv(path, dtype=str, keep_default_na=False) for path in paths]
 
 

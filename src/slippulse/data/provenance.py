@@ -66,15 +66,8 @@ def job_times(results: str | Path) -> dict[str, float]:
     return seconds
 
 
-def provenance(
-    root: str | Path, sources: str, config: Mapping, shipped: Mapping, results: str | Path
-) -> dict:
-    """Everything that a result depends on.
-
-    root, results : folders of the project, and of the results with the records of their jobs
-    sources : digest of `source_files`
-    config, shipped : the configuration with and without overlays
-    """
+def provenance(root: str | Path, sources: str, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
+    """Everything that a result depends on; ``sources``: digest of `source_files`; ``shipped``: without overlays."""
     packages = (*PACKAGES, "snakemake", "matplotlib", "pandas")
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     return {
@@ -87,7 +80,7 @@ def provenance(
         "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
         "implementation": sys.implementation.name,
         "machine": machine_class(),
-        "times": {"written": written, "seconds_of_jobs": job_times(results)},
+        "times": {"written": written, "seconds_of_jobs": job_times(base)},
     }
 
 

@@ -24,10 +24,7 @@ SETTLED = 2.0
 
 
 class Origin(NamedTuple):
-    """A job: what it makes from which results, by path below results/, by which step of `slippulse.steps`.
-
-    With digests of the configuration behind it, and of the sources and texts that the step reads.
-    """
+    """A job: what it makes from which results, below results/; digests of its configuration and sources."""
 
     outputs: tuple[str, ...]
     step: str
@@ -130,11 +127,9 @@ class Tree:
         return {name: reason for name in there for reason in self._compared(name)[:1] if reason}
 
     def to_remove(self, names: Iterable[str]) -> dict[str, str]:
-        """What is in the way of making anew what is faulty of some results and of what they are made from.
-
-        What a job has made goes together: a missing file is made anew only where the others are not there either.
-        """
+        """What is in the way of making anew what is faulty of some results and of what they are made from."""
         found = self.faults(self.behind(names))
+        # What a job has made goes together: a missing file is made anew only where the others are not there either.
         parts = {part: found.get(part, PARTED) for name in found for part in self.origins[name].outputs}
         # A link to nowhere, or to something else than a file, is in the way too.
         there = [name for name in parts if os.path.lexists(self.results / name)]

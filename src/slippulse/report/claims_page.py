@@ -20,16 +20,12 @@ SIGNS = dict(zip(VERDICTS, MARKS, strict=True))
 LONGEST = 2.0
 # Folders of tables whose kind has another name.
 KINDS = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
+Rows = Sequence[Mapping]
 # Of more simulations than these everything is made.
 FEW = 6
 
 
-def claims_page(
-    claims: Iterable[Mapping],
-    altered: Sequence[Mapping] = (),
-    findings: Sequence[Mapping] = (),
-    tables: Iterable[str] = (),
-) -> str:
+def claims_page(claims: Rows, altered: Rows = (), findings: Rows = (), tables: Iterable[str] = ()) -> str:
     """The ledger and the findings, as in their JSON, with links to tables, files from the folder of the page on."""
     return page(
         "claims.html",

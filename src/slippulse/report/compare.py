@@ -30,10 +30,7 @@ SHOWN = 10
 
 @dataclass
 class Comparison:
-    """How many numbers two trees have, agree within both uncertainties, and differ on two lattices without any.
-
-    With a line for each number or text that differs otherwise, and for what is not comparable, or another verdict.
-    """
+    """How many numbers there are, agree, and are unknown; lines on those apart, and on what is not comparable."""
 
     compared: int = 0
     agree: int = 0
@@ -72,7 +69,8 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
         found.other.append(f"{name}: other runs")
         return
     found.other += [f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})]
-    if len({(tree / "uncertainties" / name).exists() for tree in trees}) > 1:
+    studies = [tree / "uncertainties" / name for tree in trees]
+    if len({path.exists() for path in studies}) > 1:
         found.other.append(f"{name}: uncertainties in one tree only")
     both = [column for column in one if column in two and column not in SAME]
     lattice = [column for column in both if column in LATTICE]
@@ -80,11 +78,8 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
     texts = [column for column in both if "O" in (one[column].dtype.kind, two[column].dtype.kind)]
     numbers = [column for column in both if column not in texts + LATTICE]
     ours, theirs = (table[numbers].astype(float) for table in (one, two))
-    bars, bars_there = (
-        _uncertainties(tree / "uncertainties" / name, values)
-        for tree, values in zip(trees, (ours, theirs), strict=True)
-    )
-    bar = bars.add(bars_there, fill_value=0.0)
+    bars = [*map(_uncertainties, studies, (ours, theirs))]
+    bar = bars[0].add(bars[1], fill_value=0.0)
     allowed = bar.fillna(0.0) + DIGITS * ours.abs()
     allowed = allowed.mask(bar.isna() & alike, ROUNDING * ours.abs().clip(lower=1.0))
     counted = (ours.notna() & theirs.notna()) | ((ours.notna() | theirs.notna()) & alike)

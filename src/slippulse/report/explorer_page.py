@@ -1,7 +1,6 @@
 """results/explorer.html: the exact rupture, its formulas and nearby simulations, recomputed as sliders move.
 
-The page computes by itself, in the scripts next to its template; from here it has a table of the front law, which needs
-the Wiener-Hopf factor, and the measured numbers of the sweeps.
+The scripts next to its template compute; from here it has the front law, which needs the Wiener-Hopf factor.
 """
 
 import json

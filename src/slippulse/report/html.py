@@ -14,13 +14,8 @@ from ..data.numerals import FILTERS
 # Of every page; what else a page is made with its step names.
 FILES = ("report/templates/base.html", "report/templates/style.css")
 TEMPLATES = Path(__file__).with_name("templates")
-PAGES = Environment(
-    loader=FileSystemLoader(TEMPLATES),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-)
+PAGES = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined)
+PAGES.trim_blocks = PAGES.lstrip_blocks = True
 PAGES.filters |= FILTERS
 
 

@@ -1,7 +1,7 @@
 """results/index.html, the page to open. Relative links only; nothing is loaded from outside."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -37,18 +37,8 @@ SCALE = 0.4
 WIDE = 600
 
 
-def index_page(
-    results: str | Path,
-    texts: Mapping[str, str | Path],
-    galleries: Mapping[str, Sequence[str]],
-    scenes: Mapping[str, str],
-) -> str:
-    """The page in the folder of the results; files that are not there get no link.
-
-    texts : files of the `captions` and of the `summary`
-    galleries : names of figures by the heading that they stand under
-    scenes : titles by name
-    """
+def index_page(results: str | Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]) -> str:
+    """The page, by files of texts, figures by heading and titles of scenes; what is not there gets no link."""
     results = Path(results)
     made = (results / f"{name}.json" for name in ("claims", "findings", "provenance"))
     claims, findings, facts = (json.loads(path.read_text(encoding="utf-8")) for path in made)

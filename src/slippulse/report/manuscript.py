@@ -150,10 +150,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
 
 
 def execute(source: str | Path, inputs: Inputs) -> str:
-    """The prose of a file with every expression replaced, and the Markdown that its code shows, in order.
-
-    Cells tagged `BY_HAND` are left out; one that fails raises a ValueError with its first line.
-    """
+    """The prose of a file with its expressions replaced, and what its code shows; a ValueError tells which fails."""
     source = Path(source)
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)

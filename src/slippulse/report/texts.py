@@ -26,10 +26,7 @@ EXCEPTIONS = {
 
 
 class Caption(NamedTuple):
-    """The texts of one figure, for who cannot see it too: title and alt are plain text, the others Markdown.
-
-    The finding is what the figure shows as a result, one sentence; the caption, what is drawn.
-    """
+    """Texts of a figure: plain title and alt; in Markdown the finding, what it shows, and what is drawn."""
 
     title: str
     alt: str
@@ -118,8 +115,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
         return min(map(ledger, claims), key=lambda claim: WORST_FIRST.index(claim.verdict))
 
     return [
-        Line(line["topic"], line["named"], fill(line["text"]), worst(line["claims"]))
-        for line in summary["verdict"]
+        Line(it["topic"], it["named"], fill(it["text"]), worst(it["claims"])) for it in summary["verdict"]
     ]
 
 

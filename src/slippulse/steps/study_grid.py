@@ -1,7 +1,4 @@
-"""Run and measure one simulation on coarser lattices, and write the numerical uncertainty of every number.
-
-The coarser data are not kept; their measured tables are, one below the other with their factor.
-"""
+"""Run and measure one simulation on coarser lattices, whose tables are kept, for the uncertainty of each number."""
 
 import sys
 from collections.abc import Callable

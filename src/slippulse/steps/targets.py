@@ -67,13 +67,11 @@ class Plan:
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
-        """Lock the folder, and remove what is not as its record says of some results and of what they are made from.
-
-        Other locks, below a folder, are left by a run that was killed. Raises ConfigError where another run is at work.
-        """
+        """Lock the folder, and remove what is not as its record says of some results and of what they are made from."""
         held = take(locks / "run.lock")
         if held is None:
             raise ConfigError("Another run is at work in this folder: wait for it, or stop it.")
+        # Other locks, below a folder, are left by a run that was killed.
         if stale := [*locks.glob("locks/*.lock")]:
             # Files that a killed job was writing have a hidden name of their own until they are whole.
             for path in [*stale, *Path(RESULTS).rglob(".*-????????.*")]:
