@@ -1,7 +1,7 @@
 """The whole ledger: every claim with its text, and what we found beside, in the order of manuscript/claims.yaml."""
 
 import json
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from types import SimpleNamespace
@@ -37,20 +37,13 @@ PREDICTED = {
     "speed_against_gamma": ["front"], "steady_displacement": ["front", "pulse"], "stress_pulses": ["transition"],
     "undamped_pulses": ["pulse"],
 }  # fmt: skip
-# Claims that are rows of a table, or alike; any other is judged by the function of its name.
-Judge = Callable[[Evidence, str], Claim]
-ROWS: dict[Judge, Collection[str]] = {
-    pulses.equation: pulses.EQUATIONS,
-    pulses.always: pulses.ALWAYS,
-    transition.under_displacement: ("T_trans_displacement", "L_trans_displacement"),
-    transition.under_stress: ("T_trans_stress", "L_trans_stress"),
-}
 
 
 def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mapping]) -> list[dict]:
     """The ledger as in claims.json, by readings of the figure; a ValueError names claims of texts or code alone."""
     evidence.assign("regimes_beyond", pulses.meet)
-    judges: dict[str, Judge] = {id: judge for judge, ids in ROWS.items() for id in ids}
+    # Claims that are rows of a table; any other is judged by the function of its name.
+    judges = dict.fromkeys(pulses.EQUATIONS, pulses.equation) | dict.fromkeys(pulses.ALWAYS, pulses.always)
     for module in (pulses, transition):
         judges |= {id: getattr(module, id) for id in evidence.entries if hasattr(module, id)}
     found = {id: judge(evidence, id) for id, judge in judges.items()} | published_figure(evidence, readings)
@@ -132,12 +125,10 @@ def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Map
     return out
 
 
-def numbers(
-    evidence: Evidence, damping_ratio: float, table: str, take: Mapping[str, str], where: str = ""
-) -> dict[str, float]:
+def numbers(evidence: Evidence, ratio: float, table: str, take: Mapping, where: str = "") -> dict[str, float]:
     """Expressions over columns of the chosen rows of one table; `NoRuns` without rows."""
     rows = evidence.lattices(table)[0] if table in evidence.swept else evidence.tables[table]
-    rows = rows.assign(figures=damping_ratio)
+    rows = rows.assign(figures=ratio)
     if (rows := rows[evaluated(rows, where)]).empty:
         raise NoRuns(table)
     return {name: float(rows.eval(expression, engine="python")) for name, expression in take.items()}

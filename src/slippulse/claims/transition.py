@@ -127,10 +127,9 @@ def solved(evidence: Evidence, boundary: str) -> Tables:
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
     # Under a stress boundary the estimate of the time is the whole way.
     table = table.assign(covered=table["fraction"] * table["paper_transition_time"])
-    found: Tables = [
-        (dict(zip(names, values, strict=True)) | {"solution": "exact"}, [rows])
-        for values, rows in table.groupby(names)
-    ]
+    found: Tables = []
+    for values, rows in table.groupby(names):
+        found.append((dict(zip(names, values, strict=True)) | {"solution": "exact"}, [rows]))
     ours = chosen(evidence.lattices(f"scaling_{boundary}"), fraction=SHOWN)
     return sorted(found, key=lambda pair: any(pair[0].get(name, ours[name]) != ours[name] for name in ours))
 
@@ -163,7 +162,7 @@ def medians(evidence: Evidence, measured: str, predicted: str) -> dict[float, fl
     }
 
 
-def under_displacement(evidence: Evidence, id: str) -> Claim:
+def T_trans_displacement(evidence: Evidence, id: str) -> Claim:
     """An estimate under a displacement boundary, at the first stick."""
     quantity = f"transition_{ESTIMATES[id[0]][0]}"
     pairs = [
@@ -176,14 +175,13 @@ def under_displacement(evidence: Evidence, id: str) -> Claim:
 def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim]) -> Claim:
     """A claim judged at each combination; beside its numbers the medians at each fraction, the rest being ours."""
     pairs = [(choice, judge(found)) for choice, found in arrests(evidence)]
-    further = {
-        f"median ratio: at {named(choice['fraction'])}": claim["measured"]
-        for choice, claim in sorted(at_ours(pairs), key=lambda pair: named(pair[0]["fraction"]))
+    ours = {
+        f"median ratio: at {named(choice['fraction'])}": found["measured"] for choice, found in at_ours(pairs)
     }
-    return over_choices(pairs) | {"further": further}
+    return over_choices(pairs) | {"further": dict(sorted(ours.items()))}
 
 
-def under_stress(evidence: Evidence, id: str) -> Claim:
+def T_trans_stress(evidence: Evidence, id: str) -> Claim:
     """An estimate under a stress boundary, at each fraction and at the last release."""
     estimate = ESTIMATES[id[0]]
     claim = at_fractions(evidence, lambda found: evidence.approximate(id, found, *estimate, "left", "width"))
@@ -200,12 +198,9 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> Claim:
     ways = {"left": "covered", "right": "(length - covered)"}
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
-        fronts = [
-            evidence.approximate(id, tables, f"{way} / time", "1")
-            | {"note": f"mean speed of the {side} front, which is the farther off"}
-            for side, way in ways.items()
-        ]
-        return max(fronts, key=lambda claim: claim.get("deviation", NAN))
+        fronts = {side: evidence.approximate(id, tables, f"{way} / time", "1") for side, way in ways.items()}
+        side = max(fronts, key=lambda name: fronts[name].get("deviation", NAN))
+        return fronts[side] | {"note": f"mean speed of the {side} front, which is the farther off"}
 
     return at_fractions(evidence, judge)
 
@@ -281,3 +276,7 @@ def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:
     """The pulse gets wider with the pre-stress."""
     return rises(evidence, evidence.lattices("any_prestress")[0], "pulse_width")
+
+
+# Times and lengths are judged alike.
+L_trans_displacement, L_trans_stress = T_trans_displacement, T_trans_stress

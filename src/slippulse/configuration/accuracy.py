@@ -62,15 +62,12 @@ def settings_for(
 ) -> dict[str, Any]:
     """Spacing, step and order that keep a scene's numbers within a largest relative error.
 
-    Parameters
-    ----------
     accuracy : largest relative numerical error, 1e-4 to 0.1
     boundary, prestress, gamma, release : of the scene, as in `Scene`
     damping_ratio : beta/dx, which stays as the spacing changes, 0 to 1
     fields : whether the numbers of the pulse at the end (width, slip, peak velocity) are wanted too
 
     Returns a dict of dx, beta, max_step and order, to be passed on: ``Scene(..., **settings)``
-
     Raises ValueError: one line naming the key, the value and what is allowed.
     Source: module docstring; the numbers that are covered are listed in `slippulse.measure.promise`.
     """

@@ -58,10 +58,9 @@ def resolve(
     model = Model.model_validate(model)
     own = Simulation.model_validate(simulation).plain()
     own.pop("chunks")
-    return {**model.plain(), "damping_ratio": [model.damping_ratio], **own} | {
-        "accuracy": {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy},
-        "coarser": coarser,
-    }
+    kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
+    whole = {**model.plain(), "damping_ratio": [model.damping_ratio], **own}
+    return whole | {"accuracy": kept, "coarser": coarser}
 
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:

@@ -41,15 +41,11 @@ def front_law(law: pd.DataFrame) -> dict:
     ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     first, last = float(excesses[0]), float(excesses[-1])
     scale = round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6)
-    tables = {
-        release: rows.pivot(index="damping_ratio", columns="excess_log", values="logit").values.tolist()
-        for release, rows in law.groupby("release", sort=False)
-    }
-    return {
-        "ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)},
-        "excess": {"first": first, "step": (last - first) / (len(excesses) - 1)},
-        **tables,
-    }
+    out: dict = {"ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)}}
+    out["excess"] = {"first": first, "step": (last - first) / (len(excesses) - 1)}
+    for release, rows in law.groupby("release", sort=False):
+        out[release] = rows.pivot(index="damping_ratio", columns="excess_log", values="logit").values.tolist()
+    return out
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:

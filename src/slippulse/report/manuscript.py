@@ -31,20 +31,16 @@ PAGE = 7.0
 
 @dataclass(frozen=True)
 class Inputs:
-    """What one report is written from."""
+    """What one report is written from: files read, tables as `steps.inputs.given` has them, names of figures."""
 
-    # The configuration of the run and the shipped one, claims.json and findings.json, builtins.
     config: Mapping
     shipped: Mapping
     claims: Sequence[Mapping]
     findings: Sequence[Mapping]
-    # Of simulations one row a run, measured and predicted; of studies; grid studies as uncertainties/NAME.
     tables: Mapping[str, pd.DataFrame]
-    # Names of the figures to include, and where their files and the texts are.
     figures: Sequence[str]
     figures_folder: Path
     manuscript: Path
-    # As in CITATION.cff: version, date-released.
     citation: Mapping
 
 
@@ -56,14 +52,9 @@ class Gallery:
     """
 
     def __init__(
-        self,
-        included: Sequence[str],
-        texts: Mapping[str, str],
-        captions: Mapping[str, Caption],
-        folder: str | Path,
-        here: str,
+        self, included: Sequence[str], texts: Mapping, captions: Mapping, folder: Path, here: str
     ) -> None:
-        self.captions, self.folder, self.here = captions, Path(folder), here
+        self.captions, self.folder, self.here = captions, folder, here
         named = {document: NAMED.findall(text) for document, text in texts.items()}
         self.unnamed = [name for name in included if not any(name in names for names in named.values())]
         named[[*texts][-1]] += self.unnamed
