@@ -115,10 +115,9 @@ def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Map
         rows = entry.get("numbers", [])
         found: dict = {}
         with suppress(NoRuns):
-            for row in rows:
-                found |= numbers(evidence, damping_ratio, **row)
-            if id in COMPUTED:
-                found |= COMPUTED[id](evidence)
+            parts = [numbers(evidence, damping_ratio, **row) for row in rows]
+            parts += [COMPUTED[id](evidence)] if id in COMPUTED else []
+            found = {name: value for part in parts for name, value in part.items()}
         text = fill(entry["text"], {"n": SimpleNamespace(**found) if found else None})
         source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
         out.append({"id": id, "numbers": found, "text": text, "source": source})

@@ -102,13 +102,10 @@ def always(evidence: Evidence, id: str) -> Claim:
     holds = holds or f"regime in {[*row.ends]}"
     decided = (evidence.agreed(sweep, row.where, holds, row.told, row.ends) for sweep in sweeps)
     counted = {} if row.counted is None else {"at the end": row.where, **row.counted}
-    further = {
-        f"{words}: {regime}": float(count)
-        for words, where in counted.items()
-        for regime, count in evidence.lattices(*sweeps, where=where)[0]["regime"].value_counts().items()
-    }
-    for words, expression in row.numbers.items():
-        further[words] = float(evidence.tables[sweeps[0]].eval(expression))
+    further = {words: float(evidence.tables[sweeps[0]].eval(each)) for words, each in row.numbers.items()}
+    for words, where in counted.items():
+        ends = evidence.lattices(*sweeps, where=where)[0]["regime"].value_counts()
+        further |= {f"{words}: {regime}": float(count) for regime, count in ends.items()}
     return evidence.qualitative(chain.from_iterable(decided)) | {"further": further}
 
 

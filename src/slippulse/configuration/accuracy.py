@@ -122,11 +122,8 @@ def _spacings(
             # In the limit dx -> 0 damping acts through the speed alone.
             width = pulse_behind_front(level, gamma, 0.0, speed).width
             layer = ratio * speed / ((speed - 1.0) * (speed + 1.0))
-            spacings += [
-                width / BLOCKS,
-                width * math.sqrt(error / (SPEED + SPEED_LAYER * layer * speed)),
-                error / (start + SLOW_FRONT / width),
-            ]
+            of_speed = math.sqrt(error / (SPEED + SPEED_LAYER * layer * speed))
+            spacings += [width / BLOCKS, width * of_speed, error / (start + SLOW_FRONT / width)]
             if fields:
                 spacings.append(error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer))
         return spacings

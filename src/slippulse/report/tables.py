@@ -38,10 +38,8 @@ REASONS = {
 }
 # A long table stands between WIDE or SMALL and CLOSE: on pages on their side, or in small type over several pages.
 # All figures so far stand before FLUSH.
-WIDE, SMALL = (
-    f'`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{name}[\n`````'
-    for name in ("sideways", "small")
-)
+OPEN = '`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{}[\n`````'.format
+WIDE, SMALL = map(OPEN, ("sideways", "small"))
 CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
 FLUSH = "`````{=typst}\n#place.flush()\n`````"
 
