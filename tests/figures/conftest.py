@@ -38,10 +38,8 @@ def draw(shipped, shared, tmp_path_factory, study):
 
     def simulate(name: str):
         if name not in simulated:
-            block, files = (
-                small_sweep(shipped, name),
-                [shared / f"sweeps/{name}.{end}" for end in ("nc", "csv")],
-            )
+            block = small_sweep(shipped, name)
+            files = [shared / f"sweeps/{name}.{ending}" for ending in ("nc", "csv")]
             scenes, samples = expand(block)
             if not files[1].exists():
                 save_dataset(run_sweep(scenes, samples, block["record"], threads=2), files[0])
@@ -65,7 +63,7 @@ def draw(shipped, shared, tmp_path_factory, study):
             tables["claims"] = pd.DataFrame(CLAIMS)
         return data, tables
 
-    def figure(name: str) -> SimpleNamespace:
+    def drawn_by(name: str) -> SimpleNamespace:
         if name not in drawn:
             module = import_module(f"slippulse.figures.{name}")
             needs = declared(f"figures.{name}", "NEEDS")
@@ -73,14 +71,8 @@ def draw(shipped, shared, tmp_path_factory, study):
             data, tables = inputs(needs)
             save_table(module.table(data, tables, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")
-            drawn[name] = SimpleNamespace(
-                table=table,
-                figure=module.plot(table),
-                data=data,
-                measured=tables,
-                settings=settings,
-                module=module,
-            )
+            figure = module.plot(table)
+            drawn[name] = SimpleNamespace(table=table, figure=figure, measured=tables, module=module)
         return drawn[name]
 
-    return figure
+    return drawn_by

@@ -1,19 +1,22 @@
 """Every figure fits the journal, is labelled and finite; and what the figures of the paper show."""
 
-import re
 from itertools import product
 from pathlib import Path
 
 import matplotlib
 import numpy as np
+import pandas as pd
 import pytest
 import tolerances as tol
+from matplotlib.colors import to_rgba
 from matplotlib.legend import Legend
+from matplotlib.path import Path as Outline
 from matplotlib.text import Text
 from PIL import Image
 
+from slippulse.figures import fig02_phase_diagram as phases
 from slippulse.figures.style import PAGE, save_figure
-from slippulse.report.texts import read_captions
+from slippulse.measure.regime import REGIMES
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
@@ -25,42 +28,27 @@ UNLABELLED = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zon
 BOUNDARIES = ("displacement", "stress")
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_it_has_a_caption(project, name):
-    assert sum(name.startswith("fig") for name in NAMES) == 11
-    caption = read_captions(project / "manuscript/captions.yaml")[name]
-    # What the report prints below its title; expressions stand for numbers and formulas.
-    text = re.sub(r"{{.*?}}|\$.*?\$", " ", f"{caption.finding} {caption.caption}")
-    assert 20 < len(re.findall(r"[^\W\d_][\w'-]+", text)) <= 120
-
-
 @pytest.mark.parametrize("name", DRAWN)
-def test_it_fits_a_page_and_its_axes_are_labelled(draw, name):
-    figure = draw(name).figure
+def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
+    table, figure = draw(name).table, draw(name).figure
     width, height = figure.get_size_inches()
     assert width <= PAGE + 1e-9 and height <= 9.0
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in figure.axes]
     labels.append(figure.get_supxlabel() + figure.get_supylabel())
     assert sum(bool(label) for label in labels) >= 2 or name in UNLABELLED
-
-
-@pytest.mark.parametrize("name", DRAWN)
-def test_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
-    drawn = draw(name)
-    assert len(drawn.table) > 0
+    assert len(table) > 0 and not np.isinf(table.select_dtypes("number").to_numpy()).any()
     # The resolution is not what is tested, and takes most of the time.
-    drawn.figure.set_dpi(50)
-    save_figure(drawn.figure, tmp_path / "first.png", tmp_path / "first.pdf")
+    figure.set_dpi(50)
+    save_figure(figure, tmp_path / "first.png", tmp_path / "first.pdf")
     for ending in ("png", "pdf"):
         assert (tmp_path / f"first.{ending}").stat().st_size > 2000
     # As many grey levels as letters and lines have.
     with Image.open(tmp_path / "first.png") as picture:
         assert len(picture.convert("L").getcolors()) > 20
-    assert not np.isinf(drawn.table.select_dtypes("number").to_numpy()).any()
-    texts = [text for text in drawn.figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
     assert min(text.get_fontsize() for text in texts) > SMALLEST - 1e-9
-    page = drawn.figure.bbox.padded(1.0)
-    for legend in drawn.figure.findobj(Legend):
+    page = figure.bbox.padded(1.0)
+    for legend in figure.findobj(Legend):
         assert page.count_contains(legend.get_window_extent().get_points()) == 2, "cut off"
 
 
@@ -72,6 +60,52 @@ def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
             save_figure(drawn.module.plot(drawn.table), tmp_path / f"{take}.png", tmp_path / f"{take}.pdf")
     for ending in ("png", "pdf"):
         assert (tmp_path / f"first.{ending}").read_bytes() == (tmp_path / f"again.{ending}").read_bytes()
+
+
+# Figure 2: it has the exact regime of every run where the run is, and marks runs that end in another.
+
+
+def test_areas_and_lines_have_the_regime_that_the_runs_on_them_end_in(draw):
+    drawn = draw("fig02_phase_diagram")
+    told = 0
+    for sweep in phases.DRAWN:
+        for run in drawn.measured[sweep].itertuples():
+            rows = drawn.table[drawn.table["boundary"] == run.boundary]
+            role, at = ("line" if run.left * run.right == 0.0 else "area"), [run.left, run.right]
+            if run.exact_regime not in REGIMES or (role == "line" and max(at) > 0.0) or at == [0.0, 0.0]:
+                continue
+            found = []
+            for regime, part in rows[rows["role"] == role].groupby(["series", "regime"]):
+                points = part[["left", "right"]]
+                inside = Outline(points).contains_point(at, radius=1e-9)
+                if inside if role == "area" else (points.sum() * at).sum() > 0.0:
+                    found.append(regime[1])
+            # The wedge of growing pulses lies upon the quadrant of cracks.
+            assert found[-1] == run.exact_regime, run
+            told += 1
+    assert told > 200
+
+
+def test_runs_are_filled_where_they_end_as_theory_says_and_crossed_out_where_flagged(draw):
+    drawn = draw("fig02_phase_diagram")
+    runs = drawn.table[drawn.table["role"] == "run"].copy()
+    runs.loc[runs.index[0], "run_flags"] = "energy"
+    out = drawn.module.plot(pd.concat([drawn.table[drawn.table["role"] != "run"], runs]))
+    marks = [line for axes in out.axes for line in axes.lines if line.get_gid() == "run"]
+    assert len(marks) == len(runs)
+    assert [mark.get_marker() for mark in marks].count("x") == runs["run_flags"].notna().sum() > 0
+    sound = runs[runs["run_flags"].isna()]
+    faces = {(*np.ravel(mark.get_xydata()), *to_rgba(mark.get_markerfacecolor())) for mark in marks}
+    for run in sound.itertuples():
+        early = run.exact_regime in REGIMES and run.exact_regime != run.regime
+        colour = "white" if early else phases.LOOKS[run.regime][0]
+        assert (run.left, run.right, *to_rgba(colour)) in faces
+
+
+def test_looks_tell_all_regimes_apart():
+    assert set(phases.LOOKS) == set(REGIMES)
+    for looks in zip(*phases.LOOKS.values(), strict=True):
+        assert len(set(looks)) == len(REGIMES)
 
 
 # Figures 3, 8 and 9
@@ -98,8 +132,8 @@ def test_simulated_pulses_lie_on_the_exact_ones(draw, name):
             assert len(curve) <= 400 and len(exact[run]) <= 801
 
 
-def test_undamped_pulses_are_the_papers_and_damping_lowers_them(draw):
-    table = draw("fig08_steady_state_displacement").table
+def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_falls_behind_the_front(draw):
+    table, figure = draw(PULSES[1]).table, draw(PULSES[1]).figure
     runs = table[table["role"] == "run"].set_index("run")
     fields = ["slip", "slip_velocity", "slip_acceleration"]
     peaks = table[table["role"] == "exact"].groupby("run")[fields].max()
@@ -108,11 +142,7 @@ def test_undamped_pulses_are_the_papers_and_damping_lowers_them(draw):
     runs["peak"] = peaks["slip_velocity"]
     by_damping = runs.pivot(index="left", columns="damping_ratio", values="peak")
     assert (np.diff(by_damping.to_numpy(), axis=1) < 0.0).all()
-
-
-def test_slip_never_falls_behind_the_front(draw):
-    for curve in curves(draw("fig08_steady_state_displacement").figure.axes[0], "simulation").values():
-        assert (np.diff(curve[:, 1]) <= 1e-5).all()
+    assert all((np.diff(line[:, 1]) <= 1e-5).all() for line in curves(figure.axes[0], "simulation").values())
 
 
 # Figure 4
@@ -170,17 +200,14 @@ def test_lattices_tend_to_the_exact_transition(draw, name):
     assert (stress["time"] > stress["paper_time"]).all()
 
 
-@pytest.mark.parametrize("boundary", BOUNDARIES)
-def test_every_damping_ratio_is_drawn(draw, boundary):
-    drawn = draw(f"fig{10 if boundary == 'displacement' else 11}_damping_{boundary}")
-    ratios = np.sort(drawn.measured[f"damping_{boundary}"]["damping_ratio"].unique())
-    assert 0.0 in ratios
-    for axes in drawn.figure.axes[:2]:
-        assert np.allclose(axes.get_xticks(), ratios)
-        assert np.allclose(np.unique(offsets(axes, "runs")[:, 0]), ratios)
-
-
-def test_damping_lengthens_the_transition(draw):
-    runs = draw("fig10_damping_displacement").table
+def test_every_damping_ratio_is_drawn_and_damping_lengthens_the_transition(draw):
+    drawn = [draw(name) for name in ("fig10_damping_displacement", "fig11_damping_stress")]
+    for one, boundary in zip(drawn, BOUNDARIES, strict=True):
+        ratios = np.sort(one.measured[f"damping_{boundary}"]["damping_ratio"].unique())
+        assert 0.0 in ratios
+        for axes in one.figure.axes[:2]:
+            assert np.allclose(axes.get_xticks(), ratios)
+            assert np.allclose(np.unique(offsets(axes, "runs")[:, 0]), ratios)
+    runs = drawn[0].table
     off = (runs["length"] / runs["paper_length"] - 1.0).abs().groupby(runs["damping_ratio"]).median()
     assert off[1.0] > 2.0 * off[0.0]

@@ -12,20 +12,16 @@ from slippulse.configuration.expand import expand
 from slippulse.configuration.resolve import resolve, scene_simulation
 from slippulse.configuration.schema import Model, NamedScene
 from slippulse.data.points import point
+from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.figures import own_sweep
 from slippulse.figures import scene as figure
 from slippulse.figures.scene import number_text
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
-from slippulse.figures.shared.numbers import scene_numbers
-from slippulse.figures.style import save_figure
-from slippulse.measure.table import PARAMETERS
-from slippulse.measure.uncertainty import grid_tables
-from slippulse.model.scene import Scene
 from slippulse.predict.measured import measured_table
-from slippulse.report.scene_page import scene_page
 from slippulse.simulation.simulate import run_sweep
-from slippulse.steps.predict import TOPICS, predictions
+from slippulse.steps import draw_scene, predict, simulate, study_grid
+from slippulse.steps import measure as measure_step
 
 TITLE = "A <scene> & its $title"
 SCENES = {
@@ -43,42 +39,37 @@ SCENES = {
 
 @pytest.fixture(scope="module")
 def drawn(shipped, tmp_path_factory):
-    """Each scene through the same steps as in the pipeline."""
-    folder, accuracy, made = tmp_path_factory.mktemp("scenes"), shipped["presets"]["draft"], {}
-
-    def sweep(scene, coarser):
-        model = Model.model_validate(shipped["model"])
-        block = resolve(
-            scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model),
-            model,
-            accuracy,
-            coarser,
-        )
-        scenes, samples = expand(block)
-        return run_sweep(scenes, samples, block["record"])
-
+    """Each scene by the steps of the pipeline."""
+    model, accuracy = Model.model_validate(shipped["model"]), shipped["presets"]["draft"]
+    measure, made = {"measure": shipped["measure"], "threads": 1}, {}
     for name, scene in SCENES.items():
-        runs = [sweep(scene, coarser) for coarser in (1.0, *accuracy["coarser"])]
-        tables = tuple(measured_table(run, shipped["measure"]) for run in runs)
-        study = grid_tables(tables, tuple(accuracy["coarser"]), PARAMETERS)
-        run = point(runs[0], 0)
-        predicted = predictions(TOPICS, [Scene.from_attributes(run.attrs)], shipped["measure"])
-        numbers = scene_numbers(tables[0].join(predicted).iloc[0], study)
-        save_table(figure.table(run, numbers, TITLE), folder / f"{name}.csv")
-        table = load_table(folder / f"{name}.csv")
-        made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, folder=folder)
+        folder = tmp_path_factory.mktemp("scene")
+        kinds = ("measured", "predicted", "uncertainties", "coarser")
+        files = {kind: folder / f"{kind}.csv" for kind in kinds} | {"data": folder / "one.nc"}
+        outputs = {kind: folder / f"one.{kind}" for kind in ("numbers", "csv", "png", "pdf", "html")}
+        simulation = scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model)
+        factors = (1.0, *accuracy["coarser"])
+        sweeps = {factor: resolve(simulation, model, accuracy, factor) for factor in factors}
+        settings = {"simulation": name, "sweep": sweeps.pop(1.0), "sweeps": sweeps} | measure
+        simulate.run({}, files, settings)
+        measure_step.run(files, files, settings)
+        predict.run({}, files, settings | shipped["measure"] | {"topics": predict.TOPICS})
+        study_grid.run({"finest": files["measured"]}, files, settings)
+        draw_scene.run(files, outputs, {"scene": name, "title": TITLE})
+        numbers, table = load_table(outputs["numbers"]), load_table(outputs["csv"])
+        run = point(load_dataset(files["data"]), 0)
+        made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, outputs=outputs)
     return made
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_samples_reach_beyond_the_fronts_and_the_figure_shows_them(drawn, name, tmp_path):
+def test_samples_reach_beyond_the_fronts_and_the_figure_shows_them(drawn, name):
     scene, run = drawn[name], drawn[name].run
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
     first, last = run["sample_position"].values[[0, -1]]
     assert first < slipped[0] and last > slipped[-1]
     drawing = figure.plot(scene.table)
-    save_figure(drawing, tmp_path / "scene.png", tmp_path / "scene.pdf")
-    assert (tmp_path / "scene.png").stat().st_size > 20_000
+    assert scene.outputs["png"].stat().st_size > 20_000
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in drawing.axes]
     assert sum(map(bool, labels)) >= 4
     (profile,) = (axes for axes in drawing.axes if "velocity $\\dot u$ at the end" in axes.get_ylabel())
@@ -101,23 +92,15 @@ def test_numbers_agree_with_theory_where_there_is_one(drawn):
     assert np.isfinite(numbers["theory"]["front_speed_left"])
 
 
-@pytest.mark.parametrize(
-    ("number", "text"),
-    [
-        ((1.23456, 0.0123, 1.25), "1.235(12) (theory 1.2500)"),
-        ((-2.0, np.nan, np.nan), "−2"),
-        ((3.5, 0.0, 3.5), "3.5000 (theory 3.5000)"),
-    ],
-)
-def test_a_number_is_written_to_its_uncertainty(number, text):
-    assert number_text(*number) == text
+def test_a_number_is_written_to_its_uncertainty():
+    assert number_text(1.23456, 0.0123, 1.25) == "1.235(12) (theory 1.2500)"
+    assert number_text(-2.0, np.nan, np.nan) == "−2"
+    assert number_text(3.5, 0.0, 3.5) == "3.5000 (theory 3.5000)"
 
 
 @pytest.mark.parametrize("name", ["displacement", "barrier"])
-def test_the_page_stands_alone_and_escapes_what_it_shows(drawn, name, tmp_path):
-    scene = drawn[name]
-    save_figure(figure.plot(scene.table), tmp_path / "scene.png", tmp_path / "scene.pdf")
-    text = scene_page(name, TITLE, tmp_path / "scene.png", scene.numbers, scene.run.attrs)
+def test_the_page_stands_alone_and_escapes_what_it_shows(drawn, name):
+    scene, text = drawn[name], drawn[name].outputs["html"].read_text(encoding="utf-8")
     assert "A &lt;scene&gt; &amp; its $title" in text and "<scene>" not in text
     assert not re.search(r'(src|href)="(https?:|//|file:|/)', text)
     assert re.findall(r'<img src="(.{21})', text) == ["data:image/png;base64"]
@@ -153,7 +136,7 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     sweep = varied | {"duration": {"time": 8.0}, "dx": [0.05], "record": ["fronts"]}
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
     measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
-    predicted = predictions(TOPICS, scenes, config["measure"])
+    predicted = predict.predictions(predict.TOPICS, scenes, config["measure"])
     save_table(own_sweep.table({}, {name: measured.join(predicted)}, {}), tmp_path / "sweep.csv")
     drawn = own_sweep.plot(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]

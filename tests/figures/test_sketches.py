@@ -1,11 +1,15 @@
-"""Figures 1 and 7: the sketches show what was computed."""
+"""Figures 1, 6 and 7: sketches show what was computed, blocks and springs stand where the runs put them."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from slippulse import Prestress, Samples, Scene, run_sweep
+from slippulse.data.points import point
+from slippulse.data.tables import load_table, save_table
 from slippulse.figures import fig01_system_sketch, fig07_damage_zone
+from slippulse.figures import fig06_burridge_knopoff as figure
 from slippulse.studies import damage_zone
 
 SPAN, THICKNESSES = {"from": 1e-4, "to": 2.0, "count": 31}, [0.5, 2.0, 8.0]
@@ -71,3 +75,103 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(zone):
         assert y == pytest.approx(1.0 / (1.0 + thickness * x), rel=1e-6) and y.max() < 1.0
         assert f"{thickness:g}" in line.get_label()
     assert all((upper.get_ydata() > lower.get_ydata()).all() for upper, lower in pairwise(lines))
+
+
+# Figure 6
+
+LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
+
+
+def sweep(scene, count=101):
+    """One run, sampled at every block."""
+    samples = Samples(times=np.linspace(0.0, scene.duration, count), positions=np.linspace(-20.0, 20.0, 41))
+    return run_sweep([scene], [samples], ("fronts", "fields", "samples"))
+
+
+@pytest.fixture(scope="module")
+def data():
+    held = Scene(boundary="displacement", gamma=0.4, prestress=Prestress(0.3, 0.3), duration=10.0, **LATTICE)
+    loaded = Scene(boundary="stress", prestress=Prestress(-0.7, 0.0), duration=12.0, **LATTICE)
+    return {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
+
+
+@pytest.fixture(scope="module")
+def rows(data, tmp_path_factory):
+    path = tmp_path_factory.mktemp("table") / "table.csv"
+    save_table(figure.table(data, {}, {}), path)
+    return load_table(path)
+
+
+@pytest.fixture(scope="module")
+def panels(rows):
+    """Blocks and pre-stress of each panel."""
+    axes = figure.plot(rows).axes
+    return {name: axes[2 * index : 2 * index + 2] for index, name in enumerate(figure.PITCH)}
+
+
+def segments(axes, name):
+    """Springs of one kind, as arrays of points."""
+    return [line for group in axes.collections if group.get_gid() == name for line in group.get_segments()]
+
+
+@pytest.mark.parametrize("name", figure.PITCH)
+def test_blocks_and_springs_stand_where_the_slip_puts_them(rows, panels, name):
+    axes, strip = panels[name]
+    part = rows[rows["panel"] == name].sort_values(["row", "x"])
+    moved = part["x"] + part["scale"] * part["slip"]
+    blocks = [patch for patch in axes.patches if patch.get_gid() in figure.COLOURS]
+    assert np.sort([block.get_x() + 0.5 * figure.BLOCK for block in blocks]) == pytest.approx(np.sort(moved))
+    for state in figure.COLOURS:
+        assert sum(block.get_gid() == state for block in blocks) == (part["state"] == state).sum()
+    gaps = np.concatenate([np.diff(centres) - figure.BLOCK for _, centres in moved.groupby(part["row"])])
+    coils = segments(axes, "coil springs")
+    assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
+    assert 0.0 < gaps.min() < 1.0 - figure.BLOCK < gaps.max(), "no blocks overlap, some springs are stretched"
+    leaves = segments(axes, "leaf springs")
+    if name == "displacement":
+        assert np.sort([leaf[0, 0] for leaf in leaves]) == pytest.approx(np.sort(part["x"]))
+        lean = np.sort([leaf[-1, 0] - leaf[0, 0] for leaf in leaves])
+        assert lean == pytest.approx(np.sort(part["scale"] * part["slip"]))
+    else:
+        assert leaves == []
+    first = part[part["row"] == 0]
+    assert [bar.get_height() for bar in strip.patches] == pytest.approx(first["prestress"].to_list())
+    assert f"{first['scale'].iloc[0]:.2g}" in axes.get_xlabel()
+    assert f"{first['left'].iloc[0]:g}" in strip.get_title()
+
+
+@pytest.mark.parametrize("name", figure.PITCH)
+def test_instants_are_the_start_a_crack_the_first_stick_and_later(data, rows, name):
+    run = point(data[f"burridge_knopoff_{name}"], 0)
+    (start, first), (crack, _), (stick, at), *_, (_, last) = figure.instants(run)
+    assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
+    slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
+    stuck = (slip > 0.0) & (velocity <= 0.0)
+    assert not stuck[:at].any() and stuck[at].any()
+    times = rows[rows["panel"] == name].groupby("row")["time"].first()
+    assert (np.diff(times) > 0.0).all() and times.iloc[-1] == pytest.approx(run["sample_time"].values[last])
+    low, high = figure.window(run)
+    slipped = run["sample_position"].values[slip[last] > 0.0]
+    assert low < slipped.min() and slipped.max() < high
+
+
+def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_released(rows, panels):
+    last = rows[(rows["panel"] == "displacement") & (rows["instant"] == "two pulses")]
+    assert np.array_equal(last["slip"], last["slip"].to_numpy()[::-1])
+    states = ("sliding", "stuck after sliding")
+    sliding, stuck = (last.loc[last["state"] == state, "x"].abs() for state in states)
+    assert stuck.size and sliding.min() > stuck.max()
+    assert not rows.loc[rows["panel"] == "displacement", "arresting_block"].any()
+    part = rows[rows["panel"] == "stress"]
+    last, framed = part[part["instant"] == "pulse"], part[part["arresting_block"]]
+    sliding, stuck = (last.loc[last["state"] == state, "x"] for state in states)
+    assert stuck.size and stuck.max() < sliding.min() and sliding.min() > 0.0
+    assert framed["x"].nunique() == 1 and (framed["slip"] == 0.0).all() and (framed["prestress"] < 0.0).all()
+    assert stuck.min() == framed["x"].iloc[0] + 1.0
+    assert sum(patch.get_linewidth() > 1.0 for patch in panels["stress"][0].patches) == part["row"].nunique()
+
+
+def test_a_run_without_a_stick_is_called_a_crack():
+    scene = Scene(boundary="stress", prestress=Prestress(0.3, 0.3), duration=4.0, **LATTICE)
+    names = [name for name, _ in figure.instants(point(sweep(scene, 21), 0))]
+    assert names == ["start", "crack", "crack"]

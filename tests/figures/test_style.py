@@ -1,43 +1,94 @@
-"""How a figure is written."""
+"""How a figure is written; and readers with any colour vision can tell its colours apart, simulated after Machado et
+al. (2009).
+"""
 
-from pathlib import Path
+from itertools import combinations
 
+import numpy as np
 import pytest
+from matplotlib.colors import LogNorm, to_rgb
 from PIL import Image
 from pypdf import PdfReader
 
-from slippulse.data.files import CONFIGURATION as VARIABLE
-from slippulse.figures.style import COLUMN, new_figure, save_figure
+from slippulse.data.files import CONFIGURATION
+from slippulse.figures import style
+from slippulse.figures.fig06_burridge_knopoff import COLOURS
+from slippulse.figures.style import COLUMN, CYCLE, ORDER_COLOURS, SCALES, colour_scale
+from slippulse.model.scene import ORDERS
 
-CONFIGURATION = "0123456789abcdef"
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
-    """A figure that has words and a formula, written by a job."""
-    folder = tmp_path_factory.mktemp("style")
-    figure = new_figure(COLUMN, 2.0)
-    axes = figure.subplots()
-    axes.set_xlabel("pre-stress AVATAR")
-    axes.set_ylabel(r"$\tau_0$")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(VARIABLE, CONFIGURATION)
-        save_figure(figure, folder / "figure.png", folder / "figure.pdf")
-    return folder
-
-
-def test_words_of_a_figure_can_be_searched_for(folder):
-    assert "pre-stress AVATAR" in PdfReader(folder / "figure.pdf").pages[0].extract_text()
+# Rows of linear red, green, blue.
+VISION = {
+    "usual": np.eye(3),
+    "deuteranopia": np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]]),
+    "protanopia": np.array([[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]]),
+    "tritanopia": np.array([[1.256, -0.077, -0.179], [-0.078, 0.931, 0.148], [0.005, 0.691, 0.304]]),
+    "grey": np.tile([0.2126, 0.7152, 0.0722], (3, 1)),
+}
+TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+WHITE = TO_XYZ.sum(axis=1)
+# Distances in CIE L*a*b*: what is just seen is about 2; marks of a few points need more.
+APART, GREYS_APART = 10.0, 15.0
 
 
-def test_a_figure_says_by_which_configuration_it_was_made_and_nothing_else(folder):
-    with Image.open(folder / "figure.png") as image:
-        assert image.text == {"Comment": f"configuration {CONFIGURATION}"}
-    assert dict(PdfReader(folder / "figure.pdf").metadata) == {"/Keywords": f"configuration {CONFIGURATION}"}
+def linear(colour) -> np.ndarray:
+    """Linear red, green and blue of a colour."""
+    return np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)])
 
 
-def test_a_figure_of_no_job_names_no_configuration(tmp_path):
-    save_figure(new_figure(2.0, 1.0), tmp_path / "figure.png", tmp_path / "figure.pdf")
+def lab(colour, vision: str) -> np.ndarray:
+    """L*, a*, b* of a colour as it is seen."""
+    xyz = TO_XYZ @ np.clip(VISION[vision] @ linear(colour), 0.0, 1.0) / WHITE
+    f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
+    return np.array([116.0 * f[1] - 16.0, 500.0 * (f[0] - f[1]), 200.0 * (f[1] - f[2])])
+
+
+@pytest.mark.parametrize("vision", ["usual", "deuteranopia", "protanopia"])
+def test_colours_of_the_cycle_are_apart(vision):
+    for one, other in combinations([lab(colour, vision) for colour in CYCLE], 2):
+        assert np.linalg.norm(one - other) > APART
+
+
+# The palest level that a figure draws as a line or a mark.
+PALEST = {"tau_0": 0.8, "tau_l": -0.1, "gamma": 0.65, "damping_ratio": 3.0, "width": 0.5}
+
+
+@pytest.mark.parametrize(("quantity", "value"), PALEST.items())
+def test_levels_are_seen_on_white(quantity, value):
+    luminance = VISION["grey"][0] @ linear(colour_scale(quantity).to_rgba(value))
+    assert 1.05 / (luminance + 0.05) >= 3.0
+
+
+@pytest.mark.parametrize("vision", VISION)
+@pytest.mark.parametrize("quantity", SCALES)
+def test_a_scale_goes_one_way_in_lightness(quantity, vision):
+    _, _, ends, norm = SCALES[quantity]
+    values = np.geomspace(*ends, 9) if norm is LogNorm else np.linspace(*ends, 9)
+    lightness = np.array([lab(colour_scale(quantity).to_rgba(value), vision)[0] for value in values])
+    steps = np.diff(lightness)
+    assert (steps > 0.0).all() or (steps < 0.0).all()
+    assert abs(lightness[-1] - lightness[0]) > 40.0
+
+
+def test_every_order_has_a_colour():
+    assert set(ORDER_COLOURS) == set(ORDERS)
+    assert len(set(ORDER_COLOURS.values())) == len(ORDERS)
+
+
+def test_states_of_a_block_are_apart_in_grey():
+    shades = sorted(lab(colour, "grey")[0] for colour in COLOURS.values())
+    assert (np.diff(shades) > GREYS_APART).all()
+
+
+@pytest.mark.parametrize("configuration", ["0123456789abcdef", ""])
+def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp_path, monkeypatch):
+    """Of a figure that no job made there is none."""
+    monkeypatch.setenv(CONFIGURATION, configuration)
+    figure = style.new_figure(COLUMN, 2.0)
+    figure.subplots().set(xlabel="pre-stress AVATAR", ylabel=r"$\tau_0$")
+    style.save_figure(figure, tmp_path / "figure.png", tmp_path / "figure.pdf")
+    said = f"configuration {configuration}" if configuration else ""
     with Image.open(tmp_path / "figure.png") as image:
-        assert image.text == {}
-    assert not PdfReader(tmp_path / "figure.pdf").metadata
+        assert image.text == ({"Comment": said} if said else {})
+    pdf = PdfReader(tmp_path / "figure.pdf")
+    assert dict(pdf.metadata or {}) == ({"/Keywords": said} if said else {})
+    assert "pre-stress AVATAR" in pdf.pages[0].extract_text()
