@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
+from pypdf import PdfReader
 
 from slippulse.claims.rules import within
 from slippulse.data.files import CONFIGURATION
@@ -113,23 +114,17 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
 
     def make(config: dict = shipped, scale: float = 1.0) -> Inputs:
         return Inputs(
-            config=config,
-            shipped=shipped,
-            claims=invented_claims(entries["claims"], config, texts, scale),
-            findings=invented_findings(entries["findings"], texts),
-            tables=invented_tables(texts),
-            figures=figures,
-            figures_folder=folder,
-            manuscript=manuscript,
-            citation=read(manuscript.parent / "CITATION.cff"),
-        )
+            config=config, shipped=shipped, claims=invented_claims(entries["claims"], config, texts, scale),
+            findings=invented_findings(entries["findings"], texts), tables=invented_tables(texts), figures=figures,
+            figures_folder=folder, manuscript=manuscript, citation=read(manuscript.parent / "CITATION.cff"),
+        )  # fmt: skip
 
     return make
 
 
 @pytest.fixture(scope="session")
 def build(tmp_path_factory):
-    """A function that writes a report and returns its files' paths, inputs and claims by id."""
+    """A function that writes a report and returns its files, inputs, claims by id, and both documents read."""
 
     def made(inputs: Inputs) -> SimpleNamespace:
         folder = tmp_path_factory.mktemp("report")
@@ -139,9 +134,10 @@ def build(tmp_path_factory):
             patch.setenv(CONFIGURATION, DIGEST)
             patch.setattr(write_report, "inputs_of", lambda files, settings: inputs)
             write_report.run({}, outputs, {})
-        return SimpleNamespace(
-            **outputs, inputs=inputs, claims={claim["id"]: claim for claim in inputs.claims}
-        )
+        pages = [path.read_text(encoding="utf-8") for path in outputs["html"]]
+        claims = {claim["id"]: claim for claim in inputs.claims}
+        pdfs = [PdfReader(path) for path in outputs["pdf"]]
+        return SimpleNamespace(**outputs, inputs=inputs, claims=claims, pages=pages, pdfs=pdfs)
 
     return made
 

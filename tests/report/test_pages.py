@@ -94,9 +94,8 @@ def results(project, tmp_path_factory):
 def written(results, captions: str = "captions") -> str:
     texts = {"captions": results.parent / f"{captions}.yaml", "summary": results.parent / "summary.yaml"}
     galleries = {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]}
-    return index_page(
-        results, texts, galleries, {"made": "A scene <that> is there", "not_made": "A scene that is not"}
-    )
+    scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
+    return index_page(results, texts, galleries, scenes)
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,6 @@ from types import SimpleNamespace
 import pytest
 import yaml
 from PIL import Image
-from pypdf import PdfReader
 from report.conftest import DIGEST
 
 from slippulse.claims.reading import measured_text
@@ -25,20 +24,9 @@ from slippulse.steps import write_report
 MOST_PAGES = 14
 
 
-@pytest.fixture(scope="module")
-def pages(report) -> list[str]:
-    """Report and supplement."""
-    return [path.read_text(encoding="utf-8") for path in report.html]
-
-
-@pytest.fixture(scope="module")
-def pdfs(report) -> list[PdfReader]:
-    return [PdfReader(path) for path in report.pdf]
-
-
 @pytest.mark.parametrize("document", range(len(DOCUMENTS)))
-def test_the_html_is_one_page_that_loads_nothing(document, pages):
-    html = pages[document]
+def test_the_html_is_one_page_that_loads_nothing_and_says_what_it_was_made_by(document, report):
+    html, pdf = report.pages[document], report.pdfs[document]
     loaded = re.findall(r'<(?!a\b)[^>]*\s(?:src|srcset|data|poster|background|action|href)="([^"]*)"', html)
     assert all(value.startswith(("data:", "#")) for value in loaded)
     count = {tag: len(re.findall(rf"<{tag}\b", html)) for tag in ("script", "h1", "h2", "main", "table")}
@@ -51,20 +39,16 @@ def test_the_html_is_one_page_that_loads_nothing(document, pages):
     assert html.count("<math") > 50
     text = re.sub(r"<annotation.*?</annotation>", "", html, flags=re.S)
     assert not re.search(r"\\(?:frac|sqrt|tau|gamma|int)\b|\$\$", text)
-
-
-def test_all_carry_the_digest_of_their_configuration_and_their_version(pages, pdfs, report):
     version = f"Version {report.inputs.citation['version']}, {report.inputs.citation['date-released']}"
-    for html, pdf in zip(pages, pdfs, strict=True):
-        assert f'<meta name="configuration" content="{DIGEST}">' in html
-        assert pdf.metadata["/Keywords"] == f"configuration {DIGEST}"
-        assert version in " ".join(html.split()) and version in pdf.pages[0].extract_text()
+    assert f'<meta name="configuration" content="{DIGEST}">' in html
+    assert pdf.metadata["/Keywords"] == f"configuration {DIGEST}"
+    assert version in " ".join(html.split()) and version in pdf.pages[0].extract_text()
 
 
-def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(pages, report):
+def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(report):
     pictures = re.findall(
         r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img src="data:image/png;base64,([^"]+)"[^>]*></a>',
-        "".join(pages),
+        "".join(report.pages),
     )
     assert sorted(name for name, _, _ in pictures) == sorted(report.inputs.figures)
     for name, link, content in pictures:
@@ -74,8 +58,8 @@ def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(pages, report):
         assert link == name
 
 
-def test_the_pdf_is_a4_in_the_typeface_of_its_figures_which_have_alternative_texts(pdfs, report):
-    pdf = pdfs[0]
+def test_the_pdf_is_a4_in_the_typeface_of_its_figures_which_have_alternative_texts(report):
+    pdf = report.pdfs[0]
     assert len(pdf.pages) <= MOST_PAGES
     assert {tuple(sorted(round(float(x)) for x in page.mediabox[2:])) for page in pdf.pages} == {(595, 842)}
     fonts = pdf.pages[0]["/Resources"]["/Font"].values()
@@ -94,18 +78,18 @@ def test_equal_inputs_give_equal_bytes(report, build):
             assert one.read_bytes() == other.read_bytes()
 
 
-def test_both_have_the_numbers_of_the_ledger(report, pages, pdfs):
+def test_both_have_the_numbers_of_the_ledger(report):
     claim = report.claims["front_speed"]
-    for text in (pages[1], " ".join(page.extract_text() for page in pdfs[1].pages)):
+    for text in (report.pages[1], " ".join(page.extract_text() for page in report.pdfs[1].pages)):
         flat = re.sub(r"\s+", " ", text)
         assert with_uncertainty(claim["measured"], claim["uncertainty"]) in flat
         assert measured_text(SimpleNamespace(**report.claims["grows_above_zero"])) in flat
         for id in report.claims:
             assert id in flat or id.replace("_", "_ ") in flat
-    for html in pages:
+    for html in report.pages:
         assert "{{" not in re.sub(r"<(pre|code).*?</\1>", "", html, flags=re.S)
     # A number of the report leads to its claim.
-    assert '<a href="../claims.html#front_speed">' in pages[0]
+    assert '<a href="../claims.html#front_speed">' in report.pages[0]
     verdicts = {id: claim["verdict"] for id, claim in report.claims.items()}
     assert yaml.safe_load(report.verdicts.read_text()) == verdicts
 
@@ -115,15 +99,14 @@ def test_an_altered_run_changes_the_numbers_and_says_so(report, make_inputs, shi
     config["simulations"]["space_time_displacement"]["left"] = [0.4]
     config["simulations"]["steady_displacement"]["left"] = [0.3]
     altered = make_inputs(config, scale=1.05)
-    before, after = (
-        "".join(execute(manuscript / f"{document}.md", inputs) for document in DOCUMENTS)
-        for inputs in (report.inputs, altered)
-    )
+    documents = [manuscript / f"{name}.md" for name in DOCUMENTS]
+    both = (report.inputs, altered)
+    before, after = ("".join(execute(one, inputs) for one in documents) for inputs in both)
     assert "Altered configuration" not in before
     top = after[: after.index("# The answer")]
     assert "`simulations.space_time_displacement.left`: `[0.4]` (shipped: `[0.25]`)" in top
     assert "`simulations.steady_displacement.left`" in top and "Verdicts that differ" in top
-    for text, inputs in ((before, report.inputs), (after, altered)):
+    for text, inputs in zip((before, after), both, strict=True):
         tau = inputs.config["simulations"]["space_time_displacement"]["left"][0]
         claim = next(claim for claim in inputs.claims if claim["id"] == "front_speed")
         assert rf"$\tau_0$ = {tau}" in text
@@ -143,25 +126,21 @@ def test_what_was_not_measured_or_has_no_theory_is_said_to_be_so(report, manuscr
     assert not re.search(r"\bnan\b", re.sub(r"`[^`]*`", "", text), re.I)
 
 
-@pytest.mark.parametrize(
-    ("source", "reason"),
-    [
-        ("# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n", r"small\.md: .*no_such"),
-        ("```python\nwidth = 1 / 0\n```\n", r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)"),
-    ],
-)
-def test_what_fails_is_one_line_that_names_it(source, reason, report, tmp_path):
-    (tmp_path / "small.md").write_text(source, encoding="utf-8")
-    with pytest.raises(ValueError, match=reason) as caught:
-        execute(tmp_path / "small.md", report.inputs)
-    assert "\n" not in str(caught.value)
+def test_what_fails_is_one_line_that_names_it(report, tmp_path):
+    for source, reason in {
+        "# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n": r"small\.md: .*no_such",
+        "```python\nwidth = 1 / 0\n```\n": r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)",
+    }.items():
+        (tmp_path / "small.md").write_text(source, encoding="utf-8")
+        with pytest.raises(ValueError, match=reason) as caught:
+            execute(tmp_path / "small.md", report.inputs)
+        assert "\n" not in str(caught.value)
 
 
 def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path, monkeypatch):
     inputs, results = report.inputs, tmp_path / "results"
-    for folder in ("config", "manuscript"):
-        (tmp_path / folder).symlink_to(project / folder)
-    (tmp_path / "CITATION.cff").symlink_to(project / "CITATION.cff")
+    for part in ("config", "manuscript", "CITATION.cff"):
+        (tmp_path / part).symlink_to(project / part)
     results.mkdir()
     (results / "figures").symlink_to(inputs.figures_folder)
     contents = {"provenance": {"config": inputs.config}, "claims": inputs.claims, "findings": inputs.findings}
@@ -169,5 +148,5 @@ def test_a_notebook_opened_by_hand_has_the_same_names(report, project, tmp_path,
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
     monkeypatch.chdir(results)
     monkeypatch.setattr(write_report, "given", lambda files: ({}, inputs.tables))
-    document = DOCUMENTS[0]
-    assert set(write_report.by_hand(document, print)) == set(names_for(inputs, print, document))
+    names = names_for(inputs, print, DOCUMENTS[0])
+    assert set(write_report.by_hand(DOCUMENTS[0], print)) == set(names)

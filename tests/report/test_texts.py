@@ -101,13 +101,15 @@ def test_every_claim_is_whole_and_has_a_shipped_verdict(manuscript, entries, cap
     assert set(read(manuscript / "shipped_verdicts.yaml")) == set(entries["claims"])
 
 
-def test_every_erratum_is_shown(manuscript, source):
+def test_every_erratum_is_shown_and_the_bibliography_is_what_is_cited(manuscript, source):
     errata = read_errata(manuscript / "errata.yaml")
     assert len(errata) >= 15
     headings = set(re.findall(r"^#+ (.+?)(?: \{.*)?$", source, re.M))
     for entry in errata:
         for title in re.findall(r'[Dd]erivation "([^"]+)"|Section "([^"]+)"', entry["shown"]):
             assert "".join(title) in headings, entry
+    bibliography = (manuscript / "references.bib").read_text(encoding="utf-8")
+    assert set(re.findall(r"@([A-Z]\w+)", source)) == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.M))
 
 
 @pytest.mark.parametrize(("reader", "keys"), [(read_captions, PARTS), (read_errata, ERRATUM)])
@@ -127,19 +129,16 @@ def test_every_figure_has_one_position_and_a_caption(source, captions, project, 
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
     assert sorted([*placed, "own_sweep"]) == sorted(captions)
     assert len(figures) >= 17 and figures <= set(placed)
+    assert sum(name.startswith("fig") for name in figures) == 11
     assert read(manuscript / "summary.yaml")["picture"] in figures
     assert len({caption.title for caption in captions.values()}) == len(captions)
     for name, caption in captions.items():
         # Plain text stands in headings and alternative texts; a finding is one sentence.
         assert not set("$*_{") & set(caption.title + caption.alt)
         assert caption.finding.endswith(".") and ". " not in EXPRESSION.sub(" ", caption.finding)
-        text = caption.finding + caption.caption
+        text = f"{caption.finding} {caption.caption}"
+        assert 20 < len(re.findall(r"[^\W\d_][\w'-]+", MATH.sub(" ", EXPRESSION.sub(" ", text)))) <= 120, name
         assert "runs(" in text or r"\Gamma=" in text or "no run" in text or name == "own_sweep", name
-
-
-def test_every_citation_is_in_the_bibliography_and_every_entry_is_cited(source, manuscript):
-    bibliography = (manuscript / "references.bib").read_text(encoding="utf-8")
-    assert set(re.findall(r"@([A-Z]\w+)", source)) == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.M))
 
 
 def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_path):
@@ -242,10 +241,8 @@ def test_no_text_has_a_typed_number(manuscript):
     texts = [text for entry in read(manuscript / "errata.yaml") for text in entry.values()]
     texts += [text for parts in read(manuscript / "captions.yaml").values() for text in parts.values()]
     summary = read(manuscript / "summary.yaml")
-    texts += [
-        summary["accuracy"],
-        *(line[key] for line in summary["verdict"] for key in ("topic", "named", "text")),
-    ]
+    texts += [line[key] for line in summary["verdict"] for key in ("topic", "named", "text")]
+    texts.append(summary["accuracy"])
     assert [number for text in texts for number in in_prose(text)] == []
 
 
