@@ -58,9 +58,7 @@ def violations():
     def find(page: Page) -> list[str]:
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         # Thousands of elements in the colour of their text, which take most of the time of all.
-        page.evaluate(
-            "document.querySelectorAll('math[display=inline]').forEach((formula) => formula.remove())"
-        )
+        page.evaluate("document.querySelectorAll('math[display=inline]').forEach((each) => each.remove())")
         options = {"runOnly": {"type": "tag", "values": LEVELS}, "resultTypes": ["violations"]}
         found = axe.run(page, options=options).response["violations"]
         problems = [f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]]
