@@ -26,7 +26,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 # Files first that run no kernel, while the kernels are compiled; then those that take longest, so that the workers end
 # together.
 WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_refusals", "test_dependencies")
-FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults", "test_pipeline")
+FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults")
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
 # The file beside both that says that they are there, and how long a worker waits for it in seconds.

@@ -1,15 +1,14 @@
-"""Kill a reduced draft run at random instants, over and over; what comes out must be what a quiet run gives.
+"""Stop a reduced draft run at random instants, over and over; what comes out must be what a quiet run gives.
 
-    make faults             24 kills
+    make faults             24 stops
     python tests/faults.py --kills 3 --seed 7
 
-Each run is killed by SIGKILL: Snakemake alone, a job alone, or everything, in turn. The next run goes on from what is
-there. Results are compared file by file, byte by byte.
+A run as `make replicate` starts it is stopped by a signal, or its server of jobs is killed; of one that Snakemake alone
+starts, Snakemake, a job or everything is. The next run goes on from what is there. Results are compared byte by byte.
 """
 
 import argparse
 import hashlib
-import math
 import os
 import random
 import signal
@@ -17,13 +16,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import yaml
-from pipeline_copy import copy_project
+from pipeline_copy import SCENE, SNAKEMAKE, copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]
 TARGETS = (
@@ -37,24 +36,13 @@ OVERLAY = {
     "simulations": {
         "steady_displacement": {"left": [0.4, 0.5, 0.6, 0.7], "damping_ratio": [0.0, 0.1], "duration": {"time": 20.0}}
     },
-    "scenes": {
-        "one": {
-            "title": "One", "boundary": "displacement", "left": 0.5, "right": 0.6, "gamma": 0.65, "dx": 0.04,
-            "duration": 10.0,
-        }
-    },
+    "scenes": {"one": SCENE | {"dx": 0.04, "duration": 10.0}},
 }  # fmt: skip
-WHOM = ("Snakemake", "a job", "everything")
-
-
-@dataclass
-class Report:
-    """What happened: kills by victim, runs that finished before they were killed, files compared."""
-
-    kills: dict[str, int] = field(default_factory=lambda: dict.fromkeys(WHOM, 0))
-    finished_first: int = 0
-    comparisons: int = 0
-    files: int = 0
+SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGKILL")
+WITHOUT_MAKE = ("Snakemake", "a job", "everything")
+WAYS = (*SIGNALS, "the server of jobs", *WITHOUT_MAKE)
+# Seconds. SIGKILL leaves nobody who could end what was started: that ends itself when it has begun to work.
+AT_ONCE, AFTER_SIGKILL = 2.0, 60.0
 
 
 def prepare(folder: Path) -> Path:
@@ -64,145 +52,120 @@ def prepare(folder: Path) -> Path:
     return folder
 
 
-def start(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
-    """A run in a process group of its own."""
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
-    command += ["--force-use-threads", "--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
-    return _begun(folder, command)
-
-
-def start_by_make(folder: Path, targets: Iterable[str] = TARGETS) -> subprocess.Popen:
-    """The same as `make replicate` starts it."""
+def start(folder: Path, targets: Sequence[str], by_make: bool = True) -> subprocess.Popen:
+    """A run in a process group of its own, as `make replicate` starts it or by Snakemake itself."""
+    command = [*SNAKEMAKE, "--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
     options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
-    return _begun(folder, [sys.executable, "workflow/run.py", "replicate"], **options)
-
-
-def _begun(folder: Path, command: list[str], **more: str) -> subprocess.Popen:
     with open(folder / "said.txt", "w", encoding="utf-8") as said:
         return subprocess.Popen(
-            command, cwd=folder, env=os.environ | more, stdout=said, stderr=said, start_new_session=True
-        )
+            [sys.executable, "workflow/run.py", "replicate"] if by_make else command,
+            cwd=folder, env=os.environ | options, stdout=said, stderr=said, start_new_session=True,
+        )  # fmt: skip
 
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
     """Every result but logs, times and notes; a hidden name is a file that its writer was killed over."""
-    results = folder / results
+    paths = {path.relative_to(folder / results): path for path in sorted((folder / results).rglob("*"))}
     return {
-        str(path.relative_to(results)): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(results.rglob("*"))
+        str(name): hashlib.sha256(path.read_bytes()).hexdigest()
+        for name, path in paths.items()
         if path.is_file()
         and not path.name.startswith(".")
-        and path.relative_to(results).parts[0] not in ("logs", "benchmarks", "records")
+        and name.parts[0] not in ("logs", "benchmarks", "records")
     }
 
 
-def at_work(folder: Path) -> list[int]:
-    """Processes whose working directory is the folder."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            with suppress(OSError):
-                if (entry / "cwd").resolve() == folder.resolve() and (entry / "cmdline").read_bytes():
-                    found.append(int(entry.name))
+def at_work(folder: Path) -> dict[int, bytes]:
+    """Arguments of all other processes that work in a folder, or whose arguments or environment name it."""
+    found, folder = {}, folder.resolve()
+    for entry in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            arguments, here = (entry / "cmdline").read_bytes(), (entry / "cwd").resolve()
+            named = os.fsencode(folder) in arguments + (entry / "environ").read_bytes()
+            if arguments and int(entry.name) != os.getpid() and (named or here.is_relative_to(folder)):
+                found[int(entry.name)] = arguments
     return found
 
 
-def stop_at(folder: Path, number: int, instant: float, targets: Iterable[str] = TARGETS) -> float:
-    """Send a signal to the group of a run at an instant; seconds until nothing of it is left, NaN where it was over."""
-    run = start_by_make(folder, targets)
-    with suppress(subprocess.TimeoutExpired):
-        run.wait(timeout=instant)
-        return math.nan
-    os.killpg(run.pid, number)
-    sent = time.monotonic()
-    run.wait(timeout=60)
-    while at_work(folder):
-        assert time.monotonic() - sent < 60.0, "what a run has started goes on after its end"
+def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -> bool:
+    """Stop a run in some way, unless it ends before there is what is killed; returns whether it was stopped.
+
+    All that it has started ends with it, but for jobs of a Snakemake that was killed alone: the next run starts among
+    them.
+    """
+    able: list[int] = []
+    while not able and run.poll() is None:
+        others = {number: name for number, name in at_work(folder).items() if number != run.pid}
+        # The first is the server, if there is another, which is a job.
+        servers = sorted(number for number, name in others.items() if b"forkserver" in name)
+        able = {"a job": [*others], "the server of jobs": servers[: len(servers) > 1]}.get(way, [run.pid])
+    kill = os.killpg if way in (*SIGNALS, "everything") else os.kill
+    with suppress(ProcessLookupError):
+        for victim in able and [chance.choice(able)]:
+            kill(victim, getattr(signal, way, signal.SIGKILL))
+    since = time.monotonic()
+    run.wait(timeout=300)
+    if way in WITHOUT_MAKE:
+        return bool(able)
+    # That the server is gone, the run has to see first.
+    since = since if way in SIGNALS else time.monotonic()
+    while left := at_work(folder):
+        assert time.monotonic() - since < (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE), (way, left)
         time.sleep(0.02)
     said = (folder / "said.txt").read_text(encoding="utf-8")
-    assert "Traceback" not in said and "Exception" not in said, said[-4000:]
-    return time.monotonic() - sent
+    assert "Traceback" not in said and ("Exception" not in said or way not in SIGNALS), said[-4000:]
+    return bool(able)
 
 
-def kill(run: subprocess.Popen, folder: Path, whom: str, chance: random.Random) -> None:
-    """SIGKILL to Snakemake, a job or everything; waits for Snakemake's end.
-
-    Jobs of a Snakemake that was killed alone may still write; the next run starts among them.
-    """
-    jobs = [process for process in at_work(folder) if process != run.pid]
-    if whom == "everything":
-        os.killpg(run.pid, signal.SIGKILL)
-    else:
-        victim = chance.choice(jobs) if whom == "a job" and jobs else run.pid
-        with suppress(ProcessLookupError):
-            os.kill(victim, signal.SIGKILL)
-    run.wait(timeout=300)
-
-
-def fault_run(folder: Path, kills: int, seed: int, say=print, targets: Iterable[str] = TARGETS) -> Report:
-    """Kill runs until ``kills`` have been killed; compare each time that one gets to its end.
+def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARGETS) -> str:
+    """Stop runs ``stops`` times; compare each time that one gets to its end. Returns what happened.
 
     Raises
     ------
     AssertionError
-        When a run fails, or a result differs from that of a quiet run.
+        When a run fails, does not end when it is stopped, or a result differs from that of a quiet run.
     """
-    chance, report = random.Random(seed), Report()
-    quiet = prepare(folder / "quiet")
+    chance, stopped, compared = random.Random(seed), Counter(), 0
+    quiet, harmed = prepare(folder / "quiet"), prepare(folder / "harmed")
     began = time.monotonic()
     assert start(quiet, targets).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(encoding="utf-8")
     duration = time.monotonic() - began
     expected = digests(quiet)
-    report.files = len(expected)
-    say(f"A quiet run: {duration:.0f} s, {len(expected)} files")
-
-    harmed = prepare(folder / "harmed")
+    assert len(expected) >= 3 * len(targets)
     # Every file by name, so that each that is taken away is missed.
     targets = [f"results/{name}" for name in expected]
-    while sum(report.kills.values()) < kills:
-        whom = WHOM[sum(report.kills.values()) % len(WHOM)]
-        run = start(harmed, targets)
-        instant = chance.uniform(0.05, 0.7) * duration
+    while True:
+        left, way = stops - stopped.total(), min(WAYS, key=stopped.__getitem__)
+        run = start(harmed, targets, by_make=way not in WITHOUT_MAKE)
         try:
-            run.wait(timeout=instant)
+            # What is there already is not made again.
+            run.wait(chance.uniform(0.02, 0.7) * duration if left else 1200)
         except subprocess.TimeoutExpired:
-            kill(run, harmed, whom, chance)
-            report.kills[whom] += 1
-            say(f"killed {whom} after {instant:.1f} s: {len(digests(harmed))} files there")
+            stopped[way] += stop(run, harmed, way, chance)
+            assert run.returncode or digests(harmed) == expected
             continue
-        report.finished_first += 1
-        _finish(harmed, expected, report)
-        # A third of the files is taken away, so that the next runs have work.
-        for name in sorted(expected)[chance.randrange(3) :: 3]:
+        assert run.returncode == 0, (harmed / "said.txt").read_text(encoding="utf-8")[-4000:]
+        differing = dict(digests(harmed).items() ^ expected.items())
+        assert not differing, f"other than in a quiet run: {sorted(differing)}"
+        compared += 1
+        if not left:
+            break
+        # Some of the files are taken away, so that the next runs have work.
+        for name in sorted(expected)[chance.randrange(3) :: chance.choice((1, 3))]:
             (harmed / "results" / name).unlink()
-    _finish(harmed, expected, report)
-    return report
+    counts = ", ".join(f"{count} by {way}" for way, count in stopped.items())
+    same = f"{len(expected)} files the same, byte by byte, {compared} times"
+    return f"{stops} stops survived ({counts}); {same}"
 
 
-def _finish(folder: Path, expected: dict[str, str], report: Report) -> None:
-    ended = start(folder, [f"results/{name}" for name in expected]).wait(timeout=1200)
-    assert ended == 0, (folder / "said.txt").read_text(encoding="utf-8")[-4000:]
-    differing = dict(digests(folder).items() ^ expected.items())
-    assert not differing, f"other than in a quiet run: {sorted(differing)}"
-    report.comparisons += 1
-
-
-def main() -> int:
-    """Run it; returns the exit code."""
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=24)
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="faults für ") as folder:
-        report = fault_run(Path(folder), chosen.kills, chosen.seed)
-    survived = ", ".join(f"{count} of {whom}" for whom, count in report.kills.items())
-    print(
-        f"{sum(report.kills.values())} kills survived ({survived};"
-        f" {report.finished_first} runs finished first); {report.files} files the same, byte by byte,"
-        f" {report.comparisons} times"
-    )
-    return 0
+        print(fault_run(Path(folder), chosen.kills, chosen.seed))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -7,13 +7,24 @@ import subprocess
 import sys
 from pathlib import Path
 
-from numba.core.caching import _CacheLocator
-
-from slippulse.solver import jit
-
 PARTS = (
     "CITATION.cff", "Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock",
 )  # fmt: skip
+# The profile of the folder logs for people; without it the plain lines are read.
+BY_PROFILE = (sys.executable, "-m", "snakemake")
+SNAKEMAKE = (
+    *BY_PROFILE, "--workflow-profile", "none", "--rerun-incomplete", "--force-use-threads",
+    "--rerun-triggers", "software-env",
+)  # fmt: skip
+# A user-defined sweep, in chunks so that there are the rules that join them, and a scene.
+SWEEP = {
+    "boundary": "displacement", "left": [0.3, 0.5], "right": "same", "gamma": [0.65], "duration": {"time": 6.0},
+    "spacing": {"scale": 4.0}, "record": ["fronts", "fields"], "chunks": 2,
+}  # fmt: skip
+SCENE = {
+    "title": "One", "boundary": "displacement", "left": 0.5, "right": 0.6, "gamma": 0.65, "dx": 0.1, "duration": 6.0,
+}  # fmt: skip
+OVERLAY = {"preset": "draft", "simulations": {"mine": SWEEP}, "scenes": {"one": SCENE}}
 
 
 def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
@@ -21,15 +32,13 @@ def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     for part in PARTS:
         source = project / part
-        if link and source.exists():
+        if link:
             (folder / part).symlink_to(source)
         elif source.is_dir():
             # Compiled modules too, which stay valid as the times are kept.
             shutil.copytree(source, folder / part)
-        elif source.exists():
+        else:
             shutil.copy2(source, folder / part)
-    if not link:
-        share_kernels(folder)
     return folder
 
 
@@ -60,41 +69,14 @@ def imitate_steps(folder: Path) -> None:
     path.write_text(text + IMITATION, encoding="utf-8")
 
 
-def share_kernels(folder: Path) -> None:
-    """Give a copy of the sources the kernels that are compiled already: numba keeps them under the sources' path."""
-    cache = jit.cache_folder()
-    compiled = cache / Path(_CacheLocator.get_suitable_cache_subpath(jit.__file__))
-    copied = folder / Path(jit.__file__).relative_to(Path(__file__).resolve().parents[1])
-    if compiled.exists():
-        shutil.copytree(
-            compiled, cache / _CacheLocator.get_suitable_cache_subpath(str(copied)), dirs_exist_ok=True
-        )
-
-
-def snakemake(
-    folder: Path,
-    *arguments: str,
-    overlay: str = "",
-    cores: int = 1,
-    environment: dict | None = None,
-    timeout: int = 300,
-) -> subprocess.CompletedProcess:
-    """Run Snakemake in a folder, with that folder's library."""
-    # The profile of the folder logs for people; here the plain lines are read.
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--rerun-incomplete"]
-    command += ["--force-use-threads", "--rerun-triggers", "software-env"]
-    command += ["--cores", str(cores)]
-    command += ["--configfile", overlay] if overlay else []
-    library = (folder / "src").resolve()
+def snakemake(folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how):
+    """Run Snakemake in a folder, with that folder's library; returns the completed process."""
+    options = ["--cores", str(cores), *(["--configfile", overlay] if overlay else [])]
+    library = {"PYTHONPATH": str((folder / "src").resolve())}
     return subprocess.run(
-        [*command, *arguments],
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(library)} | (environment or {}),
-        capture_output=True,
-        text=True,
-        timeout=timeout,
-        check=False,
-    )
+        [*command, *options, *arguments], env=os.environ | library | (environment or {}), text=True,
+        **{"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how,
+    )  # fmt: skip
 
 
 def planned(result: subprocess.CompletedProcess) -> dict[str, int]:

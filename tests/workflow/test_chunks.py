@@ -1,29 +1,27 @@
 """A sweep in chunks through Snakemake: the bytes of the sweep in one job, and only what is lost is made again."""
 
+import json
 import shutil
 from pathlib import Path
 
 import pytest
-from pipeline_copy import copy_project, planned, snakemake
+from pipeline_copy import SWEEP, copy_project, planned, snakemake
 
 from slippulse.data.store import load_dataset
 
 pytestmark = [pytest.mark.workflow, pytest.mark.slow]
 
-SWEEP = {
-    "boundary": "displacement", "left": [0.3, -0.2, 0.5, 0.4, 0.0, 0.6, 0.7], "right": "same", "gamma": [0.65],
-    "duration": {"time": 6.0}, "spacing": {"scale": 4.0}, "record": ["fronts", "fields"], "resolved_blocks": 4,
-}  # fmt: skip
+LEVELS = [0.3, -0.2, 0.5, 0.4, 0.0, 0.6, 0.7]
 CHUNKS = {"in_none": None, "in_one": 1, "in_two": 2, "in_three": 3}
 FILES = ("data/{}.nc", "measurements/{}.csv", "uncertainties/{}.csv", "uncertainties/coarser/{}.csv")
 
 
-def write_overlay(folder: Path, name: str, chunks: dict, **changes) -> str:
-    sweeps = {
-        sweep: SWEEP | changes | ({"chunks": count} if count else {}) for sweep, count in chunks.items()
-    }
-    text = "preset: draft\n" + "".join(f"  {key}: {sweep}\n" for key, sweep in sweeps.items())
-    (folder / name).write_text(text.replace("draft\n", "draft\nsimulations:\n"), encoding="utf-8")
+def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **changes) -> str:
+    """Sweeps of some levels in some numbers of chunks, or without."""
+    sweep = {key: value for key, value in SWEEP.items() if key != "chunks"}
+    sweep |= {"left": LEVELS, "resolved_blocks": 4} | changes
+    found = {name: sweep | ({"chunks": chunks} if chunks else {}) for name, chunks in sweeps.items()}
+    (folder / name).write_text(json.dumps({"preset": "draft", "simulations": found}), encoding="utf-8")
     return name
 
 
@@ -45,51 +43,47 @@ def folder(project, tmp_path_factory) -> Path:
 
 
 def test_the_bytes_are_those_of_the_sweep_in_one_job(folder):
-    data = FILES[0].format("in_two")
-    digests = [
-        load_dataset(folder / tree / data).attrs["configuration"].encode() for tree in ("whole", "results")
-    ]
-    for file in FILES:
-        whole, joined = (
-            (folder / tree / file.format("in_two")).read_bytes() for tree in ("whole", "results")
-        )
+    files, trees = [file.format("in_two") for file in FILES], [folder / "whole", folder / "results"]
+    digests = [load_dataset(tree / files[0]).attrs["configuration"].encode() for tree in trees]
+    for file in files:
+        whole, joined = ((tree / file).read_bytes() for tree in trees)
         # The configuration says how many chunks there are.
         assert whole.replace(*digests) == joined, file
     chunks = sorted(path.name for path in (folder / "results/data/in_two").glob("*.nc"))
     assert chunks == ["1-of-2.nc", "2-of-2.nc"]
 
 
-def test_a_sweep_without_chunks_has_no_other_jobs(folder):
-    for name in ("in_none", "in_one"):
-        result = snakemake(folder, "--dry-run", "--forceall", "--", *targets(name), overlay="overlay.yaml")
-        assert planned(result) == {"compile_kernels": 1, "simulate": 1, "measure": 1, "study_grid": 1}
+ONE_JOB, THREE = ({"simulate": count, "measure": count, "study_grid": count} for count in (1, 3))
+FORCED, KERNELS, LEVEL = ["--forceall"], {"compile_kernels": 1}, {"left": [*LEVELS[:-1], 0.8]}
+# Numbers of chunks, what else is altered, the sweep and its files that are asked for, options, and jobs.
+PLANS = {
+    "without chunks there are no other jobs": (CHUNKS, {}, "in_none", FILES, FORCED, ONE_JOB | KERNELS),
+    "nor with one": (CHUNKS, {}, "in_one", FILES, FORCED, ONE_JOB | KERNELS),
+    "joined data are not needed": (CHUNKS, {}, "in_three", FILES[1:], FORCED, THREE | KERNELS | {"join": 3}),
+    "another number of chunks takes nothing": ({"in_two": 3}, {}, "in_two", FILES, [], THREE | {"join": 4}),
+    "nor does none": ({"in_two": None}, {}, "in_two", FILES, [], ONE_JOB),
+    "with another level all run again": (
+        CHUNKS, LEVEL, "in_two", FILES[1:2], [], {"simulate": 2, "measure": 2, "join": 1}
+    ),
+    "a lost chunk is made again alone": (CHUNKS, {}, "in_two", FILES, ["lost"], ONE_JOB | {"join": 4}),
+    "or the rest": (CHUNKS, {}, "in_two", FILES[1:], ["lost"], {"measure": 1, "study_grid": 1, "join": 3}),
+    "and only its grid study": (CHUNKS, {}, "in_two", FILES[2:], ["lost"], {"study_grid": 1, "join": 2}),
+}  # fmt: skip
 
 
-def test_numbers_do_not_need_the_joined_data(folder):
-    result = snakemake(
-        folder, "--dry-run", "--forceall", "--", *targets("in_three", files=FILES[1:]), overlay="overlay.yaml"
-    )
-    assert planned(result) == {"compile_kernels": 1, "simulate": 3, "measure": 3, "study_grid": 3, "join": 3}
-
-
-@pytest.mark.parametrize(
-    ("lost", "jobs"),
-    [
-        (FILES, {"simulate": 1, "measure": 1, "study_grid": 1, "join": 4}),
-        (FILES[1:], {"measure": 1, "study_grid": 1, "join": 3}),
-        (FILES[2:], {"study_grid": 1, "join": 2}),
-    ],
-    ids=["all files", "all but its data", "its grid study"],
-)
-def test_a_killed_chunk_is_made_again_alone(folder, lost, jobs):
-    paths = [folder / target for target in targets("in_two/2-of-2", "in_two", files=lost)]
-    kept = [path.rename(path.with_suffix(".kept")) for path in paths]
+@pytest.mark.parametrize("case", PLANS)
+def test_what_runs(folder, case):
+    sweeps, changes, name, files, options, jobs = PLANS[case]
+    lost = targets("in_two/2-of-2", name, files=files) if options == ["lost"] else []
+    kept = [(folder / path).rename(folder / f"{path}.kept") for path in lost]
+    options = [] if lost else options
     try:
-        result = snakemake(folder, "--dry-run", "--", *targets("in_two", files=lost), overlay="overlay.yaml")
-        assert planned(result) == jobs
+        overlay = write_overlay(folder, "other.yaml", sweeps, **changes)
+        result = snakemake(folder, "--dry-run", *options, "--", *targets(name, files=files), overlay=overlay)
     finally:
-        for path, away in zip(paths, kept, strict=True):
-            away.rename(path)
+        for path in kept:
+            path.rename(path.with_suffix(""))
+    assert planned(result) == jobs
 
 
 def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
@@ -106,29 +100,12 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     assert [path.read_bytes() for path in joined] == before
 
 
-def test_another_number_of_chunks_takes_nothing_from_the_old_ones(folder):
-    overlay = write_overlay(folder, "other.yaml", {"in_two": 3})
-    result = snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay=overlay)
-    assert planned(result) == {"simulate": 3, "measure": 3, "study_grid": 3, "join": 4}
-    overlay = write_overlay(folder, "none.yaml", {"in_two": None})
-    result = snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay=overlay)
-    assert planned(result) == {"simulate": 1, "measure": 1, "study_grid": 1}
-
-
-def test_another_level_runs_all_chunks_again(folder):
-    overlay = write_overlay(folder, "level.yaml", {"in_two": 2}, left=[0.3, -0.2, 0.5, 0.4, 0.1, 0.6, 0.7])
-    result = snakemake(folder, "--dry-run", "--", *targets("in_two", files=FILES[1:2]), overlay=overlay)
-    assert planned(result) == {"simulate": 2, "measure": 2, "join": 1}
-
-
-@pytest.mark.parametrize(
-    "chunk", ["in_two/1-of-3", "in_two/3-of-2", "in_two/0-of-2", "in_none/1-of-1", "in_one/1-of-1"]
-)
+@pytest.mark.parametrize("chunk", ["two/1-of-3", "two/3-of-2", "two/0-of-2", "none/1-of-1", "one/1-of-1"])
 def test_a_chunk_that_there_is_not_is_refused(folder, chunk):
-    result = snakemake(folder, "--", f"results/data/{chunk}.nc", overlay="overlay.yaml")
+    result = snakemake(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "Traceback" not in said
-    assert f"target: 'results/data/{chunk}.nc'" in said and "allowed: a rule of a single job" in said
+    assert f"target: 'results/data/in_{chunk}.nc'" in said and "allowed: a rule of a single job" in said
 
 
 def test_a_job_elsewhere_does_not_check_every_run_again(folder):

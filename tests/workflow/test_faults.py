@@ -2,27 +2,26 @@
 
 import hashlib
 import json
-import math
 import os
-import random
 import resource
 import shutil
-import signal
 import subprocess
 import sys
 import tempfile
-import time
-from collections import Counter
+from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
-from faults import TARGETS, Report, at_work, digests, fault_run, prepare, start_by_make, stop_at
-from pipeline_copy import copy_project, snakemake
+from faults import WAYS, digests, fault_run, prepare, start
+from pipeline_copy import BY_PROFILE, copy_project, planned, snakemake
 
 from slippulse.data.files import UnreadableFile
 from slippulse.data.records import Origin
-from slippulse.data.tables import load_table
-from slippulse.steps.job import JobFailed, Jobs
+from slippulse.data.store import save_dataset
+from slippulse.data.tables import load_table, save_table
+from slippulse.steps.job import JobFailed, Jobs, logged
 
 pytestmark = pytest.mark.workflow
 
@@ -32,34 +31,18 @@ FIGURE = "results/figures/fig07_damage_zone.png"
 
 
 @pytest.fixture(scope="module")
-def killed_once(tmp_path_factory) -> tuple[Path, Report]:
-    """A folder with a space and an umlaut in its path, and a few results, of a run that was killed and taken up."""
-    folder = tmp_path_factory.mktemp("with spaces") / "und Umläuten"
-    report = fault_run(folder, kills=1, seed=3, say=lambda text: None, targets=(SCENE, FIGURE))
-    return folder / "harmed", report
+def finished(tmp_path_factory) -> Path:
+    """A folder with a space and an umlaut in its path, and a few results."""
+    folder = prepare(tmp_path_factory.mktemp("with spaces") / "und Umläuten")
+    assert start(folder, (SCENE, FIGURE)).wait() == 0
+    return folder
 
 
-@pytest.fixture
-def finished(killed_once) -> Path:
-    return killed_once[0]
-
-
-@pytest.fixture
-def copy(finished, tmp_path) -> Path:
-    """A copy, in which a test may do what it likes."""
-    return Path(shutil.copytree(finished, tmp_path / "copy", symlinks=True))
-
-
-def test_a_kill_is_survived(killed_once):
-    report = killed_once[1]
-    assert sum(report.kills.values()) == 1 and report.comparisons >= 1 and report.files >= 6
-
-
-@pytest.mark.slow
-def test_kills_are_survived(tmp_path):
-    report = fault_run(tmp_path, kills=6, seed=3, say=lambda text: None)
-    assert sum(report.kills.values()) == 6
-    assert report.comparisons >= 1 and report.files >= 3 * len(TARGETS)
+@pytest.mark.parametrize("times", [1, pytest.param(20, marks=pytest.mark.slow)])
+def test_a_run_is_stopped_in_every_way_and_the_next_gives_the_same(tmp_path, times):
+    targets = [FIGURE] if times == 1 else [FIGURE, SCENE]
+    said = fault_run(tmp_path / "und Umläuten", times * len(WAYS), 3, targets)
+    assert all(f"{times} by {way}" in said for way in WAYS)
 
 
 @pytest.mark.slow
@@ -76,79 +59,20 @@ def test_surroundings_do_not_change_a_byte(finished, tmp_path):
 
 @pytest.mark.slow
 def test_it_can_be_started_from_anywhere(finished, tmp_path):
-    command = [sys.executable, "-m", "snakemake", "--cores", "1", "--dry-run", "--directory", str(finished)]
-    command += ["--snakefile", str(finished / "Snakefile"), "--configfile", str(finished / "overlay.yaml")]
-    result = subprocess.run(
-        [*command, "--", SCENE], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert result.returncode == 0, result.stderr
-    assert "Nothing to be done" in result.stdout + result.stderr
-
-
-SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL)
-# Seconds. SIGKILL leaves nobody who could end what was started: that ends itself when it has begun to work.
-AT_ONCE = 2.0
-
-
-@pytest.mark.parametrize("each", [1, pytest.param(20, marks=pytest.mark.slow)])
-def test_a_signal_ends_a_run_at_once_and_the_next_gives_the_same(tmp_path, each):
-    targets = (FIGURE,) if each == 1 else (FIGURE, SCENE)
-    quiet, harmed = prepare(tmp_path / "quiet"), prepare(tmp_path / "harmed")
-    began = time.monotonic()
-    assert start_by_make(quiet, targets).wait(timeout=600) == 0
-    duration, chance = time.monotonic() - began, random.Random(5)
-    expected = digests(quiet)
-    met = Counter()
-    while min(met[number] for number in SIGNALS) < each:
-        number = min(SIGNALS, key=met.__getitem__)
-        seconds = stop_at(harmed, number, chance.uniform(0.02, 0.9) * duration, targets)
-        assert number == signal.SIGKILL or not seconds > AT_ONCE, (number, seconds)
-        met[number] += not math.isnan(seconds)
-        # Otherwise it goes on from what is there, and is done before the next signal at last.
-        if math.isnan(seconds) or chance.random() < 0.3:
-            shutil.rmtree(harmed / "results", ignore_errors=True)
-    assert start_by_make(harmed, targets).wait(timeout=600) == 0
-    assert digests(harmed) == expected
+    what = ["--dry-run", "--directory", finished, "--snakefile", finished / "Snakefile", "--", SCENE]
+    how = {"overlay": finished / "overlay.yaml", "command": BY_PROFILE, "cwd": tmp_path}
+    assert planned(snakemake(finished, *what, **how)) == {}
 
 
 @pytest.mark.slow
-def test_a_run_ends_with_the_server_of_its_jobs(tmp_path):
-    folder = prepare(tmp_path / "run")
-    run, servers = start_by_make(folder, (SCENE,)), []
-    # It and a job.
-    while len(servers) < 2:
-        assert run.poll() is None
-        commands = {number: Path(f"/proc/{number}/cmdline").read_bytes() for number in at_work(folder)}
-        servers = [number for number, command in commands.items() if b"forkserver" in command]
-        time.sleep(0.02)
-    os.kill(min(servers), signal.SIGKILL)
-    assert run.wait(timeout=60) != 0
-    said = (folder / "said.txt").read_text(encoding="utf-8")
-    assert "Traceback" not in said, said
-    time.sleep(0.5)
-    assert not at_work(folder)
-    assert start_by_make(folder, (SCENE,)).wait(timeout=600) == 0
-
-
-@pytest.mark.slow
-def test_only_a_run_removes_what_was_changed(copy):
-    (copy / RECORD).unlink()
-    for option in ("--dry-run", "--summary", "--rulegraph"):
-        result = snakemake(copy, option, "--", SCENE, overlay="overlay.yaml")
-        assert f"as {DATA}: no record; would be removed, and made anew" in result.stderr, option
-        assert (copy / DATA).exists(), option
-
-
-@pytest.mark.slow
-def test_a_failing_job_says_so_in_one_line(copy):
+def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
     """As `make replicate` runs it, whose logger prints the logs of jobs that fail."""
+    copy = Path(shutil.copytree(finished, tmp_path / "copy", symlinks=True))
     (copy / SCENE).unlink()
     (copy / DATA).write_bytes(b"no data")
     outputs = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
     (copy / RECORD).write_text(json.dumps(json.loads((copy / RECORD).read_text()) | {"outputs": outputs}))
-    command = [sys.executable, "-m", "snakemake", "--cores", "1", "--configfile", "overlay.yaml", "--", SCENE]
-    environment = os.environ | {"PYTHONPATH": str((copy / "src").resolve())}
-    result = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
+    result = snakemake(copy, "--", SCENE, overlay="overlay.yaml", command=BY_PROFILE)
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "one.nc: cannot be read" in said
     assert "delete it and run again" in said and "(details: results/logs/measure/one.traceback)" in said
@@ -165,19 +89,16 @@ def test_an_unreadable_table_is_named(tmp_path):
 
 # A file where a folder goes, or a folder where a file goes.
 PLACES = {
-    "results": "file", "results/data": "file", "results/logs": "file",
-    ".snakemake": "file", "results/kernels.txt": "folder", "results/measurements/arrest.csv": "folder",
-    "results/records/data/arrest.nc.json": "folder",
+    "results/data": "file", "results/logs": "file", ".snakemake": "file", "results/kernels.txt": "folder",
+    "results/measurements/arrest.csv": "folder", "results/records/data/arrest.nc.json": "folder",
 }  # fmt: skip
-QUICK = ("results",)
+REST = [pytest.param(place, marks=pytest.mark.slow) for place in PLACES]
 
 
-@pytest.mark.parametrize(
-    "place", [pytest.param(place, marks=() if place in QUICK else pytest.mark.slow) for place in PLACES]
-)
-def test_a_place_that_is_taken_fails_in_one_line(tmp_path, place):
-    folder = copy_project(Path(__file__).resolve().parents[2], tmp_path / "copy", link=True)
-    path, kind = folder / place, PLACES[place]
+@pytest.mark.parametrize("place", ["results", *REST])
+def test_a_place_that_is_taken_fails_in_one_line(project, tmp_path, place):
+    folder = copy_project(project, tmp_path / "copy", link=True)
+    path, kind = folder / place, PLACES.get(place, "file")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.mkdir() if kind == "folder" else path.write_text("mine")
     result = snakemake(folder, "--", FIGURE)
@@ -186,35 +107,35 @@ def test_a_place_that_is_taken_fails_in_one_line(tmp_path, place):
     assert f"{place} is a {kind}; remove or rename it" in said and path.exists()
 
 
-@pytest.mark.parametrize(("kind", "home"), [("table", "tables"), ("dataset", "store")])
-def test_a_full_disk_leaves_the_old_file(kind, home, tmp_path):
+@contextmanager
+def full_disk():
     """A limit on the size of files stands for a disk without room: writing fails in the same place."""
-    path = tmp_path / kind
+    least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, most))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (least, most))
+
+
+@pytest.mark.parametrize("kind", ["table", "dataset"])
+def test_a_full_disk_leaves_the_old_file(kind, tmp_path, capsys):
+    path, numbers = tmp_path / kind, pd.DataFrame({"a": np.arange(1e5)})
     path.write_text("what was there\n")
-    program = (
-        "import sys, numpy, pandas\n"
-        f"from slippulse.steps.job import logged\nfrom slippulse.data.{home} import save_{kind} as save\n"
-        "numbers = pandas.DataFrame({'a': numpy.arange(1e5)})\n"
-        "with logged(sys.argv[2]):\n"
-        f"    save(numbers{'.to_xarray()' if kind == 'dataset' else ''}, sys.argv[1])\n"
-    )
-    result = subprocess.run(
-        [sys.executable, "-c", program, str(path), str(tmp_path / "log")], capture_output=True, text=True, check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
-    )  # fmt: skip
-    assert result.returncode == 1
-    assert "make room and run again" in result.stderr and result.stderr.count("\n") == 1
+    with pytest.raises(SystemExit, match="1"), logged(tmp_path / "log"), full_disk():
+        save_table(numbers, path) if kind == "table" else save_dataset(numbers.to_xarray(), path)
+    said = capsys.readouterr().err
+    assert "make room and run again" in said and said.count("\n") == 1
     assert path.read_text() == "what was there\n"
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(["log", "log.traceback", kind])
+    assert {entry.name for entry in tmp_path.iterdir()} == {"log", "log.traceback", kind}
 
 
-def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
+def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path, capsys):
     (tmp_path / "logs").write_text("a file")
-    program = "import sys\nfrom slippulse.steps.job import logged\nwith logged(sys.argv[1]): pass\n"
-    command = [sys.executable, "-c", program, str(tmp_path / "logs/one.log")]
-    result = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert result.returncode == 1
-    assert result.stderr.count("\n") == 1 and "allowed: a results folder that can be written" in result.stderr
+    with pytest.raises(SystemExit, match="1"), logged(tmp_path / "logs/one.log"):
+        pass
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "allowed: a results folder that can be written" in said
 
 
 def test_a_job_that_fails_has_said_why(tmp_path, capfd):
@@ -229,33 +150,37 @@ def test_a_job_that_fails_has_said_why(tmp_path, capfd):
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")
-def test_sources_that_cannot_be_written_are_enough():
-    project = Path(__file__).resolve().parents[2]
-    base = Path(tempfile.mkdtemp(prefix="read-only-"))
-    try:
-        folder = copy_project(project, base / "copy")
+def test_sources_that_cannot_be_written_are_enough(project):
+    with tempfile.TemporaryDirectory(prefix="read-only-") as base:
+        folder = copy_project(project, Path(base) / "copy")
         for name in ("results", ".snakemake", "home"):
             (folder / name).mkdir()
             os.chown(folder / name, 65534, 65534)
-        theirs = os.environ | {"HOME": str(folder / "home"), "PYTHONPATH": str(folder / "src")}
-        theirs |= {"XDG_CACHE_HOME": "", "SLIPPULSE_CACHE": ""}
-        base.chmod(0o755)
+        Path(base).chmod(0o755)
         if subprocess.run(["test", "-x", sys.executable], user=65534, check=False).returncode != 0:
             pytest.skip("the environment cannot be read by others")
-
-        def run() -> subprocess.CompletedProcess:
-            return subprocess.run(
-                [sys.executable, "-m", "snakemake", "--cores", "1", "--", FIGURE],
-                cwd=folder, user=65534, group=65534, capture_output=True, text=True, check=False, env=theirs,
-            )  # fmt: skip
-
-        result = run()
+        theirs = {"HOME": str(folder / "home"), "XDG_CACHE_HOME": "", "SLIPPULSE_CACHE": ""}
+        how = {"environment": theirs, "user": 65534, "group": 65534, "command": BY_PROFILE}
+        result = snakemake(folder, "--", FIGURE, **how)
         assert result.returncode == 0, result.stderr
         assert (folder / FIGURE).stat().st_size > 0
         (folder / FIGURE).unlink()
         os.chown(folder / "results", 0, 0)
         shutil.rmtree(folder / "results/figures")
-        result = run()
+        result = snakemake(folder, "--", FIGURE, **how)
         assert result.returncode != 0 and "Permission denied" in result.stdout + result.stderr
-    finally:
-        shutil.rmtree(base)
+
+
+@pytest.mark.slow
+def test_of_two_first_runs_in_a_fresh_clone_one_sets_up_and_one_runs(project, tmp_path):
+    folder, run = tmp_path / "clone", ["make", "replicate", "PRESET=draft", "TARGET=fig07"]
+    subprocess.run(["git", "clone", "--quiet", project, folder], check=True)
+    options = {"cwd": folder, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    runs = [subprocess.Popen(run, **options) for _ in range(2)]
+    said = [each.communicate(timeout=500)[0] for each in runs]
+    assert sum("Setting up" in text for text in said) == 1 and "Traceback" not in "".join(said), said
+    # The second may begin when the first has ended.
+    refused = [text for each, text in zip(runs, said, strict=True) if each.returncode]
+    assert all("Another run is at work in this folder" in text for text in refused) and len(refused) <= 1
+    assert (folder / FIGURE).exists()
+    assert subprocess.run(run, cwd=folder, check=False, timeout=100).returncode == 0

@@ -226,9 +226,7 @@ def overlaid(tmp_path, text: str) -> dict:
 
 def read_row(shipped, tmp_path, key: str, value: str):
     """The configuration with a value at a key."""
-    added = [
-        f"simulations: {{{name}: {{{text}}}}}" for name, text in ADDED.items() if f"simulations.{name}" in key
-    ]
+    added = [f"simulations: {{{name}: {{{ADDED[name]}}}}}" for name in ADDED if f"simulations.{name}" in key]
     text = ": {".join(key.split(".")) + f": {value}" + "}" * key.count(".") if key else value
     return read_config(shipped, [overlaid(tmp_path, overlay) for overlay in (*added, text)])
 
@@ -284,7 +282,7 @@ def test_a_file_that_is_no_overlay_is_refused(tmp_path, file, capsys):
     assert_one_clear_message(message, [f"{tmp_path}/mine.yaml: ", *named])
 
 
-def test_scalars_are_what_yaml_says(tmp_path):
+def test_scalars_are_what_yaml_and_json_say(tmp_path):
     scalars = {
         "1": 1, "-2.5": -2.5, ".5": 0.5, "1e-3": 1e-3, "0x10": 16, "true": True, "null": None, "010": 10,
         "'010'": "010", "yes": "yes", "total": "total", "1:30": "1:30", "1.": 1.0,
@@ -292,22 +290,17 @@ def test_scalars_are_what_yaml_says(tmp_path):
     for text, value in scalars.items():
         read = overlaid(tmp_path, f"key: {text}\n")["key"]
         assert read == value and type(read) is type(value)
-
-
-def test_json_is_read_as_json(tmp_path):
+    # JSON is YAML.
     assert overlaid(tmp_path, '{"presets": {"paper": {"dx": 1e-2}}}') == {"presets": {"paper": {"dx": 0.01}}}
 
 
-def test_the_command_line_sets_nested_values(shipped):
+def test_the_command_line_sets_nested_values_and_says_a_switch_in_words(shipped):
     nested = {"damping_ratio": "0.2", "release": "elastic"}
-    config = read_config(shipped, (), {"model": nested, "allow_large": "true", "accuracy": "1e-2"})
+    config = read_config(shipped, (), {"model": nested, "accuracy": "1e-2"})
     assert (config.model.damping_ratio, config.model.release) == (0.2, "elastic")
-    assert config.model.scheme == shipped["model"]["scheme"]
-    assert config.allow_large is True and config.accuracy == 0.01
-
-
-def test_words_for_a_switch_on_the_command_line(shipped):
-    for said, meant in {1: True, "yes": True, "on": True, 0: False, "no": False, "False": False}.items():
+    assert config.model.scheme == shipped["model"]["scheme"] and config.accuracy == 0.01
+    words = {1: True, "yes": True, "on": True, "true": True, 0: False, "no": False, "False": False}
+    for said, meant in words.items():
         assert read_config(shipped, (), {"allow_large": said}, every_run=False).allow_large is meant
 
 

@@ -1,0 +1,22 @@
+"""A tree with every result, for tests of what is made anew."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+from pipeline_copy import OVERLAY, copy_project, imitate_steps, planned, snakemake
+
+# What everything makes, and what is only made by name.
+TARGETS = ("everything", "scenes")
+
+
+@pytest.fixture(scope="session")
+def imitated(project, tmp_path_factory) -> Path:
+    """A copy in which every job was imitated by one that writes what it is made by and from."""
+    folder = copy_project(project, tmp_path_factory.mktemp("imitated") / "copy")
+    imitate_steps(folder)
+    (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
+    made = snakemake(folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2, timeout=1200)
+    assert made.returncode == 0, made.stderr
+    assert planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")) == {}
+    return folder
