@@ -7,7 +7,6 @@ import pytest
 
 from slippulse import Prestress, Samples, Scene, run_sweep
 from slippulse.data.points import point
-from slippulse.data.tables import load_table, save_table
 from slippulse.figures import fig01_system_sketch, fig07_damage_zone
 from slippulse.figures import fig06_burridge_knopoff as figure
 from slippulse.studies import damage_zone
@@ -96,10 +95,8 @@ def data():
 
 
 @pytest.fixture(scope="module")
-def rows(data, tmp_path_factory):
-    path = tmp_path_factory.mktemp("table") / "table.csv"
-    save_table(figure.table(data, {}, {}), path)
-    return load_table(path)
+def rows(data):
+    return figure.table(data, {}, {})
 
 
 @pytest.fixture(scope="module")
