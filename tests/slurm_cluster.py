@@ -199,8 +199,7 @@ def compare(folder: Path) -> str:
     return f"slurm-test: {len(states)} jobs completed, {len(found)} files identical; nothing left running"
 
 
-def main() -> int:
-    """Run it; returns the exit code."""
+def main() -> None:
     # So that a run that is told to stop stops its cluster too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     try:
@@ -212,10 +211,8 @@ def main() -> int:
                 # A run that was interrupted leaves jobs without Slurm, too.
                 end_all(Path(folder))
     except Unable as reason:
-        print(f"slurm-test: not run: {reason}", file=sys.stderr)
-        return 1
-    return 0
+        sys.exit(f"slurm-test: not run: {reason}")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()
