@@ -13,11 +13,9 @@ from pathlib import Path
 import grimp
 import pytest
 import yaml
-from jinja2 import meta
 from pipeline_copy import BY_PROFILE, OVERLAY, copy_project, edges, merged, planned, snakemake
 from workflow.conftest import TARGETS
 
-from slippulse.report.html import PAGES
 from slippulse.steps.predict import TOPICS
 from slippulse.steps.reach import declared, sources
 
@@ -46,9 +44,10 @@ MODULES = {
     "predict": ["steps.predict", *(f"predict.{topic}" for topic in TOPICS)],
 }
 RULES = {*MODULES}
-# The template that a page begins with, by the rule that writes it.
-PAGE_OF = {f"write_{name}": f"{name}.html" for name in ("claims", "explorer", "index", "report")}
-PAGE_OF |= {"draw_scene": "scene.html", "write_scenes_page": "scenes.html"}
+# The templates that pages begin with, by the rules that write them.
+PAGES_OF = {f"write_{name}": [f"{name}.html"] for name in ("claims", "explorer", "index")}
+PAGES_OF |= {"write_report": ["report.html", "report.typ"]}
+PAGES_OF |= {"draw_scene": ["scene.html"], "write_scenes_page": ["scenes.html"]}
 # Texts beside the package, by the rules that read them; all others only the report reads.
 READ_BY = {
     "captions.yaml": {"write_report", "write_index"}, "summary.yaml": {"write_report", "write_index"},
@@ -89,12 +88,10 @@ def imports() -> grimp.ImportGraph:
 
 @cache
 def templates_of(page: str) -> set[str]:
-    """Templates that a page is made with."""
-    source, _, _ = PAGES.loader.get_source(PAGES, page)
-    found = {(PACKAGE / "report/templates" / page).relative_to(PROJECT).as_posix()}
-    for other in meta.find_referenced_templates(PAGES.parse(source)):
-        found |= templates_of(other)
-    return found
+    """A template and those that it is made with."""
+    path = f"src/slippulse/report/templates/{page}"
+    text = (PROJECT / path).read_text(encoding="utf-8")
+    return {path}.union(*map(templates_of, re.findall(r'{% (?:extends|include|import) "(.+?)"', text)))
 
 
 @cache
@@ -102,8 +99,7 @@ def expected(rule: str) -> set[str]:
     """Files of the package and texts that a rule depends on."""
     modules = {f"slippulse.{name}" for name in MODULES[rule]}
     found = {module_file(name) for name in modules.union(*map(imports().find_upstream_modules, modules))}
-    found |= templates_of(PAGE_OF[rule]) if rule in PAGE_OF else set()
-    found |= {"src/slippulse/report/templates/report.typ"} if rule == "write_report" else set()
+    found.update(*map(templates_of, PAGES_OF.get(rule, ())))
     texts = {path.name for path in TEXTS.iterdir() if rule in READ_BY.get(path.name, {"write_report"})}
     return found | {f"manuscript/{name}" for name in texts}
 
@@ -269,89 +265,71 @@ ALWAYS, CHAIN, PUBLISHED = (dict.fromkeys(names.split(), 1) for names in (
     "write_claims study_open_choices write_report write_provenance write_index", "simulate measure predict study_grid",
     "fig04_space_time study_published_figure study_of_exact_space_time study_of_derivations",
 ))  # fmt: skip
-JOINED = {"join": 4}
+# What is laid over the configuration, and what then runs besides.
 CONFIGURATIONS = {
-    "another level": ({"simulations": {"space_time_displacement": {"left": [0.3]}}}, CHAIN | PUBLISHED),
-    "swapped values": (
-        {"simulations": {"mine": {"left": [0.5, 0.3]}}}, dict.fromkeys(CHAIN, 2) | JOINED | {"sweep_mine": 1},
-    ),
-    "without chunks": ({"simulations": {"mine": {"chunks": 1}}}, CHAIN | {"sweep_mine": 1}),
-    "another sketch": (
-        {"figures": {FIGURE: {"thickness_ratios": [0.3, 1.0]}}}, {"study_of_damage_zone": 1, FIGURE: 1},
-    ),
-    "another title": (
-        {"scenes": {"barrier": {"title": "Uno"}}}, {"draw_scene": 1, "animate_scene": 1, "write_scenes_page": 1},
-    ),
-    "another tolerance": ({"claims": {"front_speed": {"tolerance": 0.5}}}, {}),
-    "permission for large sweeps": ({"allow_large": True}, {}),
-}  # fmt: skip
+    "simulations: {space_time_displacement: {left: [0.3]}}": CHAIN | PUBLISHED,
+    "simulations: {mine: {left: [0.5, 0.3]}}": dict.fromkeys(CHAIN, 2) | {"join": 4, "sweep_mine": 1},
+    "simulations: {mine: {chunks: 1}}": CHAIN | {"sweep_mine": 1},
+    f"figures: {{{FIGURE}: {{thickness_ratios: [0.3, 1.0]}}}}": {"study_of_damage_zone": 1, FIGURE: 1},
+    "scenes: {barrier: {title: Uno}}": {"draw_scene": 1, "animate_scene": 1, "write_scenes_page": 1},
+    "claims: {front_speed: {tolerance: 0.5}}": {},
+    "allow_large: true": {},
+}
 
 
-def jobs_with(imitated, change: dict | str) -> dict[str, int]:
+def jobs_with(imitated, change: str) -> dict[str, int]:
     """Jobs of a dry run with some values altered, or a file edited."""
-    if isinstance(change, str):
+    if change.endswith(".py"):
         return jobs_after_edit(imitated, change)
-    (imitated / "changed.yaml").write_text(yaml.safe_dump(merged(OVERLAY, change)), encoding="utf-8")
+    text = yaml.safe_dump(merged(OVERLAY, yaml.safe_load(change)))
+    (imitated / "changed.yaml").write_text(text, encoding="utf-8")
     return jobs_after(imitated, "changed.yaml")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", CONFIGURATIONS)
-def test_another_configuration_runs_only_its_chain(imitated, case):
-    change, expected = CONFIGURATIONS[case]
-    assert jobs_with(imitated, change) == expected | ALWAYS
+@pytest.mark.parametrize("change", CONFIGURATIONS)
+def test_another_configuration_runs_only_its_chain(imitated, change):
+    assert jobs_with(imitated, change) == CONFIGURATIONS[change] | ALWAYS
 
 
 def studies_without(*read: str) -> set[str]:
-    """Studies that read none of some kinds of files and parts of the configuration."""
+    """Studies that read no tables, and neither some other kinds of files nor parts of the configuration."""
+    read += ("data", "measured", "predicted", "uncertainties", "coarser", "studies")
     needs = {rule: declared(f"studies.{study}", "NEEDS") for rule, study in STUDIED.items()}
-    return {
-        rule
-        for rule, found in needs.items()
-        if not any(key.startswith(read) for key in (*found, *found.get("settings", ())) if key != "settings")
-    }
+    keys = {rule: {*found, *found.get("settings", ())} - {"settings"} for rule, found in needs.items()}
+    return {rule for rule, found in keys.items() if not any(key.startswith(read) for key in found)}
 
 
-TABLES = ("data", "measured", "predicted", "uncertainties", "coarser", "studies")
 # Shared values and a topic of theory, with rules that read them and rules that must not run for them.
-SKETCHES = {"fig01_system_sketch", "fig07_damage_zone", "study_barriers", "compile_kernels"}
+SKETCHES = {"fig01_system_sketch", FIGURE, "study_barriers", "compile_kernels"}
 DATA = {"simulate", "animate_scene", "fig06_burridge_knopoff"}
-UNMODELLED = studies_without(*TABLES, "sweeps", "model")
+UNMODELLED = studies_without("sweeps", "model")
 HELD = {"fig08_steady_state_displacement", "fig10_damping_displacement"}
 SHARED = {
-    "share": (
-        {"measure": {"share": 0.9}},
+    "measure: {share: 0.9}": (
         {"measure", "study_grid", "draw_scene", "write_claims", "fig05_scaling"},
-        SKETCHES | DATA | HELD | studies_without(*TABLES, "measure.share"),
-    ),
-    "damping": (
-        {"model": {"damping_ratio": 0.2}},
+        SKETCHES | DATA | HELD | studies_without("measure.share")),
+    "model: {damping_ratio: 0.2}": (
         {"simulate", "measure", "study_grid", "animate_scene", "fig04_space_time"},
         # Its simulations have damping ratios of their own; figure 8 draws a study that reads those of figure 9 too.
-        SKETCHES | UNMODELLED | {"fig10_damping_displacement"},
-    ),
-    "front window": (
-        {"measure": {"front_window": 0.4}},
+        SKETCHES | UNMODELLED | {"fig10_damping_displacement"}),
+    "measure: {front_window: 0.4}": (
         {"measure", "study_of_extremes", "fig03_steady_state"},
-        SKETCHES | DATA | studies_without(*TABLES, "measure.front_window"),
-    ),
-    "release": ({"model": {"release": "elastic"}}, {"simulate", "draw_scene"}, SKETCHES | UNMODELLED),
-    "coarser": ({"presets": {"draft": {"coarser": [2.0, 3.0]}}}, {"study_grid", "draw_scene"}, {"simulate", "measure"}),
-    "topic of theory": (
-        "src/slippulse/predict/pulse.py", {"predict", "sweep_mine", "draw_scene", "fig08_steady_state_displacement"},
-        {"fig02_phase_diagram", "fig05_scaling", "study_front_speed", "study_arrest"},
-    ),
+        SKETCHES | DATA | studies_without("measure.front_window")),
+    "model: {release: elastic}": ({"simulate", "draw_scene"}, SKETCHES | UNMODELLED),
+    "presets: {draft: {coarser: [2.0, 3.0]}}": ({"study_grid", "draw_scene"}, {"simulate", "measure"}),
+    "src/slippulse/predict/pulse.py": (
+        {"predict", "sweep_mine", "draw_scene", "fig08_steady_state_displacement"},
+        {"fig02_phase_diagram", "fig05_scaling", "study_front_speed", "study_arrest"}),
 }  # fmt: skip
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", SHARED)
-def test_what_is_shared_runs_what_reads_it_and_no_more(imitated, case):
-    change, read_by, untouched = SHARED[case]
-    jobs = jobs_with(imitated, change)
-    assert read_by | set(ALWAYS) <= set(jobs)
-    assert not untouched & set(jobs), untouched & set(jobs)
-    assert untouched <= RULES
+@pytest.mark.parametrize("change", SHARED)
+def test_what_is_shared_runs_what_reads_it_and_no_more(imitated, change):
+    read_by, untouched = SHARED[change]
+    jobs = set(jobs_with(imitated, change))
+    assert read_by | set(ALWAYS) <= jobs and not untouched & jobs and untouched <= RULES
 
 
 @pytest.mark.slow
