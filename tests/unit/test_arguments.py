@@ -143,6 +143,7 @@ CALLS = [
     ("scene: None; allowed: a Scene", lambda: sp.simulate(None)),
     ("scene: {'boundary': 'stress'}; allowed: a Scene", lambda: sp.simulate({"boundary": "stress"})),
     ("scenes: []; allowed: a list of Scenes, at least one", lambda: sp.run_sweep([])),
+    ("allowed: 'continuum' for all, or for none", lambda: sp.run_sweep([TINY, sp.Scene(**GOOD, scheme="continuum")])),
     ("record: 'samples' without samples; allowed: Samples", lambda: sp.run_sweep([TINY], record=("samples",))),
     ("record: ('x',); allowed: a list of fronts, fields, samples", lambda: sp.run_sweep([TINY], record=("x",))),
     ("index: -1; allowed: a whole number and >= 0 and <= 1", lambda: sp.point(SWEEP, -1)),

@@ -89,6 +89,10 @@ def run_sweep(
     """
     listed = isinstance(scenes, Sequence) and scenes and all(isinstance(scene, Scene) for scene in scenes)
     _require(bool(listed), "scenes", scenes, "a list of Scenes, at least one")
+    schemes = sorted({scene.scheme for scene in scenes})
+    _require(
+        schemes[0] != "continuum" or len(schemes) == 1, "scheme", schemes, "'continuum' for all, or for none"
+    )
     samples = [None] * len(scenes) if samples is None else samples
     listed = isinstance(samples, Sequence) and all(isinstance(each, Samples | None) for each in samples)
     one_each = listed and len(samples) == len(scenes)
