@@ -132,10 +132,8 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
 
 
 def _scene(duration: float, dx: float, accuracy: Mapping) -> Scene:
-    return Scene(
-        "displacement", Prestress(LEVEL, LEVEL), duration, dx, gamma=GAMMA, beta=RATIO * dx,
-        max_step=accuracy["max_step"], order=accuracy["order"],
-    )  # fmt: skip
+    values = {"gamma": GAMMA, "beta": RATIO * dx} | {key: accuracy[key] for key in ("max_step", "order")}
+    return Scene("displacement", Prestress(LEVEL, LEVEL), duration, dx, **values)
 
 
 def textbook_errors(window: float) -> list[dict]:
@@ -159,21 +157,20 @@ def textbook_numba_step(blocks: int) -> float:
     # Bumps too small to do anything make the lattice as large as it will have to be.
     far = 0.5 * blocks * DX
     profile = Prestress(LEVEL, LEVEL, bumps=((far, 1e-12, DX), (-far, 1e-12, DX)))
-    duration, step = 2.0, 0.25
-    scene = Scene(
-        "displacement", profile, duration, DX, gamma=GAMMA, beta=RATIO * DX, scheme="fixed_step", max_step=step,
+    scene = replace(
+        _scene(2.0, DX, {"max_step": 0.25, "order": 4}),
+        prestress=profile,
+        scheme="fixed_step",
         half_lattice=False,
-    )  # fmt: skip
+    )
     size = FixedStepLattice(scene, None, scene.beta).size
     seconds = best(lambda: FixedStepLattice(scene, None, scene.beta).run(None), 2)
-    return seconds / (duration / (step * DX)) * blocks / size
+    return seconds / (scene.duration / (scene.max_step * DX)) * blocks / size
 
 
 def textbook_numpy_step(blocks: int) -> float:
     """Seconds a step of the textbook scheme in plain numpy over a lattice of ``blocks`` blocks."""
-    x = DX * (np.arange(blocks) - blocks // 2)
-    tau = Prestress(LEVEL, LEVEL)(x)
-    steps = 60
+    tau, steps = Prestress(LEVEL, LEVEL)(DX * (np.arange(blocks) - blocks // 2)), 60
     return best(lambda: stencils.numpy_steps(tau, steps, 0.25 * DX, DX, GAMMA, RATIO * DX), 2) / steps
 
 
@@ -187,19 +184,10 @@ def main(config_path: str, folder: str) -> None:
     scene = whole_scene(config["presets"]["paper"], config["measure"]["front_window"])
     found = {"machine": machine, "kernel": timed, "whole_scene": scene}
     write_text(json.dumps(found, indent=1).replace("NaN", "null") + "\n", output)
-    for name, entry in timed.items():
-        print(
-            f"{name}: {entry['block_updates_per_second']:.3g} block updates a second,"
-            f" {entry['ratio_to_branch_free_order_4']:.2f} of a branch-free step of order 4,"
-            f" {entry['ratio_to_branch_free_two_stage']:.2f} of a branch-free two-stage stencil"
-        )
-    faster = scene["times_faster_than_textbook"]
-    print(
-        f"whole scene: {scene['seconds']:.2f} s, front speed within {scene['front_speed_error']:.1e}; textbook scheme"
-        f" at the same error, extrapolated: {faster['numba']:.3g} times as long compiled,"
-        f" {faster['numpy']:.3g} in plain numpy"
-    )
-    print(f"twice the duration: {scene['cost_of_twice_the_duration']:.2f} times the cost; all in {output}")
+    faster = {"times_faster_than_textbook": scene["times_faster_than_textbook"]}
+    for name, entry in (timed | {"whole_scene": scene} | faster).items():
+        print(name, *(f"{key}: {x:.3g}" for key, x in entry.items() if isinstance(x, float)), sep="\n  ")
+    print(f"All in {output}")
 
 
 if __name__ == "__main__":

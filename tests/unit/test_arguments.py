@@ -2,6 +2,7 @@
 
 import math
 import re
+from functools import partial
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ FAR = sp.Prestress(0.5, 0.5, bumps=((1e9, 0.5, 1.0),))
 # Whatever a number may not be, of functions that take one.
 NO_NUMBERS = (
     None, "0.5", True, [], {}, object(), 1j, math.nan, math.inf, 10**400, [None], [[1.0], [2.0, 3.0]], b"bytes",
+    np.float32("inf"),
 )  # fmt: skip
 OF_SCENES = ("dx", "duration", "gamma", "beta", "max_step", "order", "friction_ratio", "resolved_blocks")
 # By the argument.
@@ -200,18 +202,14 @@ KINDS = (
     (SETTINGS, lambda change: sp.settings_for(**GOOD_SETTINGS | change)),
     (SAMPLES, lambda change: sp.Samples(*change)),
 )
-CALLS += [
-    (named, lambda call=call, change=change: call(change))
-    for cases, call in KINDS
-    for named, change in cases.items()
-]
+CALLS += [(named, partial(call, change)) for cases, call in KINDS for named, change in cases.items()]
 
 
 @pytest.mark.parametrize(("argument", "call"), TAKE_A_NUMBER)
 def test_what_no_number_is_is_refused(argument, call):
     for value in NO_NUMBERS:
         # Arrays, an empty one too, are good where one number is.
-        if value == [] and argument in ("tau0", "x"):
+        if isinstance(value, list) and not value and argument in ("tau0", "x"):
             continue
         with pytest.raises((ValueError, TypeError)) as refusal:
             call(value)
@@ -223,7 +221,3 @@ def test_a_refusal_names_the_argument_its_value_and_what_is_allowed(named, call)
     with pytest.raises((ValueError, TypeError)) as refusal:
         call()
     assert named in str(refusal.value) and "\n" not in str(refusal.value)
-
-
-def test_a_rigid_rock_is_allowed():
-    assert theory.damage_zone_stress_drop(2.0, 3.0, math.inf, 4.0, 5.0) == 1.5

@@ -43,17 +43,16 @@ def results(tmp_path) -> Path:
     return tmp_path / "results"
 
 
-def faults(results: Path, jobs=JOBS) -> dict[str, str]:
+def found(results: Path, kind: str = "faults", jobs=JOBS):
     origins = origins_of(jobs)
-    return Tree(results, origins).faults(origins)
+    return getattr(Tree(results, origins), kind)(origins)
 
 
 def test_a_record_says_what_was_made_by_what_from_what(results):
     record = read_record(results / f"records/{TABLE}.json")
     assert record.step == "measure" and [*record.inputs] == [DATA] and [*record.outputs] == [TABLE]
-    assert faults(results) == {} and len(read_records(results)) == len(JOBS)
-    origins = origins_of(JOBS)
-    assert Tree(results, origins).problems(origins) == ([], len(JOBS))
+    assert found(results) == {} and len(read_records(results)) == len(JOBS)
+    assert found(results, "problems") == ([], len(JOBS))
     write_record(Origin((PAGE,), "measure", "", "", frozenset()), {"seconds": 0.25}, results)
     assert job_times(results) == {"simulate": 1.5, "measure": 1.75, "animate_scene": 1.5}
 
@@ -95,12 +94,10 @@ def test_what_is_not_as_made_is_named_and_in_the_way_whatever_its_time(results, 
     harm(results)
     for path in results.rglob("*"):
         os.utime(path, ns=(0, 0))
-    assert faults(results) == expected
-    origins = origins_of(JOBS)
-    lines, _ = Tree(results, origins).problems(origins)
-    assert lines == [f"{results / name}: {reason}" for name, reason in expected.items()]
-    in_the_way = Tree(results, origins).to_remove(origins)
-    assert in_the_way == {name: reason for name, reason in expected.items() if reason != "missing"}
+    assert found(results) == expected
+    assert found(results, "problems")[0] == [f"{results / name}: {why}" for name, why in expected.items()]
+    in_the_way = {name: reason for name, reason in expected.items() if reason != "missing"}
+    assert found(results, "to_remove") == in_the_way
 
 
 def test_only_what_is_wanted_and_what_that_is_made_from_is_in_the_way(results):
@@ -119,20 +116,19 @@ def test_what_a_job_has_made_goes_together(tmp_path):
     assert tree.to_remove(["a.png"]) == {"a.png": "made with a file that is not as made"}
 
 
-@pytest.mark.parametrize(
-    ("index", "change", "reasons"),
-    [
-        (0, {"settings": {"level": 0.6}}, {DATA: "configuration", TABLE: "configuration", PAGE: "configuration"}),
-        (2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}),
-        (2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}),
-        (2, {"inputs": (f"results/{DATA}", "manuscript/summary.yaml")}, {PAGE: "rule"}),
-    ],
-    ids=["another level", "another title", "another text", "another table"],
-)  # fmt: skip
-def test_another_configuration_is_told(results, index, change, reasons):
-    jobs = [*JOBS]
+ANOTHER = {
+    "level": (0, {"settings": {"level": 0.6}}, dict.fromkeys((DATA, TABLE, PAGE), "configuration")),
+    "title": (2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}),
+    "text": (2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}),
+    "table": (2, {"inputs": (f"results/{DATA}", "manuscript/summary.yaml")}, {PAGE: "rule"}),
+}
+
+
+@pytest.mark.parametrize("name", ANOTHER)
+def test_another_configuration_is_told(results, name):
+    (index, change, reasons), jobs = ANOTHER[name], [*JOBS]
     jobs[index] = jobs[index]._replace(**change)
-    assert {name: reason.split()[-1] for name, reason in faults(results, jobs).items()} == reasons
+    assert {name: why.split()[-1] for name, why in found(results, jobs=jobs).items()} == reasons
 
 
 def test_a_file_that_no_rule_makes_is_not_known(results):
@@ -140,19 +136,22 @@ def test_a_file_that_no_rule_makes_is_not_known(results):
     (results / "logs").mkdir()
     (results / "logs/a.log").write_text("")
     write_text("{}", results / "records/gone.csv.json")
-    origins = origins_of(JOBS)
-    lines, _ = Tree(results, origins).problems(origins)
-    unknown = ("data/mine.nc", "records/gone.csv.json")
-    assert lines == [f"{results / name}: not known; no rule makes it" for name in unknown]
+    unknown = [
+        f"{results / name}: not known; no rule makes it" for name in ("data/mine.nc", "records/gone.csv.json")
+    ]
+    assert found(results, "problems")[0] == unknown
 
 
 def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_same(tmp_path, monkeypatch):
     path, cache = tmp_path / "a", tmp_path / "cache"
     path.write_text("one")
-    monkeypatch.setattr(records, "SETTLED", -1.0)
-    digests = Digests(cache)
-    first = digests.of(path)
-    digests.save()
+    # One that was just written is read again.
+    for settled in (records.SETTLED, -1.0):
+        assert not cache.exists()
+        monkeypatch.setattr(records, "SETTLED", settled)
+        digests = Digests(cache)
+        first = digests.of(path)
+        digests.save()
     cache.write_text(cache.read_text().replace(first, "remembered"))
     assert Digests(cache).of(path) == "remembered"
     # Another content of the same length, with the same time.
@@ -166,14 +165,6 @@ def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_
     assert Digests(cache).of(path) == second
     cache.write_text("[" * 100)
     assert Digests(cache).of(path) == second
-
-
-def test_a_file_that_was_just_written_is_read_again(tmp_path):
-    (tmp_path / "a").write_text("one")
-    digests = Digests(tmp_path / "cache")
-    digests.of(tmp_path / "a")
-    digests.save()
-    assert not (tmp_path / "cache").exists()
 
 
 def test_the_digest_does_not_depend_on_the_order_of_keys():
@@ -218,8 +209,9 @@ def test_verification_compares_what_is_asked_for(plan, results, capsys):
 def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
     of = {"level": lambda wildcards: wildcards.name * 2, "step": "study"}
     inputs = ["texts", lambda wildcards: [f"results/{wildcards.name}"]]
-    found = jobs_of("run", inputs, ["results/{name}.csv"], of, {"name": "ab"})
-    for name, job in zip("ab", found, strict=True):
+    for name, job in zip(
+        "ab", jobs_of("run", inputs, ["results/{name}.csv"], of, {"name": "ab"}), strict=True
+    ):
         assert job == ("study", ("texts", f"results/{name}"), (f"results/{name}.csv",), {"level": name * 2})
 
 

@@ -224,12 +224,13 @@ def dimensional_lengths(layer, tau, times=1.0) -> np.ndarray:
 
 
 def damage_zone_in_series(layer, tau, random):
-    """Stress drop of two layers with one stress whose displacements add, against equation (17)."""
+    """Stress drop of two layers with one stress whose displacements add, against equation (17); the rock rigid too."""
     slip, rock, thickness = (10.0 ** random.uniform(-3.0, 3.0) for _ in range(3))
     shear, height = layer.shear_modulus, layer.thickness
     compliance = height / shear + thickness * height / (rock * shear)
     drop = damage_zone_stress_drop(slip, shear, rock * shear, height, thickness * height)
-    return [drop * compliance / slip]
+    rigid = damage_zone_stress_drop(slip, shear, np.inf, height, thickness * height)
+    return [drop * compliance / slip, rigid * height / shear / slip]
 
 
 def burridge_knopoff_identity(layer, tau, random):
