@@ -66,10 +66,7 @@ def stencil_rates(blocks: int, seconds: float) -> dict[str, float]:
 
 
 def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
-    """Block updates a second of the localised kernel from ``scene.duration`` to ``until``, and the mean sliding blocks.
-
-    Everything is included: events, growth of the lattice, energy balance.
-    """
+    """Block updates a second from ``scene.duration`` to ``until``, with everything, and the mean sliding blocks."""
     lattice = Lattice(scene, None, scene.beta)
     lattice.run(None)
     updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
@@ -80,10 +77,7 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
 
 
 def kernel() -> dict:
-    """The kernel against branch-free stencils of the same order: many sliding blocks, and a pulse of 200.
-
-    The best of turns, so that a slow spell of the machine meets both.
-    """
+    """The kernel against branch-free stencils, the best of turns: a slow spell of the machine meets both."""
     more = {"max_step": 0.5, "order": 4}
     crack = Scene("displacement", Prestress(LEVEL, LEVEL, 8.0), CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **more)
     width = steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO).width
@@ -107,8 +101,8 @@ def kernel() -> dict:
 def whole_scene(accuracy: Mapping, window: float) -> dict:
     """The whole scene against the textbook scheme over the full lattice at the same error of the front speed.
 
-    The textbook runs are extrapolated: seconds a step over the full lattice, times the steps that the error needs. That
-    error is of first order in the step and does not depend on the spacing, so it is measured on a small lattice.
+    Extrapolated: seconds a step times the steps needed. That error is of first order in the step and does not depend
+    on the spacing, so it is measured on a small lattice.
     """
     scene = _scene(DURATION, DX, accuracy)
     exact = float(exact_speed(LEVEL, RATIO))

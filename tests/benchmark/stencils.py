@@ -67,18 +67,10 @@ def two_stage_steps(slip, velocity, force, tau, steps, h, per_dx2, leaf, damping
 
 
 def numpy_steps(tau: np.ndarray, steps: int, h: float, dx: float, leaf: float, beta: float) -> np.ndarray:
-    """The textbook scheme in plain numpy over the whole lattice: symplectic Euler, events looked at once a step.
-
-    Returns
-    -------
-    slip of each block, between fixed ends
-    """
-    slip, velocity, sliding = np.zeros_like(tau), np.zeros_like(tau), tau >= 1.0
-    force = np.zeros_like(tau)
+    """Slip of each block between fixed ends by the textbook scheme: symplectic Euler, events looked at once a step."""
+    (slip, velocity, force), sliding = np.zeros((3, tau.size)), tau >= 1.0
     for _ in range(steps):
-        force[1:-1] = (
-            np.diff(slip, 2) / dx**2 - leaf * slip[1:-1] + tau[1:-1] + beta * np.diff(velocity, 2) / dx**2
-        )
+        force[1:-1] = np.diff(slip + beta * velocity, 2) / dx**2 - leaf * slip[1:-1] + tau[1:-1]
         sliding |= force >= 1.0
         velocity = np.where(sliding, velocity + h * force, 0.0)
         sliding &= velocity > 0.0

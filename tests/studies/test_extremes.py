@@ -31,7 +31,6 @@ FAMILIES = {
     ],
 )  # fmt: skip
 def test_the_verdict_is_computed(monkeypatch, expected, found, verdict):
-
     def measured(edge, window):
         if isinstance(found, Exception):
             raise found
@@ -47,16 +46,10 @@ def test_every_edge_ends_as_it_should(study):
     assert (table["verdict"] == table["should"]).all(), table[table["verdict"] != table["should"]].to_string()
     assert {name: (len(rows), rows["value"].iloc[-1]) for name, rows in table.groupby("family")} == FAMILIES
     assert len(edges(table).splitlines()) == len(table) + 2
-
-
-def test_refusals_say_the_bound_and_flags_their_reason(study):
-    table = study("extremes").set_index("verdict")
-    assert table.loc["refused", "message"].str.contains("allowed: ").all()
-    found = {flag for text in table.loc["flagged", "message"] for flag in text.split(",")}
+    # Refusals say the bound, flags their reason.
+    messages = table.set_index("verdict")["message"]
+    assert messages["refused"].str.contains("allowed: ").all()
+    found = {flag for text in messages["flagged"] for flag in text.split(",")}
     assert {"died_out", "unresolved_pulse", "reverse_sliding", "unsteady", "stalled"} <= found
-
-
-def test_a_wrong_number_would_be_seen(study):
-    table = study("extremes").copy()
     table.loc[0, "verdict"] = WRONG
     assert WRONG in edges(table)

@@ -20,13 +20,11 @@ BLOCK_BY_BLOCK = 1e-11
 LATTICE = 3e-4
 
 
-def test_ratio_one_is_a_closed_form():
+def test_ratios_one_and_zero_are_closed_forms():
     assert front_speed(LEVELS, 1.0) == pytest.approx(1.0 / (1.0 - LEVELS), rel=SPEED)
     v = 1.0 + np.geomspace(1e-9, 1e6, 31)
     assert prestress_for_speed(v, 1.0) == pytest.approx((v - 1.0) / v, rel=ROUNDING)
-
-
-def test_no_damping():
+    # And without damping.
     for release in ("total", "elastic"):
         assert front_speed(LEVELS, 0.0, release) == pytest.approx(1.0 / np.sqrt(1.0 - LEVELS**2), rel=1e-14)
         # The first order in b is within 10 b of it.

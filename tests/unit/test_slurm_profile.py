@@ -42,9 +42,7 @@ def test_a_sweep_or_chunk_is_one_job_and_the_joining_another(profile, rules):
     assert groups["simulate"] == groups["measure"] == groups["study_grid"]
     # In a group with them, the rule that joins the chunks would make one job of all.
     assert "join" in rules and "join" not in groups
-
-
-def test_what_grows_with_the_configuration_asks_by_its_cost(profile, rules):
+    # What grows with the configuration asks by its cost.
     for name in ("simulate", "study_grid"):
         assert "**BOUNDS" in rules[name], name
         assert name not in profile["set-resources"], f"{name}: the profile would hide what the rule asks for"

@@ -43,7 +43,7 @@ def test_an_interrupt_stops_a_run_within_a_second(kind):
     assert process.returncode != 0 and "KeyboardInterrupt" in said
 
 
-def test_a_bar_shows_the_share_and_the_time_left():
+def test_a_bar_shows_the_share_and_the_time_left_and_a_short_run_draws_none(capsys):
     out = io.StringIO()
     draw = bar(out)
     time.sleep(0.25)
@@ -51,9 +51,6 @@ def test_a_bar_shows_the_share_and_the_time_left():
     time.sleep(0.25)
     draw(1.0)
     assert " 50%" in out.getvalue() and " left" in out.getvalue() and out.getvalue().count("\n") == 1
-
-
-def test_a_short_run_draws_no_bar(capsys):
     sp.simulate(sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.1, gamma=0.65), progress=True)
     assert capsys.readouterr().err == ""
 

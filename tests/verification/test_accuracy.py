@@ -11,9 +11,6 @@ from slippulse.predict.measured import measured_table
 from slippulse.simulation.simulate import run_sweep
 
 SHARE = 0.95
-SETTINGS = {
-    "share": SHARE, "front_window": 0.3, "steady_tolerance": 0.02, "still": 0.05, "trailing_times": [5.0],
-}  # fmt: skip
 # accuracy, level, gamma, damping ratio, width, release; each run until the pulse is steady.
 PULSES = [
     (1e-2, 0.1, 1.0, 0.1, 0.5, "total"), (1e-2, 0.1, 0.1, 1.0, 1.0, "total"), (1e-2, 0.3, 0.01, 1.0, 8.0, "elastic"),
@@ -68,11 +65,11 @@ def free_front(accuracy, level, ratio):
     return scene, {"front_speed_left": speed, "front_speed_right": speed}
 
 
-def test_every_covered_number_is_as_near_to_theory_as_promised_and_the_worst_not_nearer_than_needed():
+def test_every_covered_number_is_as_near_to_theory_as_promised_and_the_worst_not_nearer_than_needed(shipped):
     kinds = ((pulse, PULSES), (crack, CRACKS), (free_front, FREE_FRONTS))
     cases = [(make, case, *make(*case)) for make, cases in kinds for case in cases]
     sweep = run_sweep([scene for _, _, scene, _ in cases], record=("fronts", "fields"), threads=2)
-    worst, runs = 0.0, measured_table(sweep, SETTINGS).to_dict("records")
+    worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for (make, case, _, exact), run in zip(cases, runs, strict=True):
         covered = [name for name in exact if covers(run, name, SHARE)]
         assert len(covered) == {pulse: 9, crack: 3 if case[2] > 0.0 else 1, free_front: 2}[make], case

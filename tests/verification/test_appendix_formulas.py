@@ -97,8 +97,6 @@ def test_the_left_front_takes_for_ever():
 
 
 # The algebra of the paper: each formula over the one derived from its equations, at random layers of rock.
-
-
 # How many layers, and the seed that makes them repeatable; degree of the polynomials that stand for any displacement.
 LAYERS, SEED, DEGREE = 200, 20210501, 4
 
