@@ -12,8 +12,6 @@ from slippulse.theory.rupture import Rupture
 SCENES = [*range(18), *(pytest.param(number, marks=pytest.mark.slow) for number in range(18, 200))]
 # How far before its end a rupture is looked at, relative.
 BEFORE = 1e-7
-
-
 # Ends at which the width of a pulse and the first stick have been wrong; a front 48 times as fast as the waves.
 KNOWN = [
     {"prestress": profile, "gamma": gamma, "damping_ratio": ratio, "release": "total", "duration": duration}
@@ -52,13 +50,12 @@ def scene(number: int) -> dict:
 
 def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarray]:
     """Every method of a rupture, at positions, and at a time that is or was its end."""
-    found = {
+    fields = {
         name: getattr(rupture, name)(x) for name in ("release_time", "stick_time", "final_slip", "horizon")
     }
+    numbers = ("transition_time", "transition_length", "largest_velocity")
+    found = fields | {name: getattr(rupture, name) for name in numbers} | at(rupture, x, time)
     found |= {
-        name: getattr(rupture, name) for name in ("transition_time", "transition_length", "largest_velocity")
-    }
-    found |= at(rupture, x, time) | {
         "first_stick": (rupture.first_stick or (np.nan, np.nan))[1],
         "limit": (rupture.limit.x, rupture.limit.time) if rupture.limit else (np.nan, np.nan),
         "ends": [(end.x, end.time) for pair in rupture.front_ends for end in pair],

@@ -84,8 +84,6 @@ def made(shipped, tmp_path_factory):
 
 
 KINDS = ("data", "measurements", "uncertainties", "uncertainties/coarser")
-
-
 SLOW = [("stress", 5), ("displacement", 5), ("profiles", 2)]
 
 

@@ -20,34 +20,26 @@ from slippulse.solver.fixed_step import LATTICES
 SMALL_FACTOR = 3.0
 
 
-@pytest.fixture
-def scenes_of(shipped):
-
-    def scenes(name: str, coarser: float = 1.0):
-        sweep = resolve(shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"], coarser)
-        return sweep, expand(sweep)[0]
-
-    return scenes
+def scenes_of(shipped: dict, name: str, coarser: float = 1.0):
+    sweep = resolve(shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"], coarser)
+    return sweep, expand(sweep)[0]
 
 
-def test_a_sweep_is_the_product_of_its_lists(scenes_of):
-    sweep, scenes = scenes_of("scaling_stress")
+def test_a_sweep_is_the_product_of_its_lists_and_the_paper_preset_the_published_lattice(shipped):
+    sweep, scenes = scenes_of(shipped, "scaling_stress")
     assert len(scenes) == len(sweep["left"]) * len(sweep["width"]) >= 60
     assert {scene.prestress.left for scene in scenes} == set(sweep["left"])
     assert all(scene.damping_ratio == pytest.approx(0.1) for scene in scenes)
+    _, (scene,) = scenes_of(shipped, "space_time_displacement")
+    assert (scene.dx, scene.beta) == (0.01, pytest.approx(1e-3))
+    assert (scene.prestress.left, scene.gamma, scene.release) == (0.25, 0.55, "total")
 
 
-def test_a_coarser_lattice_keeps_the_damping_ratio(scenes_of):
-    (_, fine), (_, coarse) = (scenes_of("steady_displacement", coarser) for coarser in (1.0, 2.0))
+def test_a_coarser_lattice_keeps_the_damping_ratio(shipped):
+    (_, fine), (_, coarse) = (scenes_of(shipped, "steady_displacement", coarser) for coarser in (1.0, 2.0))
     for a, b in zip(fine, coarse, strict=True):
         assert (b.dx, b.damping_ratio) == pytest.approx((2.0 * a.dx, a.damping_ratio))
         assert b.duration == a.duration
-
-
-def test_the_paper_preset_is_the_published_lattice(scenes_of):
-    _, (scene,) = scenes_of("space_time_displacement")
-    assert (scene.dx, scene.beta) == (0.01, pytest.approx(1e-3))
-    assert (scene.prestress.left, scene.gamma, scene.release) == (0.25, 0.55, "total")
 
 
 def test_the_sweeps_cover_what_the_paper_states(shipped):

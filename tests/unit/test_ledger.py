@@ -199,9 +199,7 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     assert found.agreed("sweep", "left > 0.3", "number > 0.5", "left < 0.7") == [False, None, None]
     assert found.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
     assert agreeing([True, None, False], [True, None, True]) == [True, None, None]
-
-
-def test_a_qualitative_claim_counts_runs():
+    # A qualitative claim counts them.
     claim = evidence().qualitative([True] * 38 + [None] * 2)
     assert claim == claim | {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
     assert evidence().qualitative([np.bool_(True), np.bool_(False)])["verdict"] == NO
@@ -288,15 +286,12 @@ def test_a_verdict_that_hangs_on_the_tolerance_says_so():
     assert found == "with a tolerance below 0.150: inconclusive; with a tolerance above 0.290: reproduced"
 
 
-def test_what_follows_is_not_counted_again():
+def test_what_follows_is_not_counted_again_and_findings_and_further_numbers_are_asked_for_by_name():
     reproduced = {"verdict": "reproduced"}
     follows = reproduced | {"id": "b", "counted": False, "follows_from": ["a"]}
     ledger = reading.Ledger([CLAIM | fields for fields in (reproduced | {"id": "a"}, follows, {"id": "c"})])
     assert ledger.count() == 2 and ledger.count("reproduced") == 1 and ledger.following() == 1
     assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced. 1 more follow from these."
-
-
-def test_findings_and_further_numbers_are_asked_for_by_name():
     found = [{"id": "ours", "numbers": {"gap": 0.5}}, {"id": "no", "numbers": {}}]
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
     ledger = reading.Ledger([CLAIM | {"further": further}], found)

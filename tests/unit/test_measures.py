@@ -139,10 +139,9 @@ def test_waves_of_the_lattice_count_and_an_even_pulse_has_none():
 
 def test_blocks_that_slide_at_once():
     x = np.arange(-6.0, 7.0)
-    release = np.abs(x)
     # Each slides for 1.5; the last three to the right are still sliding.
-    stick = np.where(x > 3.0, np.nan, release + 1.5)
-    times = {"release_time": ("x", release), "stick_time": ("x", stick)}
+    stick = np.where(x > 3.0, np.nan, np.abs(x) + 1.5)
+    times = {"release_time": ("x", np.abs(x)), "stick_time": ("x", stick)}
     assert sliding_at_once(xr.Dataset(times, {"x": x}, {"end_time": 6.5})) == 3.0
 
 
@@ -173,8 +172,7 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
     ],
 )
 def test_what_changes_is_measured(run, expected):
-    found = far_field(run)
-    found = {quantity: found[quantity] for quantity in expected}
+    found = {quantity: far_field(run)[quantity] for quantity in expected}
     assert found == pytest.approx(expected, rel=0.03, abs=1e-3, nan_ok=True)
 
 
@@ -207,10 +205,8 @@ def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, sta
 @pytest.mark.parametrize(
     ("level", "duration", "values", "expected"),
     [
-        *(
-            (level, duration, {}, "steady")
-            for level, duration in ((0.3, 60.0), (0.5, 40.0), (0.6, 60.0), (0.9, 60.0))
-        ),
+        (0.5, 40.0, {}, "steady"),
+        *((level, 60.0, {}, "steady") for level in (0.3, 0.6, 0.9)),
         # Just split from its twin: half as wide again as the pulse that it becomes.
         (0.5, 5.0, {}, "unsteady"),
         # The elastic rule under strong damping: slower than the waves; the formula without leaf springs says 1.19.
