@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from nudges import nudged
 
-from slippulse.theory import front_law, fronts, rupture
+from slippulse.theory import domains, fronts, rupture
 
 
 @pytest.fixture(autouse=True)
@@ -23,11 +23,7 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
             *moved, alpha = [nudged(value, rng) for value in (prestress, gamma, damping_ratio, alpha)]
             super().__init__(*moved, release, refinement, alpha)
 
-        def mirrored(self):
-            return mirrored(self)
-
-    mirrored = fronts.FrontLaw.mirrored
     as_numbers = rupture.as_numbers
     monkeypatch.setattr(rupture, "FrontLaw", Law)
-    for module in (rupture, front_law):
+    for module in (rupture, domains):
         monkeypatch.setattr(module, "as_numbers", lambda *a, **k: np.array(nudged(as_numbers(*a, **k), rng)))
