@@ -54,9 +54,9 @@ def test_the_chunks_of_a_shipped_sweep_are_its_runs(config, paper_accuracy):
     block = resolve(sweep, config["model"], paper_accuracy | {"dx": 0.01})
     assert "chunks" not in block
     scenes, _ = expand(block)
-    chunks = [expand(block | {"chunk": [number, 5]}) for number in range(1, 6)]
-    for number, chunk in enumerate(chunks, start=1):
-        assert chunk[0] == [scenes[run] for run in runs_of(number, 5, len(scenes))]
+    for number in range(1, 6):
+        chunk, _ = expand(block | {"chunk": [number, 5]})
+        assert chunk == [scenes[run] for run in runs_of(number, 5, len(scenes))]
 
 
 @pytest.fixture(scope="module")

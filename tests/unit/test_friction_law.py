@@ -37,8 +37,7 @@ def test_every_block_at_or_above_the_threshold_is_released_at_once_and_no_other(
 
 @pytest.mark.parametrize("half", [True, False])
 def test_a_second_nucleation_point_beyond_the_first_lattice_is_released_at_once(half):
-    far = 80.0
-    profile = sp.Prestress(0.1, 0.1, bumps=((far, 0.95, 1.0), (-far, 0.95, 1.0)))
+    far, profile = 80.0, sp.Prestress(0.1, 0.1, bumps=((80.0, 0.95, 1.0), (-80.0, 0.95, 1.0)))
     run = sp.simulate(sp.Scene("stress", profile, 0.01, 0.1, half_lattice=half))
     released = np.abs(run["x"].values[run["release_time"].values == 0.0])
     expected = 2 * np.count_nonzero(profile(np.arange(0.0, 2.0 * far, 0.1)[1:]) >= 1.0)

@@ -54,18 +54,17 @@ def stop(coefficients, h: float, now: float = 0.0):
 DIP, NO_DIP = (polyfromroots([a, b, 1j, -1j]).real for a, b in ((0.3, 0.31), (0.3 + 0.01j, 0.3 - 0.01j)))
 
 
-@pytest.mark.parametrize(
-    ("coefficients", "h", "stops"),
-    [
-        ([0.5, -1.0, 0.0, 0.0, 0.0], 0.8, (0.5,)),
-        (DIP, 0.9, (0.3,)),
-        (NO_DIP, 0.9, ()),
-        # Released at the end of the step before: its acceleration is the rounding of its stress.
-        ([0.0, -1e-16, 0.0, 3e-14, 0.0], 1.0, ()),
-        ([0.0, -1e-16, 0.0, 3e-13, 0.0], 1.0, ()),
-    ],
-    ids=["plain", "dip", "none", "just released", "just released, faster"],
-)
+STOPS = {
+    "plain": ([0.5, -1.0, 0.0, 0.0, 0.0], 0.8, (0.5,)),
+    "dip": (DIP, 0.9, (0.3,)),
+    "none": (NO_DIP, 0.9, ()),
+    # At the end of the step before: its acceleration is the rounding of its stress.
+    "just released": ([0.0, -1e-16, 0.0, 3e-14, 0.0], 1.0, ()),
+    "just released, faster": ([0.0, -1e-16, 0.0, 3e-13, 0.0], 1.0, ()),
+}
+
+
+@pytest.mark.parametrize(("coefficients", "h", "stops"), STOPS.values(), ids=STOPS)
 def test_a_block_sticks_where_its_velocity_passes_zero(coefficients, h, stops):
     assert stop(coefficients, h) == pytest.approx(stops, abs=1e3 * tol.ROOT)
     assert stop([np.nan, *coefficients[1:]], h) is None

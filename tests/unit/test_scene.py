@@ -20,11 +20,9 @@ DISPLACEMENT["prestress"] = sp.Prestress(0.5, 0.5)
 
 def test_derived_numbers():
     scene = sp.Scene(**DISPLACEMENT, friction_ratio=2.0)
-    assert scene.damping_ratio == pytest.approx(0.1)
-    assert scene.reverse_threshold == -5.0
-    assert scene.symmetric
-    assert not dataclasses.replace(scene, half_lattice=False).symmetric
-    assert not sp.Scene(**STRESS).symmetric
+    assert (scene.damping_ratio, scene.reverse_threshold) == (pytest.approx(0.1), -5.0)
+    others = dataclasses.replace(scene, half_lattice=False), sp.Scene(**STRESS)
+    assert [one.symmetric for one in (scene, *others)] == [True, False, False]
 
 
 UNEVEN = sp.Prestress(0.25, 0.6, 2.0, 1.05, steps=((4.0, 0.4),), bumps=((-3.0, -0.3, 0.5),))

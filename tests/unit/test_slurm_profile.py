@@ -37,7 +37,7 @@ def test_it_names_rules_that_exist_and_every_job_asks_for_time_memory_and_cores(
         assert 700 <= asked["mem_mb"] <= 4000, name
 
 
-def test_a_sweep_or_chunk_is_one_job_and_the_joining_another(profile, rules):
+def test_a_sweep_or_chunk_is_one_job_the_joining_another_and_costs_are_asked_for(profile, rules):
     groups = profile["groups"]
     assert groups["simulate"] == groups["measure"] == groups["study_grid"]
     # In a group with them, the rule that joins the chunks would make one job of all.

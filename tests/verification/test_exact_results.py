@@ -153,8 +153,7 @@ def test_the_pulse_is_the_closed_form_that_solves_its_equation(tau, gamma, beta,
 
 
 # Level on the left; the pre-stress falls from 1 to half of it over this length on the right, and is 0 beyond.
-TAIL_LEVEL, TAIL_LENGTH = -0.5, 3.0
-TAIL_RATIO, X_MINUS, ARREST = 0.1, -4.5, 9.1247
+TAIL_LEVEL, TAIL_LENGTH, TAIL_RATIO, X_MINUS, ARREST = -0.5, 3.0, 0.1, -4.5, 9.1247
 
 
 class EndingTail(sp.Prestress):
