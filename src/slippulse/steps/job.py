@@ -58,8 +58,14 @@ class Jobs:
 
     def begin(self) -> None:
         """Load the libraries while Snakemake still plans."""
+
+        def load() -> None:
+            # That the server has ended, the first job says.
+            with suppress(JobFailed):
+                self._wait_for(self._processes.Process())
+
         if self._forks:
-            Thread(target=self._wait_for, args=(self._processes.Process(),), daemon=True).start()
+            Thread(target=load, daemon=True).start()
 
     def run(self, *job) -> None:
         """Run a job, given as `run_job` takes it. Raises JobFailed."""
