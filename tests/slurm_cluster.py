@@ -18,6 +18,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import NoReturn
 
 from faults import at_work, digests
 from pipeline_copy import SNAKEMAKE, copy_project
@@ -56,24 +57,25 @@ PartitionName=loopback Nodes=ALL Default=YES MaxTime=60 State=UP
 """
 
 
-class Unable(Exception):
-    """The cluster cannot be had here, which is no failure of the project; the message says why, in one line."""
+def unable(reason: str) -> NoReturn:
+    """The cluster cannot be had here, which is no failure of the project."""
+    sys.exit(f"slurm-test: not run: {reason}")
 
 
 def install() -> None:
     """What is missing of Slurm and munge, from Debian."""
     if os.geteuid() != 0:
-        raise Unable("make slurm-test starts a Slurm cluster, for which it must be root")
+        unable("make slurm-test starts a Slurm cluster, for which it must be root")
     missing = sorted({package for program, package in PROGRAMS.items() if not find(program)})
     if missing and not shutil.which("apt-get"):
-        raise Unable(f"make slurm-test needs {', '.join(missing)}, and there is no apt-get to install them")
+        unable(f"make slurm-test needs {', '.join(missing)}, and there is no apt-get to install them")
     quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
     for command in ("update", "install -y --no-install-recommends") if missing else ():
         words = ["apt-get", "-qq", *command.split(), *(missing if "install" in command else ())]
         print(*words, flush=True)
         done = subprocess.run(words, env=quiet, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise Unable(f"apt-get {command} failed: {last_line(done.stderr)}")
+            unable(f"apt-get {command} failed: {last_line(done.stderr)}")
 
 
 def last_line(text: str) -> str:
@@ -85,25 +87,18 @@ def find(program: str) -> str | None:
     return shutil.which(program, path=f"{os.environ.get('PATH', '')}:/usr/sbin:/sbin")
 
 
-def free_ports() -> list[int]:
-    """Two ports of the loopback that nobody listens at."""
-    with socket.socket() as one, socket.socket() as other:
-        for each in (one, other):
-            each.bind(("127.0.0.1", 0))
-        return [each.getsockname()[1] for each in (one, other)]
-
-
 @contextmanager
 def cluster(folder: Path) -> Iterator[dict[str, str]]:
     """A Slurm of one node; gives the environment that leads to it, and ends every process of it."""
     for name in ("state", "spool", "bin"):
         (folder / name).mkdir()
-    machine = {
-        "cores": len(os.sched_getaffinity(0)),
-        "megabytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10,
-    }
+    megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10
+    machine = {"cores": len(os.sched_getaffinity(0)), "megabytes": megabytes}
+    # Two ports of the loopback that nobody listens at.
+    with socket.create_server(("127.0.0.1", 0)) as one, socket.create_server(("127.0.0.1", 0)) as other:
+        machine["ports"] = [each.getsockname()[1] for each in (one, other)]
     conf, key, srun = folder / "slurm.conf", folder / "munged.key-file", folder / "bin/srun"
-    conf.write_text(SLURM_CONF.format(folder=folder, ports=free_ports(), **machine), encoding="ascii")
+    conf.write_text(SLURM_CONF.format(folder=folder, **machine), encoding="ascii")
     key.write_bytes(os.urandom(1024))
     key.chmod(0o400)
     # Within a job the plugin clears the variable that names the configuration, which on a real cluster lies where
@@ -145,9 +140,8 @@ def end_all(folder: Path) -> None:
 def asked(environment: dict[str, str], *command: str) -> str:
     """What a command of Slurm answers; nothing while there is no answer."""
     with suppress(OSError, subprocess.TimeoutExpired):
-        return subprocess.check_output(
-            command, env=environment, stderr=subprocess.DEVNULL, text=True, timeout=10
-        ).strip()
+        how = {"env": environment, "stderr": subprocess.DEVNULL, "text": True, "timeout": 10}
+        return subprocess.check_output(command, **how).strip()
     return ""
 
 
@@ -157,7 +151,7 @@ def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
     while not ready():
         if time.monotonic() > until:
             said = [path.read_text(errors="replace") for path in sorted(folder.glob(f"{name}.[ol]*"))]
-            raise Unable(f"{name} did not start within {seconds:g} s: {last_line(''.join(reversed(said)))}")
+            unable(f"{name} did not start within {seconds:g} s: {last_line(''.join(reversed(said)))}")
         time.sleep(0.1)
 
 
@@ -173,13 +167,7 @@ def draft(folder: Path, environment: dict[str, str], *options: str) -> dict[str,
 
 
 def compare(folder: Path) -> str:
-    """Run both ways and compare; returns the closing line.
-
-    Raises
-    ------
-    AssertionError
-        When a run fails, a job did not complete, or a file differs.
-    """
+    """Run both ways, assert that no job failed and no file differs; returns the closing line."""
     local, remote = (copy_project(PROJECT, folder / name, link=True) for name in ("local", "remote"))
     daemons = folder / "cluster"
     daemons.mkdir()
@@ -202,16 +190,13 @@ def compare(folder: Path) -> str:
 def main() -> None:
     # So that a run that is told to stop stops its cluster too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
-    try:
-        install()
-        with tempfile.TemporaryDirectory(prefix="slurm-") as folder:
-            try:
-                print(compare(Path(folder)))
-            finally:
-                # A run that was interrupted leaves jobs without Slurm, too.
-                end_all(Path(folder))
-    except Unable as reason:
-        sys.exit(f"slurm-test: not run: {reason}")
+    install()
+    with tempfile.TemporaryDirectory(prefix="slurm-") as folder:
+        try:
+            print(compare(Path(folder)))
+        finally:
+            # A run that was interrupted leaves jobs without Slurm, too.
+            end_all(Path(folder))
 
 
 if __name__ == "__main__":
