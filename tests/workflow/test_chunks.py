@@ -9,7 +9,7 @@ from pipeline_copy import SWEEP, copy_project, planned, snakemake
 
 from slippulse.data.store import load_dataset
 
-pytestmark = [pytest.mark.workflow, pytest.mark.slow]
+pytestmark = pytest.mark.slow
 
 LEVELS = [0.3, -0.2, 0.5, 0.4, 0.0, 0.6, 0.7]
 CHUNKS = {"in_none": None, "in_one": 1, "in_two": 2, "in_three": 3}

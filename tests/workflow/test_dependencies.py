@@ -19,8 +19,6 @@ from workflow.conftest import TARGETS
 from slippulse.steps.predict import TOPICS
 from slippulse.steps.reach import declared, sources
 
-pytestmark = pytest.mark.workflow
-
 PROJECT = Path(__file__).resolve().parents[2]
 PACKAGE, TEXTS = PROJECT / "src/slippulse", PROJECT / "manuscript"
 # Rules whose step takes a module by name: one a figure, one a study of the solver.
@@ -31,8 +29,7 @@ STUDIED = {
     if re.search(r"^NEEDS = ", path.read_text(encoding="utf-8"), re.M)
 }
 # Every other step has a rule, but what the steps share; two schemes take other steps of the same rules.
-NO_RULES = {"__init__", "inputs", "job", "libraries", "reach", "targets"}
-NO_RULES |= {"draw_figure", "run_study"}
+NO_RULES = {"__init__", "inputs", "job", "libraries", "reach", "targets", "draw_figure", "run_study"}
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")} - NO_RULES
 STEPS = {step for step in STEPS if not step.endswith(("_continuum", "_fixed_step"))}
 # Modules that a rule runs.
@@ -142,12 +139,9 @@ def seen(inputs) -> dict[str, set[str]]:
     }
 
 
-def test_the_rules_are_one_a_step_a_figure_and_a_study(seen):
-    """And `draw_figure` and `run_study` are the steps of the last two."""
-    assert set(seen) == RULES
-
-
 def test_every_file_marks_the_rules_whose_step_reaches_it(seen):
+    # One a step, a figure and a study.
+    assert set(seen) == RULES
     marked = {file: {rule for rule, inputs in seen.items() if file in inputs} for file in FILES}
     # The rules that are too many or missing.
     wrong = {file: rules ^ rules_of(file) for file, rules in marked.items() if rules != rules_of(file)}
@@ -156,9 +150,7 @@ def test_every_file_marks_the_rules_whose_step_reaches_it(seen):
         assert marked[f"src/slippulse/figures/{name}.py"] == {name} | EVERY_SOURCE
     assert len(FILES) > 150
     assert wrong == {}
-
-
-def test_no_rule_depends_on_another_file_of_the_sources(seen):
+    # And no other file of the sources.
     others = {rule: inputs - set(FILES) for rule, inputs in seen.items() if not inputs <= set(FILES)}
     assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_provenance")
     # The report says what differs from the shipped configuration, and its version.
@@ -204,33 +196,29 @@ def downstream(imitated):
     return find
 
 
-def jobs_after(folder: Path, overlay: str = "overlay.yaml") -> dict[str, int]:
-    """Jobs of a dry run, without those that only name targets."""
-    jobs = planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay=overlay))
-    return {rule: count for rule, count in jobs.items() if rule not in NAMES}
-
-
 LOCK = "requirements.lock"
 # One of each folder: that every file is a source of the rules that reach it is seen above.
 EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TOPICS}.values()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("file", (*EDITED, LOCK))
-def test_an_edit_runs_what_depends_on_the_file(imitated, downstream, file):
-    assert set(jobs_after_edit(imitated, file)) == downstream(RULES if file == LOCK else rules_of(file))
-
-
-def jobs_after_edit(imitated, file: str) -> dict[str, int]:
-    """What runs when a file has one line more."""
-    path = imitated / file
+def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:
+    """Jobs of a dry run with a line more in a file, or some values altered; not those that only name targets."""
+    path = folder / (change if change in (*FILES, LOCK) else "overlay.yaml")
     before, stat = path.read_bytes(), path.stat()
+    values = {} if path == folder / change else merged(OVERLAY, yaml.safe_load(change))
     try:
-        path.write_bytes(before + b"\n# edited\n")
-        return jobs_after(imitated)
+        path.write_bytes(yaml.safe_dump(values).encode() if values else before + b"\n# edited\n")
+        jobs = planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml"))
     finally:
         path.write_bytes(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    return {rule: count for rule, count in jobs.items() if rule not in NAMES}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", (*EDITED, LOCK))
+def test_an_edit_runs_what_depends_on_the_file(imitated, downstream, file):
+    assert set(jobs_after(imitated, file)) == downstream(RULES if file == LOCK else rules_of(file))
 
 
 FIGURE = "fig07_damage_zone"
@@ -277,19 +265,10 @@ CONFIGURATIONS = {
 }
 
 
-def jobs_with(imitated, change: str) -> dict[str, int]:
-    """Jobs of a dry run with some values altered, or a file edited."""
-    if change.endswith(".py"):
-        return jobs_after_edit(imitated, change)
-    text = yaml.safe_dump(merged(OVERLAY, yaml.safe_load(change)))
-    (imitated / "changed.yaml").write_text(text, encoding="utf-8")
-    return jobs_after(imitated, "changed.yaml")
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("change", CONFIGURATIONS)
 def test_another_configuration_runs_only_its_chain(imitated, change):
-    assert jobs_with(imitated, change) == CONFIGURATIONS[change] | ALWAYS
+    assert jobs_after(imitated, change) == CONFIGURATIONS[change] | ALWAYS
 
 
 def studies_without(*read: str) -> set[str]:
@@ -328,7 +307,7 @@ SHARED = {
 @pytest.mark.parametrize("change", SHARED)
 def test_what_is_shared_runs_what_reads_it_and_no_more(imitated, change):
     read_by, untouched = SHARED[change]
-    jobs = set(jobs_with(imitated, change))
+    jobs = set(jobs_after(imitated, change))
     assert read_by | set(ALWAYS) <= jobs and not untouched & jobs and untouched <= RULES
 
 
@@ -344,9 +323,7 @@ def test_a_draft_is_the_figures_and_what_is_ones_own(linked):
     result = snakemake(linked, "--dry-run", overlay="overlay.yaml")
     jobs = planned(result)
     assert (
-        sum(name.startswith("fig") for name in jobs) == 11
-        and jobs["draw_scene"] == 1
-        and jobs["study_grid"] == 1
+        sum(name.startswith("fig") for name in jobs) == 11 and jobs["draw_scene"] == jobs["study_grid"] == 1
     )
     drawn = {"damage_zone", "exact_space_time", "pulse_profiles", "regime_plane"}
     made = {name for name in jobs if name.startswith(("study_of", "write_"))}

@@ -11,8 +11,6 @@ from pipeline_copy import copy_project, snakemake
 from slippulse import Prestress, theory
 from slippulse.configuration.read import read_overlay
 
-pytestmark = pytest.mark.workflow
-
 
 @pytest.fixture(scope="module")
 def make(project, tmp_path_factory):

@@ -23,8 +23,6 @@ from slippulse.data.store import save_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.steps.job import JobFailed, Jobs, logged
 
-pytestmark = pytest.mark.workflow
-
 SCENE = "results/measurements/one.csv"
 DATA, RECORD = "results/data/one.nc", "results/records/data/one.nc.json"
 FIGURE = "results/figures/fig07_damage_zone.png"

@@ -52,7 +52,6 @@ def said(command, folder, code, environment=None) -> str:
 SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "1")
 
 
-@pytest.mark.workflow
 @pytest.mark.parametrize("case", [*QUICK, *REST])
 def test_the_command_refuses_before_any_job(folder, case):
     overlay, arguments, named = COMMANDS[case]
@@ -63,7 +62,6 @@ def test_the_command_refuses_before_any_job(folder, case):
     assert not (folder / "results").exists() and not (folder / "written").exists()
 
 
-@pytest.mark.workflow
 def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(folder, project):
     (folder / "profiles").symlink_to(project / "profiles")
     text = said([sys.executable, "-m", "snakemake", "--config", "x"], folder, 1)
@@ -72,7 +70,6 @@ def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(fold
 
 
 @pytest.mark.slow
-@pytest.mark.workflow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
     """As the refusal says it."""
     (folder / "mine.yaml").write_text(COMMANDS["cost"][0], encoding="utf-8")
@@ -94,7 +91,6 @@ def make(project, folder):
     return lambda *arguments: said(["make", *arguments], folder, 2, paths)
 
 
-@pytest.mark.workflow
 @pytest.mark.parametrize("overlay", ["mine.yaml: a template; allowed", "pipe: not a regular file"])
 def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overlay):
     template = "__use_yte__: true\npreset: ?open('written', 'w')\n"
@@ -105,7 +101,6 @@ def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overla
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 
-@pytest.mark.workflow
 @pytest.mark.parametrize(
     ("command", "name", "value", "allowed"),
     [
@@ -120,7 +115,6 @@ def test_make_checks_its_options(make, tmp_path, command, name, value, allowed):
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 
-@pytest.mark.workflow
 @pytest.mark.parametrize("name", ["a b", "a'b", 'a"b', "a$b", "a`b", "a\\b"])
 def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
     folder = tmp_path / name

@@ -16,7 +16,7 @@ from workflow.conftest import TARGETS
 
 from slippulse.data.lock import take
 
-pytestmark = [pytest.mark.workflow, pytest.mark.slow]
+pytestmark = pytest.mark.slow
 
 # What is made by other overlays than that of the tree.
 OVERLAYS = {
