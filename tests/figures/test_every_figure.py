@@ -62,9 +62,6 @@ def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
         assert (tmp_path / f"first.{ending}").read_bytes() == (tmp_path / f"again.{ending}").read_bytes()
 
 
-# Figure 2: it has the exact regime of every run where the run is, and marks runs that end in another.
-
-
 def test_areas_and_lines_have_the_regime_that_the_runs_on_them_end_in(draw):
     drawn = draw("fig02_phase_diagram")
     told = 0
@@ -108,9 +105,6 @@ def test_looks_tell_all_regimes_apart():
         assert len(set(looks)) == len(REGIMES)
 
 
-# Figures 3, 8 and 9
-
-
 def curves(axes, kind: str) -> dict[str, np.ndarray]:
     """Drawn lines of one kind by run."""
     named = [line for line in axes.lines if (line.get_gid() or "").startswith(f"{kind} ")]
@@ -145,9 +139,6 @@ def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_f
     assert all((np.diff(line[:, 1]) <= 1e-5).all() for line in curves(figure.axes[0], "simulation").values())
 
 
-# Figure 4
-
-
 def test_the_arrows_are_the_measured_transition(draw):
     drawn = draw("fig04_space_time")
     for boundary in BOUNDARIES:
@@ -161,9 +152,6 @@ def test_the_arrows_are_the_measured_transition(draw):
         front = rows[rows["role"] == "front"].sort_values("position")
         times = np.interp(measured["position"], front["position"], front["time"])
         assert times == pytest.approx(measured["time"].to_numpy(), rel=0.02)
-
-
-# Figures 5, 10 and 11
 
 
 def offsets(axes, gid: str) -> np.ndarray:

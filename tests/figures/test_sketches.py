@@ -82,28 +82,19 @@ LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 
 
 def sweep(scene, count=101):
-    """One run, sampled at every block."""
     samples = Samples(times=np.linspace(0.0, scene.duration, count), positions=np.linspace(-20.0, 20.0, 41))
     return run_sweep([scene], [samples], ("fronts", "fields", "samples"))
 
 
 @pytest.fixture(scope="module")
-def data():
+def drawn():
+    """Runs, their table, and blocks and pre-stress of each panel."""
     held = Scene(boundary="displacement", gamma=0.4, prestress=Prestress(0.3, 0.3), duration=10.0, **LATTICE)
     loaded = Scene(boundary="stress", prestress=Prestress(-0.7, 0.0), duration=12.0, **LATTICE)
-    return {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
-
-
-@pytest.fixture(scope="module")
-def rows(data):
-    return figure.table(data, {}, {})
-
-
-@pytest.fixture(scope="module")
-def panels(rows):
-    """Blocks and pre-stress of each panel."""
+    data = {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
+    rows = figure.table(data, {}, {})
     axes = figure.plot(rows).axes
-    return {name: axes[2 * index : 2 * index + 2] for index, name in enumerate(figure.PITCH)}
+    return data, rows, {name: axes[2 * index : 2 * index + 2] for index, name in enumerate(figure.PITCH)}
 
 
 def segments(axes, name):
@@ -112,7 +103,8 @@ def segments(axes, name):
 
 
 @pytest.mark.parametrize("name", figure.PITCH)
-def test_blocks_and_springs_stand_where_the_slip_puts_them(rows, panels, name):
+def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
+    _, rows, panels = drawn
     axes, strip = panels[name]
     part = rows[rows["panel"] == name].sort_values(["row", "x"])
     moved = part["x"] + part["scale"] * part["slip"]
@@ -138,7 +130,8 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(rows, panels, name):
 
 
 @pytest.mark.parametrize("name", figure.PITCH)
-def test_instants_are_the_start_a_crack_the_first_stick_and_later(data, rows, name):
+def test_instants_are_the_start_a_crack_the_first_stick_and_later(drawn, name):
+    data, rows, _ = drawn
     run = point(data[f"burridge_knopoff_{name}"], 0)
     (start, first), (crack, _), (stick, at), *_, (_, last) = figure.instants(run)
     assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
@@ -152,7 +145,8 @@ def test_instants_are_the_start_a_crack_the_first_stick_and_later(data, rows, na
     assert low < slipped.min() and slipped.max() < high
 
 
-def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_released(rows, panels):
+def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_released(drawn):
+    _, rows, panels = drawn
     last = rows[(rows["panel"] == "displacement") & (rows["instant"] == "two pulses")]
     assert np.array_equal(last["slip"], last["slip"].to_numpy()[::-1])
     states = ("sliding", "stuck after sliding")

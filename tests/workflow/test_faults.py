@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from contextlib import contextmanager
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -105,22 +105,15 @@ def test_a_place_that_is_taken_fails_in_one_line(project, tmp_path, place):
     assert f"{place} is a {kind}; remove or rename it" in said and path.exists()
 
 
-@contextmanager
-def full_disk():
-    """A limit on the size of files stands for a disk without room: writing fails in the same place."""
-    least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, most))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (least, most))
-
-
 @pytest.mark.parametrize("kind", ["table", "dataset"])
 def test_a_full_disk_leaves_the_old_file(kind, tmp_path, capsys):
     path, numbers = tmp_path / kind, pd.DataFrame({"a": np.arange(1e5)})
     path.write_text("what was there\n")
-    with pytest.raises(SystemExit, match="1"), logged(tmp_path / "log"), full_disk():
+    # A limit on the size of files stands for a disk without room: writing fails in the same place.
+    least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    with pytest.raises(SystemExit, match="1"), logged(tmp_path / "log"), ExitStack() as after:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, most))
+        after.callback(resource.setrlimit, resource.RLIMIT_FSIZE, (least, most))
         save_table(numbers, path) if kind == "table" else save_dataset(numbers.to_xarray(), path)
     said = capsys.readouterr().err
     assert "make room and run again" in said and said.count("\n") == 1
