@@ -90,8 +90,7 @@ def at_work(folder: Path) -> dict[int, bytes]:
 def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -> bool:
     """Stop a run in some way, unless it ends before there is what is killed; returns whether it was stopped.
 
-    All that it has started ends with it, but for jobs of a Snakemake that was killed alone: the next run starts among
-    them.
+    All that it has started ends with it, but for jobs of a Snakemake that was killed alone.
     """
     able: list[int] = []
     while not able and run.poll() is None:

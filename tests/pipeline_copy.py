@@ -71,7 +71,8 @@ def imitate_steps(folder: Path) -> None:
 
 def snakemake(folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how):
     """Run Snakemake in a folder, with that folder's library; returns the completed process."""
-    options = ["--cores", str(cores), *(["--configfile", overlay] if overlay else [])]
+    overlays = [overlay] if isinstance(overlay, str | Path) else overlay
+    options = ["--cores", str(cores), *(["--configfile", *overlays] if overlay else [])]
     library = {"PYTHONPATH": str((folder / "src").resolve())}
     return subprocess.run(
         [*command, *options, *arguments], env=os.environ | library | (environment or {}), text=True,
@@ -94,11 +95,3 @@ def edges(graph: str) -> set[tuple[str, str]]:
     """Which rule feeds which, by name, in a mermaid graph."""
     names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
     return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}
-
-
-def merged(base: dict, change: dict) -> dict:
-    """A configuration with another one laid over it."""
-    out = dict(base)
-    for key, value in change.items():
-        out[key] = merged(base[key], value) if isinstance(value, dict) and key in base else value
-    return out

@@ -18,12 +18,10 @@ from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.figures import own_sweep
 from slippulse.figures import scene as figure
-from slippulse.figures.scene import number_text
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.predict.measured import measured_table
 from slippulse.simulation.simulate import run_sweep
-from slippulse.steps import draw_scene, predict, simulate, study_grid
-from slippulse.steps import measure as measure_step
+from slippulse.steps import draw_scene, measure, predict, simulate, study_grid
 
 TITLE = "A <scene> & its $title"
 SCENES = {
@@ -43,7 +41,7 @@ SCENES = {
 def drawn(shipped, tmp_path_factory):
     """Each scene by the steps of the pipeline."""
     model, accuracy = Model.model_validate(shipped["model"]), shipped["presets"]["draft"]
-    measure, made = {"measure": shipped["measure"], "threads": 1}, {}
+    common, made = {"measure": shipped["measure"], "threads": 1}, {}
     for name, scene in SCENES.items():
         folder = tmp_path_factory.mktemp("scene")
         kinds = ("measured", "predicted", "uncertainties", "coarser")
@@ -52,9 +50,9 @@ def drawn(shipped, tmp_path_factory):
         simulation = scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model)
         factors = (1.0, *accuracy["coarser"])
         sweeps = {factor: resolve(simulation, model, accuracy, factor) for factor in factors}
-        settings = {"simulation": name, "sweep": sweeps.pop(1.0), "sweeps": sweeps} | measure
+        settings = {"simulation": name, "sweep": sweeps.pop(1.0), "sweeps": sweeps} | common
         simulate.run({}, files, settings)
-        measure_step.run(files, files, settings)
+        measure.run(files, files, settings)
         predict.run({}, files, settings | shipped["measure"] | {"topics": predict.TOPICS})
         study_grid.run({"finest": files["measured"]}, files, settings)
         draw_scene.run(files, outputs, {"scene": name, "title": TITLE})
@@ -95,9 +93,9 @@ def test_numbers_agree_with_theory_where_there_is_one(drawn):
 
 
 def test_a_number_is_written_to_its_uncertainty():
-    assert number_text(1.23456, 0.0123, 1.25) == "1.235(12) (theory 1.2500)"
-    assert number_text(-2.0, np.nan, np.nan) == "−2"
-    assert number_text(3.5, 0.0, 3.5) == "3.5000 (theory 3.5000)"
+    assert figure.number_text(1.23456, 0.0123, 1.25) == "1.235(12) (theory 1.2500)"
+    assert figure.number_text(-2.0, np.nan, np.nan) == "−2"
+    assert figure.number_text(3.5, 0.0, 3.5) == "3.5000 (theory 3.5000)"
 
 
 @pytest.mark.parametrize("name", ["displacement", "barrier"])

@@ -76,8 +76,6 @@ def test_the_stress_drop_follows_the_closed_form_below_its_limit(zone):
     assert all((upper.get_ydata() > lower.get_ydata()).all() for upper, lower in pairwise(lines))
 
 
-# Figure 6
-
 LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import grimp
 import pytest
 import yaml
-from pipeline_copy import BY_PROFILE, OVERLAY, copy_project, edges, merged, planned, snakemake
+from pipeline_copy import BY_PROFILE, OVERLAY, copy_project, edges, planned, snakemake
 from workflow.conftest import TARGETS
 
 from slippulse.steps.predict import TOPICS
@@ -203,12 +203,14 @@ EDITED = {Path(file).parent: file for file in FILES if Path(file).stem not in TO
 
 def jobs_after(folder: Path, change: str = "{}") -> dict[str, int]:
     """Jobs of a dry run with a line more in a file, or some values altered; not those that only name targets."""
-    path = folder / (change if change in (*FILES, LOCK) else "overlay.yaml")
+    file, values = (change, "{}") if change in (*FILES, LOCK) else ("overlay.yaml", change)
+    (folder / "values.yaml").write_text(values, encoding="utf-8")
+    path = folder / file
     before, stat = path.read_bytes(), path.stat()
-    values = {} if path == folder / change else merged(OVERLAY, yaml.safe_load(change))
     try:
-        path.write_bytes(yaml.safe_dump(values).encode() if values else before + b"\n# edited\n")
-        jobs = planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml"))
+        path.write_bytes(before + b"\n# edited\n")
+        overlays = ("overlay.yaml", "values.yaml")
+        jobs = planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay=overlays))
     finally:
         path.write_bytes(before)
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))
@@ -312,10 +314,13 @@ def test_what_is_shared_runs_what_reads_it_and_no_more(imitated, change):
 
 
 @pytest.mark.slow
-def test_the_default_is_the_whole_paper(linked):
+def test_the_default_is_the_whole_paper_and_one_figure_needs_only_its_own_simulations(linked):
     jobs = planned(snakemake(linked, "--dry-run"))
     assert DRAWN | set(STUDIED) <= set(jobs)
     assert {"write_claims", "write_report", "write_provenance", "write_index", "draw_scene"} <= set(jobs)
+    jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
+    own = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)
+    assert jobs == own | {"simulate": 2, "measure": 2}
 
 
 def test_a_draft_is_the_figures_and_what_is_ones_own(linked):
@@ -329,13 +334,6 @@ def test_a_draft_is_the_figures_and_what_is_ones_own(linked):
     made = {name for name in jobs if name.startswith(("study_of", "write_"))}
     assert made == {f"study_of_{name}" for name in drawn}
     assert "Measuring mine/2-of-2" in result.stdout and "Drawing scene one" in result.stdout
-
-
-@pytest.mark.slow
-def test_one_figure_needs_only_its_own_simulations(linked):
-    jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
-    own = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)
-    assert jobs == own | {"simulate": 2, "measure": 2}
 
 
 @pytest.mark.slow

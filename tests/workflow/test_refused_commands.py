@@ -71,7 +71,6 @@ def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(fold
 
 @pytest.mark.slow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
-    """As the refusal says it."""
     (folder / "mine.yaml").write_text(COMMANDS["cost"][0], encoding="utf-8")
     allowed, target = HOW_TO_GO_ON.split()[:2], "results/data/steady_displacement.nc"
     said([*SNAKEMAKE, "--dry-run", *allowed, "--", target], folder, 0)
