@@ -10,7 +10,7 @@ import numpy as np
 
 from .arrays import CENTRE, COLUMNS
 from .foresight import RECIPROCAL, find_sticks, foresee_releases, forget_sticks
-from .jit import inner
+from .jit import inner, once
 from .segments import sliding_beside
 from .stencils import blocks, derivative, strengthen
 
@@ -119,7 +119,7 @@ def add_difference(motion, difference, first, last, block, now, h, top):
             w[m, i] += values[i + column]
 
 
-@inner(inline=True)
+@once
 def change_course(medium, motion, segments, forecast, difference, event, h, top):
     """Change the polynomials within reach of an event, and foresee the releases and sticks there until h.
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from .arrays import REACH, Event
-from .jit import inner
+from .jit import inner, once
 
 # 1/j, for Taylor polynomials in derivatives.
 RECIPROCAL = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
@@ -138,7 +138,7 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h, to
     return lowest
 
 
-@inner(inline=True)
+@once
 def next_event(segments, forecast):
     """The first event foreseen; its time is inf where there is none."""
     block, earliest, stick = -1, math.inf, False
@@ -152,7 +152,7 @@ def next_event(segments, forecast):
     return Event(block, earliest, stick)
 
 
-@inner(inline=True)
+@once
 def simultaneous(segments, forecast, mirror, block, latest):
     """Whether the reach of an event meets that of another until ``latest``, its own mirror image included.
 

@@ -6,6 +6,7 @@ What each flag gains, measured in turns with and without it:
   as fast. No kernel makes or returns an array. See the docstring of ``numba.extending.register_jitable``.
 - ``forceinline``: a pulse runs 1.2 to 1.35 times as fast, since no group of arrays is handed on. For functions that are
   called in each step or event; for all, it would gain up to a tenth more and compile a third longer.
+- ``inline="always"``, for functions with one caller, by numba before it compiles that: a seventh less to compile.
 - ``reassoc`` and ``nsz`` in the sums over many blocks: a damped crack runs 1.1 times as fast.
 - ``contract``: 1.00 to 1.07 times as fast; ``error_model="numpy"``: nothing. Without them last bits would change.
 
@@ -49,6 +50,9 @@ FLAGS: dict[str, Any] = {"error_model": "numpy", "_nrt": False, "fastmath": {"co
 
 # A function that Python calls. Only these are cached: their machine code holds all that they call.
 entry = numba.njit(cache=True, nogil=True, **FLAGS)
+
+# A function that one kernel calls, in one place.
+once = numba.njit(inline="always", **FLAGS)
 
 
 def inner(*, inline: bool = False, reorder: bool = False):

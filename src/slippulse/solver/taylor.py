@@ -14,7 +14,7 @@ import numpy as np
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
-from .jit import entry, inner
+from .jit import entry, inner, once
 from .segments import holds, release_block, stick_block
 from .stencils import (
     advance_slip,
@@ -89,7 +89,7 @@ def dissipation_by_rate(medium, w, segments):
     return scale * square, 2.0 * scale * product
 
 
-@inner(inline=True)
+@once
 def dissipation(medium, motion, segments):
     """D = beta dx sum ((v_{i+1} - v_i)/dx)^2 over all segments and what rate strengthening adds, and dD/dt."""
     square, product, rate, change = 0.0, 0.0, 0.0, 0.0
@@ -147,7 +147,7 @@ def strengthened_derivatives(medium, motion, segments, top):
     derivatives(medium, motion, segments, medium.alpha, top)
 
 
-@inner(inline=True)
+@once
 def foresee(medium, motion, segments, forecast, tally, h, top):
     """Velocity at h of all segments, the sticks and releases until then. Returns whether all velocities are finite."""
     forecast.sticks.n = 0
@@ -162,7 +162,7 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
     return True
 
 
-@inner(inline=True)
+@once
 def end_early(motion, scratch, h, order):
     """Velocities at h of all that moved, where the step ends before its time."""
     moved, changed = scratch.moved, scratch.changed
@@ -174,7 +174,7 @@ def end_early(motion, scratch, h, order):
             motion.velocity[i] = max(motion.velocity[i], 0.0)
 
 
-@inner(inline=True)
+@once
 def take_event(medium, motion, segments, scratch, history, event, instant, h, top):
     """Let one event happen. Returns whether all velocities are finite."""
     changed, tally = scratch.changed, history.tally
@@ -206,7 +206,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h, to
     return True
 
 
-@inner(inline=True)
+@once
 def take_over(medium, motion, scratch, order, h):
     """Advance slip, velocity and strain of all that moved by h. Returns the largest velocity among a few."""
     w, offset, moved, changed = motion.w, motion.offset, scratch.moved, scratch.changed
@@ -231,7 +231,7 @@ def take_over(medium, motion, scratch, order, h):
     return fastest
 
 
-@inner(inline=True)
+@once
 def take_events_at_once(medium, motion, segments, scratch, history, end, latest, top):
     """At the end of a step that ended early: release and hold all blocks that are due until ``latest``."""
     forecast, tally = scratch.forecast, history.tally
