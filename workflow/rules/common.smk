@@ -6,6 +6,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from snakemake.cli import get_argument_parser
+
 from slippulse.claims.reading import read_entries
 from slippulse.configuration.accuracy import promised
 from slippulse.configuration.expand import run_count
@@ -15,6 +17,21 @@ from slippulse.configuration.resolve import accuracy_of, all_simulations, bound_
 from slippulse.steps.job import Jobs, end_with
 from slippulse.steps.reach import below, declared, needs_of, sources
 from slippulse.steps.targets import selected
+
+CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
+# With these Snakemake only looks.
+LOOKING = (
+    "archive cleanup_metadata containerize dag d3dag detailed_summary dryrun export_cwl filegraph generate_unit_tests lint"
+    " list_changes list_input_changes list_params_changes list_rules list_target_rules list_untracked print_compilation"
+    " report rulegraph summary touch unlock"
+)
+LOOKS = "verify" in CALLED.targets or any(getattr(CALLED, option) for option in LOOKING.split())
+JOBS = Jobs()
+if workflow.is_main_process:
+    if "SLIPPULSE_LEASH" in os.environ:
+        end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
+    if not LOOKS:
+        JOBS.begin()
 
 # What each figure and study is made from, as its module says: names by kind of file, keys of the configuration.
 NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
@@ -39,10 +56,6 @@ TITLES = {name: scene["title"] for name, scene in SCENES.items()}
 # What an overlay adds is made with the rest.
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
-
-JOBS = Jobs()
-if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
-    end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
 
 
 def run_step(rule, wildcards, input, output, params, threads):

@@ -3,21 +3,12 @@
 import shlex
 import threading
 
-from snakemake.cli import get_argument_parser
-
 from slippulse.configuration.read import format_problems
 from slippulse.data.files import write_json
 from slippulse.data.records import Tree
 from slippulse.steps.reach import jobs_of
 from slippulse.steps.targets import Plan, say_faulty
 
-CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
-# With these Snakemake only looks.
-LOOKS = (
-    "archive cleanup_metadata containerize dag d3dag detailed_summary dryrun export_cwl filegraph generate_unit_tests lint"
-    " list_changes list_input_changes list_params_changes list_rules list_target_rules list_untracked print_compilation"
-    " report rulegraph summary touch unlock"
-)
 OPTIONS = ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []
 OPTIONS += ["--config", *CALLED.config] if CALLED.config else []
 RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
@@ -39,11 +30,9 @@ def begin():
     costs = [line for name in sorted(simulated) for line in settings_of(name)["cost"]()]
     if costs and not CONFIG.allow_large:
         raise ConfigError(format_problems(costs))
-    if any(getattr(CALLED, option) for option in LOOKS.split()):
+    if LOOKS:
         return look(PLAN.tree.to_remove(wanted))
     held = PLAN.begin(wanted, Path(".snakemake"))
-    if not all(Path("results", name).exists() for name in wanted):
-        JOBS.begin()
     # `make verify` and the last line of a run ask for it.
     called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
     write_json(called, "results/records/.call")

@@ -1,6 +1,6 @@
 """Jobs of the workflow: a process each, with its log, its record, and one line on failure.
 
-Each is forked from one that has loaded the libraries, and loads what is the project's own as that stands then.
+Each is forked from one that has loaded what most of them use.
 """
 
 import errno
