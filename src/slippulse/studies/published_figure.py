@@ -39,8 +39,8 @@ RIGHT_PANEL, RIGHT_RATIOS, RIGHT_DURATION = Prestress(-0.75, 0.0, 5.0), (0.05, 0
 lattice_of, TIMES, REACH = partial(Scene, max_step=1.0, order=8), 109, 1.5
 # A lattice's front is a straight line over this last fraction of its path; the exact one is beyond the Gaussian.
 WINDOW = 0.3
-# Positions of the exact trailing edge and of the last profile of slip velocity.
-EDGE, PROFILE = 241, 401
+# Positions of the exact trailing edge.
+EDGE = 241
 KNOWN = (
     "front_speed_right", "front_intercept_right", "first_stick_time", "transition_length", "largest_velocity"
 )  # fmt: skip
@@ -119,9 +119,8 @@ class LeftPanel:
         x = np.linspace(0.0, end.x, EDGE)
         stick = rupture.stick_time(x)
         edge = stick[np.isfinite(stick)], x[np.isfinite(stick)]
-        at_end = rupture.slip_velocity(np.linspace(0.0, end.x, PROFILE), rupture.duration)
-        transition, largest = (rupture.transition_time, rupture.transition_length), np.max(at_end)
-        known = speed, end.x - speed * end.time, *transition, max(rupture.largest_velocity, largest)
+        transition = rupture.transition_time, rupture.transition_length
+        known = speed, end.x - speed * end.time, *transition, rupture.largest_velocity
         return self._chosen(known, lambda time: np.interp(time, *edge))
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:

@@ -26,6 +26,11 @@ SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
 
 
+# What has a value and a slope on each panel, and what of it is monotonic.
+MONOTONIC = ("x", "time", "late", "early")
+FIELDS = (*MONOTONIC, "source")
+
+
 def power_basis(count: int) -> np.ndarray:
     """From a Legendre series to coefficients by powers, which are quicker to evaluate."""
     units = enumerate(np.eye(count))
@@ -88,17 +93,18 @@ class Curve:
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
         self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
         self.late, self.early = self.time + self.x, self.time - self.x
-        # Values at both ends of each panel, of what is monotonic on it.
-        self.ends = {"x": x_ends, "time": time_ends, "late": time_ends + x_ends, "early": time_ends - x_ends}
+        # Values at both ends of each panel, of MONOTONIC one after another: [end, panel].
+        self.ends = np.concatenate([x_ends, time_ends, time_ends + x_ends, time_ends - x_ends]).T
         self.restarts_left, self.restarts_right = tuple(restarts_left), tuple(restarts_right)
 
     @cached_property
-    def powers(self) -> dict[str, np.ndarray]:
-        """Coefficients, by powers of the parameter, of values and their derivatives: [panel, 2, power]."""
-        names = ("x", "time", "late", "early", "source")
-        values = np.stack([getattr(self, name) for name in names]) @ TO_POWERS.T
-        slopes = np.append(values[..., 1:] * np.arange(1.0, COUNT), np.zeros_like(values[..., :1]), axis=-1)
-        return dict(zip(names, np.stack([values, slopes], axis=2), strict=True))
+    def powers(self) -> np.ndarray:
+        """Coefficients by powers of the parameter, of MONOTONIC and the source one after another: [power, panel]."""
+        return TO_POWERS @ np.concatenate([self.x, self.time, self.late, self.early, self.source]).T
+
+    def row(self, name: str, panel: np.ndarray) -> np.ndarray:
+        """Where a field on panels is in `ends` and `powers`."""
+        return panel + len(self.panels) * FIELDS.index(name)
 
     def mirrored(self) -> "Curve":
         """The same at -x."""
@@ -106,8 +112,8 @@ class Curve:
         return Curve(seen(self.panels, -1.0), *restarts)
 
     def at(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
-        """One of `powers` at a parameter on panels, or its derivative by the parameter (order 1)."""
-        return by_powers(self.powers[name][panel, order], s)
+        """One of FIELDS at a parameter on panels, or its derivative by the parameter (order 1)."""
+        return value_and_slope(self.powers[:, self.row(name, panel)], s)[order]
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Whether positions lie on the curve."""
@@ -123,19 +129,18 @@ class Curve:
     def locate(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Panel and parameter on it of each position."""
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.panels) - 1)
-        return panel, self._solve("x", panel, x)
+        return panel, self._solve(self.row("x", panel), x)
 
-    def right(self, y: np.ndarray, eta: np.ndarray) -> Crossing:
-        """Where T + x rises to eta, going right from y."""
-        panel, known = _first_rise(self.edges, self._exits[0], y, eta)
-        return Crossing(panel, np.where(known, self._solve("late", panel, eta), 1.0), known)
-
-    def left(self, y: np.ndarray, xi: np.ndarray) -> Crossing:
-        """Where T - x rises to xi, going left from y."""
+    def crossings(self, y: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> tuple[Crossing, Crossing]:
+        """Where T - x rises to xi, going left from y, and where T + x rises to eta, going right."""
+        right, known_right = _first_rise(self.edges, self._exits[0], y, eta)
         # The same at -x.
-        panel, known = _first_rise(-self.edges[::-1], self._exits[1], -y, xi)
-        panel = len(self.panels) - 1 - panel
-        return Crossing(panel, np.where(known, self._solve("early", panel, xi), -1.0), known)
+        left, known_left = _first_rise(-self.edges[::-1], self._exits[1], -y, xi)
+        left = len(self.panels) - 1 - left
+        rows = np.concatenate([self.row("early", left), self.row("late", right)])
+        s = self._solve(rows, np.concatenate([xi, eta]))
+        s_left, s_right = np.where(known_left, s[: y.size], -1.0), np.where(known_right, s[y.size :], 1.0)
+        return Crossing(left, s_left, known_left), Crossing(right, s_right, known_right)
 
     @cached_property
     def _exits(self) -> list[list[np.ndarray]]:
@@ -144,7 +149,8 @@ class Curve:
         What leaves a region across a slow front sees no source beyond.
         """
         out = []
-        right, left = self.ends["late"][:, 1], self.ends["early"][::-1, 0]
+        _, _, late, early = np.split(self.ends, len(MONOTONIC), axis=1)
+        right, left = late[1], early[0, ::-1]
         for exits, edges, restarts in (
             (right, self.edges, self.restarts_left),
             (left, self.edges[::-1], self.restarts_right),
@@ -159,29 +165,31 @@ class Curve:
         if not beyond.size:
             return float(self.edges[-1 if side > 0.0 else 0])
         panel = beyond[:1] - 1 if side > 0.0 else beyond[-1:]
-        found = float(self.at("x", panel, self._solve("time", panel, np.array([time])))[0])
+        found = float(self.at("x", panel, self._solve(self.row("time", panel), np.array([time])))[0])
         return side * max(side * found, side * x)
 
-    def _solve(self, name: str, panel: np.ndarray, level: np.ndarray) -> np.ndarray:
+    def _solve(self, row: np.ndarray, level: np.ndarray) -> np.ndarray:
         """The parameter where a field that is monotonic on its panel has a value."""
-        at_left, at_right = self.ends[name][panel].T
+        at_left, at_right = self.ends[:, row]
         span = at_right - at_left
         flat = np.abs(span) < 1e-13
-        s = np.clip(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
-        rising, least = np.sign(span), 1e-8 * np.abs(span) + 1e-300
+        out = clipped(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
         # Where a slow front has stopped its end is a double root, to which Newton's steps halve the way, or go astray.
         off = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         todo = np.flatnonzero(off > 1e-15 * np.abs(level))
+        least = np.where(flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
+        s, level, rising, least = np.array([out, level, np.sign(span), least])[:, todo]
+        coefficients = self.powers[:, row[todo]]
         for _ in range(40):
             if not todo.size:
                 break
-            value, slope = by_powers(self.powers[name][panel[todo]], s[todo])
-            slope = rising[todo] * np.maximum(rising[todo] * slope, least[todo]) + flat[todo]
-            new = np.clip(s[todo] + (level[todo] - value) / slope, -1.0, 1.0)
-            going = np.abs(new - s[todo]) >= 1e-9
-            s[todo] = new
-            todo = todo[going]
-        return s
+            value, slope = value_and_slope(coefficients, s)
+            new = clipped(s + rising * (level - value) / np.maximum(rising * slope, least), -1.0, 1.0)
+            out[todo] = new
+            going = np.abs(new - s) >= 1e-9
+            todo, coefficients = todo[going], coefficients[:, going]
+            s, level, rising, least = np.array([new, level, rising, least])[:, going]
+        return out
 
 
 def _first_rise(
@@ -200,7 +208,18 @@ def _first_rise(
     return np.minimum(panel, count - 1), panel < count
 
 
-def by_powers(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Polynomials with coefficients [point, ..., power] at a parameter each: [..., point]."""
-    powers = np.vander(s, coefficients.shape[-1], increasing=True)
-    return np.einsum("n...k,nk->...n", coefficients, powers)
+def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Polynomials with coefficients [power, point], and their derivatives, at a parameter each."""
+    value, slope = coefficients[-1] * s, coefficients[-1].copy()
+    value += coefficients[-2]
+    for coefficient in coefficients[-3::-1]:
+        slope *= s
+        slope += value
+        value *= s
+        value += coefficient
+    return value, slope
+
+
+def clipped(values: np.ndarray, low: float, high: float) -> np.ndarray:
+    """As `np.clip`, which is slow on short arrays."""
+    return np.minimum(np.maximum(values, low), high)

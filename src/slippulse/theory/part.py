@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import SAME, Curve
+from .curve import SAME, Curve, clipped
 from .riemann import Past, Rest
 
 # Times looked at together, and their distance: a fraction of 1/sqrt(gamma), or of the duration without leaf springs.
@@ -271,24 +271,23 @@ class Part:
     def largest_velocity(self, end: float, horizon: Callable[[np.ndarray], np.ndarray]) -> float:
         """Largest slip velocity until an end and before a horizon, from a grid refined around its largest value."""
         edge = self.edge
-        x, release = edge.x, np.minimum(self.curve.arrival(edge.x), end)
-        stick = np.minimum(np.minimum(np.where(np.isfinite(edge.stick), edge.stick, end), horizon(x)), end)
-        grid_x, fraction = np.meshgrid(x, np.linspace(0.0, 1.0, 33), indexing="ij")
-        reach_x, reach_fraction = np.max(np.diff(x), initial=1e-3), 1.0 / 32.0
+        last = np.fmin(edge.stick, np.minimum(horizon(edge.x), end))
+        x, fraction = edge.x, np.linspace(0.0, 1.0, 17)
+        reach_x, reach_fraction = np.max(np.diff(x), initial=1e-3), fraction[1]
         best, around = 0.0, np.linspace(-1.0, 1.0, 7)
         # Until the largest value does not change by rounding.
         while reach_fraction > 1e-8:
-            low = np.interp(grid_x, x, release)
-            time = low + (np.interp(grid_x, x, stick) - low) * fraction
-            keep = np.nonzero(time > self.curve.arrival(grid_x))
-            values = self.velocity(grid_x[keep], time[keep])
+            release = self.curve.arrival(x)[:, None]
+            time = release + (np.interp(x, edge.x, last)[:, None] - release) * fraction
+            row, column = np.nonzero(time > release)
+            values = self.velocity(x[row], time[row, column])
             n = int(np.argmax(values))
             # The largest value may lie on a ridge across the grid: the search narrows where it no longer rises.
             narrower = 1.0 if values[n] > best * (1.0 + 1e-10) else 0.4
             if values[n] > best:
-                best, centre, at = float(values[n]), grid_x[keep][n], fraction[keep][n]
-            near, part = np.clip(centre + reach_x * around, x[0], x[-1]), at + reach_fraction * around
-            grid_x, fraction = np.meshgrid(near, np.clip(part, 0.0, 1.0), indexing="ij")
+                best, centre, at = float(values[n]), x[row[n]], fraction[column[n]]
+            x = clipped(centre + reach_x * around, edge.x[0], edge.x[-1])
+            fraction = clipped(at + reach_fraction * around, 0.0, 1.0)
             reach_x, reach_fraction = narrower * reach_x, narrower * reach_fraction
         return best
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.special import i0, i1, j0, j1
 
-from .curve import COUNT, CUMULATIVE, PARTIAL, SLOPE, TO_POWERS, WEIGHTS, Curve, by_powers
+from .curve import COUNT, CUMULATIVE, PARTIAL, SLOPE, TO_POWERS, WEIGHTS, Curve, value_and_slope
 
 # Points whose integrals are computed together: their arrays stay in the cache.
 CHUNK = 96
@@ -54,11 +54,11 @@ class Rest:
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
         self.at_nodes = (p, slope, *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)))
-        self._powers = [values @ TO_POWERS.T for values in (p, slope)]
+        self._powers = [TO_POWERS @ values.T for values in (p, slope)]
 
     def at(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """p (order 0) or p' (1) at a parameter on panels."""
-        return by_powers(self._powers[order][panel], s)
+        return value_and_slope(self._powers[order][:, panel], s)[0]
 
 
 def _integral(values: np.ndarray) -> np.ndarray:
@@ -87,7 +87,7 @@ class Past:
         self.curve, self.alpha, self.y = curve, alpha, y
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
-        self.left, self.right = curve.left(y, self.xi), curve.right(y, self.eta)
+        self.left, self.right = curve.crossings(y, self.xi, self.eta)
 
     def slip_velocity(self) -> np.ndarray:
         """du/dt."""
@@ -175,7 +175,7 @@ class Past:
         out, stiffness = np.empty((*count, self.xi.size)), np.broadcast_to(self.stiffness, self.xi.shape)
         # Points of about the same panels together.
         order = np.lexsort((self.right.panel, self.left.panel))
-        for start in range(0, self.xi.size, CHUNK):
+        for start in range(0, order.size, CHUNK):
             part = order[start : start + CHUNK]
             high = self.right.panel[part]
             low = np.minimum(self.left.panel[part], high)
@@ -183,20 +183,21 @@ class Past:
             panels = slice(first, last)
             behind = self.xi[part, None] - curve.early[panels].ravel()
             ahead = self.eta[part, None] - curve.late[panels].ravel()
-            z = stiffness[part, None] * behind * ahead
-            rows, here = np.arange(low.size), np.arange(last - first)
-            low, high = low - first, high - first
-            cut = z.reshape(low.size, -1, COUNT)[np.stack([rows, rows]), np.stack([low, high])]
-            values = integrand(behind, ahead, kernel_of(stiffness[0], z, cut), panels)
+            z = stiffness[part, None] * behind
+            z *= ahead
+            here, low, high = np.arange(last - first), low - first, high - first
+            ends = np.arange(low.size), np.array([high, low])
+            kernel = kernel_of(stiffness[0], z, z.reshape(low.size, -1, COUNT)[ends])
+            values = integrand(behind, ahead, kernel, panels)
             if self.alpha:
                 values = values * decay(self.alpha, behind + ahead)
             boxes = values.reshape(*count, low.size, -1, COUNT)
             whole = (here >= low[:, None]) & (here < high[:, None])
-            total = np.sum(np.where(whole, boxes @ WEIGHTS, 0.0), axis=-1)
             # The panels at both ends are cut.
-            for panel, s, sign in ((high, self.right.s, 1.0), (low, self.left.s, -1.0)):
-                total += sign * np.sum(boxes[..., rows, panel, :] * partial_weights(s[part]), axis=-1)
-            out[..., part] = total
+            weights = partial_weights(np.concatenate([self.right.s[part], self.left.s[part]]))
+            cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, COUNT), axis=-1)
+            total = np.add.reduce((boxes @ WEIGHTS) * whole, axis=-1)
+            out[..., part] = total + cut[..., 0, :] - cut[..., 1, :]
         # A point on the curve, at the end of a panel: its domain is empty.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
 
@@ -229,23 +230,26 @@ def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.nd
     lower, upper = (
         e and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(e)))), e) for e in (lower, upper)
     )
-    scaled = (z - 0.5 * (lower + upper)) * (2.0 / (upper - lower))
-    np.clip(scaled, -1.0, 1.0, out=scaled)
-    coefficients = _polynomial(lower, upper, order)
-    out = np.full_like(scaled, coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
-        out *= scaled
+    scaled = z - 0.5 * (lower + upper)
+    scaled *= 2.0 / (upper - lower)
+    scaled.clip(-1.0, 1.0, out=scaled)
+    first, *coefficients = _polynomial(lower, upper, order)
+    out = first * scaled
+    for coefficient in coefficients[:-1]:
         out += coefficient
+        out *= scaled
+    out += coefficients[-1]
     return out
 
 
 @lru_cache(maxsize=256)
 def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
-    """Coefficients by powers of the scaled variable, which runs from -1 to 1 between the bounds."""
+    """Coefficients by powers, the highest first, of the scaled variable, which runs from -1 to 1 between the bounds."""
     points = chebyshev.chebpts1(41)
     values = _bessel(0.5 * (lower + upper) + 0.5 * (upper - lower) * points, order)
     series = chebyshev.chebfit(points, values, 40)
-    return tuple(chebyshev.cheb2poly(chebyshev.chebtrim(series, 1e-14 * np.max(np.abs(series)))).tolist())
+    series = chebyshev.chebtrim(series, 1e-14 * np.max(np.abs(series)))
+    return tuple(chebyshev.cheb2poly(series)[::-1].tolist())
 
 
 def _bessel(z: np.ndarray, order: int) -> np.ndarray:

@@ -110,12 +110,13 @@ class _Chunk:
         xi = self.t0 - self.x0
         look = LOOK * max(1.0, abs(xi))
         # A little later: at the end of a panel it is the next one that goes on, or another part of the rupture.
-        found = self.curve.left(np.full(2, self.x0), np.array([xi, xi + look]))
+        later = np.array([xi, xi + look])
+        found, _ = self.curve.crossings(np.full(2, self.x0), later, later + 2.0 * self.x0)
         if not found.known[1]:
             return None
         k = int(found.panel[1])
         # Not by the look, which would leave a gap, but at the panel's very end.
-        if abs(self.curve.ends["early"][k, 1] - xi) < 10.0 * look:
+        if abs(self.curve.ends[1, self.curve.row("early", found.panel)][1] - xi) < 10.0 * look:
             return k, 1.0
         return k, float(found.s[int(found.panel[0] != k)])
 

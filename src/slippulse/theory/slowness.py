@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from .curve import by_powers, power_basis
+from .curve import clipped, power_basis, value_and_slope
 from .front_law import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
@@ -38,10 +38,11 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     s = 2.0 * (tau - low) / (high - low) - 1.0
     # On the first panel tau grows like psi^2, and Newton starts from above.
     s = np.where(panel == 0, 2.0 * np.sqrt((tau - low) / (high - low)) - 1.0, s)
+    coefficients = powers[:, panel]
     for _ in range(12):
-        value, slope = by_powers(powers[panel], s)
+        value, slope = value_and_slope(coefficients, s)
         step = (value - tau) / np.maximum(slope, 1e-12)
-        s = np.clip(s - step, -1.0, 1.0)
+        s = clipped(s - step, -1.0, 1.0)
         if np.max(np.abs(step), initial=0.0) < 1e-11:
             break
     # The end of the first panel is a double root.
@@ -54,7 +55,7 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def _law(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Panels in psi, the pre-stress at their edges, and by powers it and its slope on each: [panel, 2, power]."""
+    """Panels in psi, the pre-stress at their edges, and its coefficients by powers on each: [power, panel]."""
 
     def prestress(psi: np.ndarray) -> np.ndarray:
         excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
@@ -74,6 +75,5 @@ def _law(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray, np
     done.sort(key=lambda panel: panel[0])
     edges = np.array([done[0][0]] + [right for _, right, _ in done])
     inner = prestress(edges[1:-1])
-    values = np.array([series for *_, series in done]) @ TO_POWERS.T
-    slopes = np.append(values[:, 1:] * np.arange(1.0, COUNT), 0.0 * values[:, :1], axis=1)
-    return edges, np.concatenate([[0.0], inner, [1.0]]), np.stack([values, slopes], axis=1)
+    powers = TO_POWERS @ np.array([series for *_, series in done]).T
+    return edges, np.concatenate([[0.0], inner, [1.0]]), powers
