@@ -8,7 +8,7 @@ import pandas as pd
 import xarray as xr
 
 from .chunks import runs_of
-from .points import point
+from .points import runs_in
 from .store import load_dataset
 from .sweeps import combine
 from .tables import load_table, save_table
@@ -27,8 +27,8 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     """All runs in the order of the sweep, from the data of its chunks in the order of their numbers."""
     chunks = [load_dataset(path) for path in paths]
     of_chunks = zip(chunks, _runs(paths, [chunk.sizes["point"] for chunk in chunks]), strict=True)
-    found = {run: point(chunk, index) for chunk, own in of_chunks for index, run in enumerate(own)}
-    return described(combine([found[run] for run in sorted(found)], record))
+    found = {number: run for chunk, own in of_chunks for number, run in zip(own, runs_in(chunk), strict=True)}
+    return described(combine([found[number] for number in sorted(found)], record))
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[str] = ()) -> None:

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from .points import DIMENSIONS, Recorded
+
 FRONTS = ("release_time", "stick_time")
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 # What every data file says of itself.
@@ -16,27 +18,21 @@ FILE = {
 }
 
 
-def combine(results: Sequence[xr.Dataset], record: Sequence[str]) -> xr.Dataset:
+def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
     """Put the runs of a sweep into one Dataset."""
-
-    def of_all(name: str) -> list[np.ndarray]:
-        return [result.variables[name].values for result in results]
-
-    versions = {"versions": results[0].attrs["versions"]}
-    names = [name for name in results[0].attrs if name not in versions]
-    out = xr.Dataset({name: ("point", np.array([run.attrs[name] for run in results])) for name in names})
+    versions = {"versions": runs[0].attrs["versions"]}
+    names = [name for name in runs[0].attrs if name not in versions]
+    variables: dict = {name: ("point", np.array([run.attrs[name] for run in runs])) for name in names}
     kept = (*(FRONTS if "fronts" in record else ()), *(FIELDS if "fields" in record else ()))
     if kept:
-        out["row_size"] = ("point", np.array([result.sizes["x"] for result in results]))
-        for name in ("x", "prestress", *kept):
-            out[name] = ("block", np.concatenate(of_all(name)))
-    if "samples" in record:
-        axes = {"sample_time": ("time",), "sample_position": ("position",)}
-        for name in (*axes, "sample_slip", "sample_velocity"):
-            out[name] = (("point", *axes.get(name, ("time", "position"))), np.stack(of_all(name)))
-    out.attrs = FILE | versions
-    if kept:
         # CF's contiguous ragged array: the profiles of the runs over x, one after the other.
-        out["row_size"].attrs["sample_dimension"] = "block"
-        out.attrs["featureType"] = "profile"
-    return out
+        sizes = np.array([run["x"].size for run in runs])
+        variables["row_size"] = "point", sizes, {"sample_dimension": "block"}
+        for name in ("x", "prestress", *kept):
+            variables[name] = "block", np.concatenate([run[name] for run in runs])
+    if "samples" in record:
+        for name, dimensions in DIMENSIONS.items():
+            axes = ("point", *(dimension.removeprefix("sample_") for dimension in dimensions))
+            variables[name] = axes, np.stack([run[name] for run in runs])
+    # All at once: each variable that is added to a Dataset is aligned with those that are there.
+    return xr.Dataset(variables, attrs=FILE | versions | ({"featureType": "profile"} if kept else {}))

@@ -1,22 +1,27 @@
 """Where the fronts and the trailing edges are, and how fast."""
 
 import numpy as np
-import xarray as xr
+
+from ..data.points import AnyRun
 
 
-def path(run: xr.Dataset, side: str = "right", edge: str = "release_time") -> tuple[np.ndarray, np.ndarray]:
+def path(run: AnyRun, side: str = "right", edge: str = "release_time") -> tuple[np.ndarray, np.ndarray]:
     """Times and distances from x = 0 of a front ("release_time") or trailing edge ("stick_time") on one side.
 
-    In order of distance; blocks without the event are left out.
+    In order of distance, as x increases; blocks without the event are left out.
     """
-    x, time = run.variables["x"].values, run.variables[edge].values
-    sign = 1.0 if side == "right" else -1.0
-    chosen = np.isfinite(time) & (sign * x >= 0.0)
-    order = np.argsort(sign * x[chosen], kind="stable")
-    return time[chosen][order], (sign * x[chosen])[order]
+    x, time = np.asarray(run["x"]), np.asarray(run[edge])
+    if side == "right":
+        side_of = slice(np.searchsorted(x, 0.0), None)
+        distance, time = x[side_of], time[side_of]
+    else:
+        side_of = slice(np.searchsorted(x, 0.0, side="right"))
+        distance, time = -x[side_of][::-1], time[side_of][::-1]
+    reached = np.isfinite(time)
+    return time[reached], distance[reached]
 
 
-def position_at(run: xr.Dataset, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
+def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
     """Distance from x = 0 that a front or trailing edge has reached at given times; NaN before its first event.
 
     Linear between events; a block that was released out of turn does not take the front back.
@@ -31,7 +36,7 @@ def position_at(run: xr.Dataset, time, side: str = "right", edge: str = "release
     return np.where(time < latest[0], np.nan, np.interp(time, latest[last], distances[last]))
 
 
-def arrival(run: xr.Dataset, distance: float, side: str = "right") -> tuple[float, float]:
+def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, float]:
     """Time at which the front on one side reaches a distance, and its longest between two blocks on the way; or NaN."""
     times, distances = path(run, side)
     if times.size == 0 or distances[-1] < distance:
@@ -41,7 +46,7 @@ def arrival(run: xr.Dataset, distance: float, side: str = "right") -> tuple[floa
     return float(np.interp(distance, distances, latest)), float(np.max(waits, initial=0.0))
 
 
-def front_speed(run: xr.Dataset, window: float, side: str = "right") -> tuple[float, float, float]:
+def front_speed(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
     """Speed, intercept (units of H) and standard error of the speed from the last fraction of a front's path.
 
     As `straight_line`; NaN with fewer than 4 blocks.

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
+from ..data.points import AnyRun
 from .fronts import front_speed, path
 
 NAN = float("nan")
@@ -21,14 +21,14 @@ class LeadingPulse(NamedTuple):
     slip: float  # of the blocks that stuck last, halfway between the trailing edge and the nucleation at the nearest
 
 
-def leading_pulse(run: xr.Dataset, window: float) -> LeadingPulse:
+def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     """Measure the pulse of a run with fronts and fields, its speed on the last fraction ``window`` of its path."""
     end = run.attrs["end_time"]
     speed, _, _ = front_speed(run, window)
     release, distance = path(run)
     front = float(distance[-1] + speed * (end - release[-1])) if distance.size else NAN
-    right = run.variables["x"].values >= 0.0
-    r, velocity, slip = (run.variables[name].values[right] for name in ("x", "slip_velocity", "slip"))
+    right = np.asarray(run["x"]) >= 0.0
+    r, velocity, slip = (np.asarray(run[name])[right] for name in ("x", "slip_velocity", "slip"))
     peak, at = parabola_peak(r, velocity)
 
     stick, stuck = path(run, edge="stick_time")
@@ -56,15 +56,15 @@ def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     return float(middle - 0.25 * (left - right) * shift), float(x[i] + shift * (x[i + 1] - x[i]))
 
 
-def comoving(run: xr.Dataset, pulse: LeadingPulse) -> dict[str, np.ndarray]:
+def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
     """Slip, slip_velocity and slip_acceleration right of the nucleation point, over xi = distance - front."""
     names = ("x", "slip", "slip_velocity", "slip_acceleration")
-    right = run.variables["x"].values >= 0.0
-    fields = {name: run.variables[name].values[right] for name in names}
+    right = np.asarray(run["x"]) >= 0.0
+    fields = {name: np.asarray(run[name])[right] for name in names}
     return {"xi": fields.pop("x") - pulse.front} | fields
 
 
-def acceleration_amplitude(run: xr.Dataset, pulse: LeadingPulse) -> float:
+def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
     """Amplitude of the slip acceleration across a pulse, by projection on the sine that spans its width.
 
     The undamped lattice rings at the grid scale behind the front; a projection averages the ringing out, the largest
@@ -78,7 +78,7 @@ def acceleration_amplitude(run: xr.Dataset, pulse: LeadingPulse) -> float:
     return float(np.sum(fields["slip_acceleration"][inside] * shape) / np.sum(shape**2))
 
 
-def slip_variation(run: xr.Dataset, pulse: LeadingPulse) -> float:
+def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
     """Largest relative change of the slip left behind over the last third of the path before the pulse."""
     fields = comoving(run, pulse)
     end = -pulse.width - 4.0 * run.attrs["dx"]

@@ -1,8 +1,8 @@
 """Crack-like or pulse-like, one-way or two-way, growing, steady, decaying or arrested: the rule, as code."""
 
 import numpy as np
-import xarray as xr
 
+from ..data.points import AnyRun
 from .fronts import position_at
 
 REGIMES = (
@@ -18,7 +18,7 @@ REGIMES = (
 UNDECIDED = "undecided"
 
 
-def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str, float | str]:
+def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, float | str]:
     """Classify a run by its slip velocity at the end, and at two thirds of its duration.
 
     run : with samples of slip velocity over time and position; how it ends is taken from the blocks themselves where
@@ -34,17 +34,17 @@ def classify(run: xr.Dataset, still: float, steady_tolerance: float) -> dict[str
     slides at ``still`` or more of the largest velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or
     *decaying* by the change of its largest velocity over the last third.
     """
-    times, velocity = run.variables["sample_time"].values, run.variables["sample_velocity"].values
+    times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
     before = velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))]
     change = float(np.max(velocity[-1]) / np.max(before)) - 1.0 if np.max(before) > 0.0 else -1.0
     if "slip_velocity" in run:
-        x, now = run.variables["x"].values, run.variables["slip_velocity"].values
+        x, now = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
     else:
-        x, now = run.variables["sample_position"].values, velocity[-1]
+        x, now = np.asarray(run["sample_position"]), velocity[-1]
     largest_now = float(np.max(now))
     largest_ever = max(largest_now, float(np.max(velocity)))
     centre = float(now[int(np.argmin(np.abs(x)))])
-    latest = float(np.nan_to_num(run.variables["release_time"].values).max())
+    latest = float(np.nan_to_num(np.asarray(run["release_time"])).max())
 
     window = np.array([2.0 / 3.0, 1.0]) * run.attrs["end_time"]
     speeds = {}

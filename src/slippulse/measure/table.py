@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 import numpy as np
-import xarray as xr
 
+from ..data.points import AnyRun
 from ..model.prestress import prestress_from
 from .fronts import front_speed, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
@@ -25,7 +25,7 @@ FAR = 6.0
 NAN = float("nan")
 
 
-def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
+def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
     """Measure one run, out of a sweep or as `simulate` returned it.
 
     settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
@@ -53,7 +53,7 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
         row |= {
-            "largest_velocity": float(np.max(run["slip_velocity"].values)),
+            "largest_velocity": float(np.max(np.asarray(run["slip_velocity"]))),
             "pulse_front": pulse.front,
             "pulse_width": pulse.width,
             "pulse_peak_velocity": pulse.peak_velocity,
@@ -65,14 +65,14 @@ def measure_run(run: xr.Dataset, settings: Mapping) -> tuple[dict, LeadingPulse 
             "lattice_noise": lattice_noise(run),
             "sliding_at_once": sliding_at_once(run),
         }
-    if "sample_velocity" in run and run.sizes["sample_position"] > 1:
+    if "sample_velocity" in run and run["sample_position"].size > 1:
         row |= classify(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
             row |= far_field(run)
     return row, pulse
 
 
-def half_width(run: xr.Dataset, pulse: LeadingPulse) -> float:
+def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """Breadth of the slip velocity at half its peak, on the right; NaN where it does not fall to half on both sides."""
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
@@ -87,12 +87,12 @@ def half_width(run: xr.Dataset, pulse: LeadingPulse) -> float:
     return float(right - left)
 
 
-def lattice_noise(run: xr.Dataset) -> float:
+def lattice_noise(run: AnyRun) -> float:
     """Power that a fourth difference passes, which is waves of a few blocks, over that of slip velocity on the right.
 
     Over the blocks that slide, without the two at each end, where the velocity has corners.
     """
-    x, velocity = run.variables["x"].values, run.variables["slip_velocity"].values
+    x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
     moving = velocity[(x >= 0.0) & (velocity > 0.0)]
     if moving.size < FEWEST:
         return NAN
@@ -101,18 +101,18 @@ def lattice_noise(run: xr.Dataset) -> float:
     return float(np.sum(short**2) / np.sum(moving**2))
 
 
-def sliding_at_once(run: xr.Dataset) -> float:
+def sliding_at_once(run: AnyRun) -> float:
     """Largest number of blocks on the right that slide at once, over the second half of a run."""
     start = 0.5 * run.attrs["end_time"]
-    chosen = (run.variables["x"].values > 0.0) & np.isfinite(run.variables["release_time"].values)
-    release, stick = run.variables["release_time"].values[chosen], run.variables["stick_time"].values[chosen]
+    chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
+    release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]
     # The number rises at a release only, so that it is largest right after one, or at the start. NaN is sorted last.
     times = np.append(start, release[release > start])
     released, stuck = (np.searchsorted(np.sort(when), times, side="right") for when in (release, stick))
     return float(np.max(released - stuck))
 
 
-def far_field(run: xr.Dataset) -> dict[str, float]:
+def far_field(run: AnyRun) -> dict[str, float]:
     """Change of the right pulse far from nucleation, where the pre-stress is uniform, over the last third of a run.
 
     Of a run with samples: profile_change (largest difference of the velocity profile from itself moved at the wave
@@ -121,10 +121,10 @@ def far_field(run: xr.Dataset) -> dict[str, float]:
     """
     steps = [abs(position) for position, _ in prestress_from(run.attrs).steps]
     start = max([FAR * run.attrs["width"], *steps])
-    times, x = run.variables["sample_time"].values, run.variables["sample_position"].values
+    times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
     moved = float(times[-1] - times[early])
-    velocity, slip = run.variables["sample_velocity"].values, run.variables["sample_slip"].values
+    velocity, slip = np.asarray(run["sample_velocity"]), np.asarray(run["sample_slip"])
     far = x >= start
     if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
         return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}

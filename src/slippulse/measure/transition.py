@@ -1,8 +1,8 @@
 """When and where a crack becomes a pulse: definitions that converge, and the paper's own next to them."""
 
 import numpy as np
-import xarray as xr
 
+from ..data.points import AnyRun
 from ..model.prestress import prestress_balance_position, prestress_from
 from .fronts import arrival, path, position_at
 
@@ -12,7 +12,7 @@ NAN = float("nan")
 STALL = 0.03
 
 
-def transition_displacement(run: xr.Dataset) -> dict[str, float]:
+def transition_displacement(run: AnyRun) -> dict[str, float]:
     """Transition under a displacement boundary.
 
     T_trans is the first stick anywhere (at the nucleation point when the scene is symmetric), L_trans the distance
@@ -29,17 +29,17 @@ def transition_displacement(run: xr.Dataset) -> dict[str, float]:
     return out
 
 
-def between_fronts(run: xr.Dataset, time: float) -> float:
+def between_fronts(run: AnyRun, time: float) -> float:
     """Distance between both fronts at a time; NaN for NaN."""
     return float(position_at(run, time, "right") + position_at(run, time, "left")) if time == time else NAN
 
 
-def slip_time(run: xr.Dataset, slip: float) -> float:
+def slip_time(run: AnyRun, slip: float) -> float:
     """When slip at the sampled position nearest x = 0 reaches a value; NaN if never or if nothing was sampled."""
     if "sample_slip" not in run:
         return NAN
-    centre = int(np.argmin(np.abs(run.variables["sample_position"].values)))
-    history, times = run.variables["sample_slip"].values[:, centre], run.variables["sample_time"].values
+    centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
+    history, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
     i = int(np.argmax(history >= slip))
     if i == 0:
         return float(times[0]) if history[0] >= slip else NAN
@@ -47,7 +47,7 @@ def slip_time(run: xr.Dataset, slip: float) -> float:
     return float(times[i - 1] + fraction * (times[i] - times[i - 1]))
 
 
-def transition_stress(run: xr.Dataset, fraction: float) -> dict[str, float | str]:
+def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     """Transition under a stress boundary, pre-stress 0 on the right and negative on the left.
 
     T_trans is when the left front has covered ``fraction`` of |x_minus|, which converges with dx; the arrest (the last

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..data.points import point
+from ..data.points import AnyRun, runs_in
 from ..measure.fronts import path
 from ..measure.pulses import LeadingPulse, comoving, slip_variation
 from ..measure.table import measure_run
@@ -29,8 +29,7 @@ def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
     and L_trans (sections III B and III C) where the transition is measured.
     """
     rows = []
-    for index in range(sweep.sizes["point"]):
-        run = point(sweep, index, indexes=False)
+    for run in runs_in(sweep):
         row, pulse = measure_run(run, settings)
         if pulse is not None:
             row["pulse_state"] = pulse_state(run, pulse)
@@ -45,7 +44,7 @@ def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
+def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """Whether the leading pulse of a run is the steady one, so that the numbers of steady pulses apply to it.
 
     "steady"; "unsteady" when its width is not the steady one at its speed, the slip behind it varies, or it is slower
@@ -54,8 +53,8 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
     """
     if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
-    ahead = np.argmin(np.abs(run.variables["x"].values - path(run)[1][-1]))
-    tau = float(run.variables["prestress"].values[ahead])
+    ahead = np.argmin(np.abs(np.asarray(run["x"]) - path(run)[1][-1]))
+    tau = float(np.asarray(run["prestress"])[ahead])
     if not 0.0 < tau < 1.0:
         return "none"
     if pulse.speed <= 1.0:
@@ -71,7 +70,7 @@ def pulse_state(run: xr.Dataset, pulse: LeadingPulse) -> str:
     return "unsteady" if changes else "steady"
 
 
-def shape_deviation(run: xr.Dataset, pulse: LeadingPulse) -> float:
+def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
     """Largest distance of the right pulse's slip velocity from the paper's cosine, equations (9) and (C10), over its
     peak, the peaks aligned; NaN where there is none. Two blocks at each end of the cosine are left out, where the
     lattice rounds its corner.

@@ -8,6 +8,7 @@ from threading import Event
 import numpy as np
 import xarray as xr
 
+from ..data.points import Recorded
 from ..data.sweeps import combine
 from ..data.versions import versions
 from ..model.samples import Samples
@@ -22,7 +23,7 @@ ENERGY_RESIDUAL = 1e-2
 # A front of the textbook scheme that takes each of these last blocks in equally many steps runs at a fraction of dx/dt;
 # with fewer steps than this that is off by up to 1 per cent.
 LAST_BLOCKS, FEW_STEPS = 30, 50
-FIELDS = ("prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
+FIELDS = ("x", "prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 
 
 class Stopped(Exception):
@@ -38,30 +39,30 @@ def run_all(
     progress: Callable[[float, int], None] | None = None,
 ) -> xr.Dataset:
     """Run scenes by a solver, long ones on fine lattices first; the rest is as `run_sweep` has it."""
-    results: dict[int, xr.Dataset] = {}
+    results: dict[int, Recorded] = {}
     order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
     stopped = Event()
 
-    def run(i: int) -> tuple[int, xr.Dataset]:
+    def run(i: int) -> tuple[int, Recorded]:
         def check(done: float) -> None:
             if stopped.is_set():
                 raise Stopped
             if progress is not None and len(scenes) == 1:
                 progress(done, 1)
 
-        return i, dataset_of(scenes[i], samples[i], solve(scenes[i], samples[i], check))
+        return i, recorded(scenes[i], samples[i], solve(scenes[i], samples[i], check))
 
     # What exact solutions take is Python's, one at a time, and stops at once in the main thread alone.
     alone = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
     with ThreadPoolExecutor(max_workers=threads) as pool:
 
-        def finished() -> Iterator[tuple[int, xr.Dataset]]:
+        def finished() -> Iterator[tuple[int, Recorded]]:
             futures = [pool.submit(run, i) for i in order]
             yield from (future.result() for future in as_completed(futures))
 
         try:
-            for i, data in map(run, order) if alone else finished():
-                results[i] = data
+            for i, result in map(run, order) if alone else finished():
+                results[i] = result
                 if progress is not None:
                     progress(len(results), len(scenes))
         except BaseException:
@@ -73,20 +74,16 @@ def run_all(
 
 def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Dataset:
     """The Dataset of one scene by the localised scheme."""
-    return dataset_of(scene, samples, run_scene(scene, samples))
+    return recorded(scene, samples, run_scene(scene, samples)).dataset()
 
 
-def dataset_of(scene: Scene, samples: Samples | None, run: LatticeRun) -> xr.Dataset:
-    """The Dataset of a run, without the meaning of its variables."""
-    data: dict = {name: ("x", getattr(run, name)) for name in FIELDS}
-    coordinates = {"x": ("x", run.x)}
+def recorded(scene: Scene, samples: Samples | None, run: LatticeRun) -> Recorded:
+    """A run with its scene, and flags for what its numbers are not."""
+    arrays = {name: getattr(run, name) for name in FIELDS}
     if samples is not None:
-        axes = ("sample_time", "sample_position")
-        coordinates |= {axes[0]: (axes[0], samples.times), axes[1]: (axes[1], samples.positions)}
-        data |= {"sample_slip": (axes, run.sample_slip), "sample_velocity": (axes, run.sample_velocity)}
-    dataset = xr.Dataset(data, coords=coordinates)
-    dataset.attrs = scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()}
-    return dataset
+        arrays |= {"sample_time": samples.times, "sample_position": samples.positions}
+        arrays |= {name: getattr(run, name) for name in ("sample_slip", "sample_velocity")}
+    return Recorded(arrays, scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()})
 
 
 def judge(scene: Scene, run: LatticeRun) -> dict:

@@ -13,7 +13,7 @@ from ..solver.fixed_step import run_by_scheme
 from ..solver.lattice import UnstableRun
 from ..solver.run import LatticeRun
 from .continuum import solve_scene
-from .runs import ENERGY_RESIDUAL, dataset_of, run_all
+from .runs import ENERGY_RESIDUAL, recorded, run_all
 
 
 class UnresolvedRun(RuntimeError):
@@ -51,7 +51,7 @@ def simulate(
         samples.check_within(scene.duration)
     if isinstance(progress, bool):
         progress = bar() if progress else None
-    data = described(dataset_of(scene, samples, _run(scene, samples, progress)))
+    data = described(recorded(scene, samples, _run(scene, samples, progress)).dataset())
     numbers = data.attrs
     if strict and numbers["run_flags"]:
         raise UnresolvedRun(
