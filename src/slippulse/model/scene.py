@@ -10,7 +10,7 @@ from typing import Any, Self
 
 from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
 from .prestress import Prestress, prestress_from
-from .stability import largest_step
+from .stability import MARGIN, largest_step
 
 BOUNDARIES = ("displacement", "stress")
 RELEASES = ("total", "elastic")
@@ -109,7 +109,9 @@ class Scene:
             raise ValueError(
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
-        stiffness, bound = float(self.gamma) * float(self.dx) ** 2, self.largest_stable_step
+        stiffness = float(self.gamma) * float(self.dx) ** 2
+        # As far as whoever chose the step has looked.
+        bound = self._stable_step(self.max_step / MARGIN if isinstance(self.max_step, float) else math.inf)
         at = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
@@ -145,8 +147,11 @@ class Scene:
     @property
     def largest_stable_step(self) -> float:
         """Largest stable time step in units of dx."""
-        drag = self.rate_strengthening * self.dx
-        return largest_step(self.scheme, self.order, self.damping_ratio, self.gamma * self.dx**2, drag)
+        return self._stable_step(math.inf)
+
+    def _stable_step(self, enough: float) -> float:
+        stiffness, drag = self.gamma * self.dx**2, self.rate_strengthening * self.dx
+        return largest_step(self.scheme, self.order, self.damping_ratio, stiffness, drag, enough)
 
     def attributes(self) -> dict:
         """Every parameter as plain numbers and text, for attributes of a data file; inverse of `from_attributes`."""

@@ -16,14 +16,24 @@ MARGIN = 0.9
 ROUNDS, PARTS = 4, 32
 
 
-def largest_step(
-    scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
+def safe_step(
+    wanted: float, scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
 ) -> float:
+    """A wanted step, or the fraction MARGIN of the bound where that is less; the rest is as `largest_step` has it."""
+    bound = largest_step(scheme, order, damping_ratio, gamma_dx2, alpha_dx, enough=wanted / MARGIN)
+    return min(wanted, MARGIN * bound)
+
+
+def largest_step(
+    scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0,
+    enough: float = math.inf,
+) -> float:  # fmt: skip
     """Largest stable time step in units of dx: "continuum" takes none.
 
     order : of the Taylor step, used by "localised" alone
     damping_ratio, gamma_dx2 : beta/dx and gamma dx^2 (0 under a stress boundary), >= 0
     alpha_dx : alpha dx, the rate strengthening of friction; below 0 as 0, since slip that grows by itself may grow
+    enough : of a larger bound some number from this up to it is returned, in less than half the time
 
     A mode of the lattice has stiffness s + gamma dx^2 and damping rate b s + alpha dx, s in [0, 4], in units of dx.
     "fixed_step" (symplectic Euler): dt <= sqrt(dt_c^2 + c^2) - c with dt_c = 2/sqrt(4 + gamma dx^2) and
@@ -40,12 +50,14 @@ def largest_step(
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
     if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2) and math.isfinite(drag)):
         return 0.0
-    return _taylor_bound(order, *(float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)))
+    return _taylor_bound(
+        order, *(float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)), enough
+    )
 
 
 @lru_cache(maxsize=4096)
 @np.errstate(over="ignore", invalid="ignore")
-def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
+def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float, enough: float) -> float:
     modes = np.linspace(0.0, 4.0, 101)
     stiffness, damping = modes + gamma_dx2, damping_ratio * modes + drag
     # Time derivatives of slip of each mode, each a combination of slip and velocity at the start.
@@ -65,8 +77,8 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
         found = np.flatnonzero(unstable(steps[start : start + PARTS]))
         if found.size:
             break
-    else:
-        return float(steps[-1])
+        if not (reached := float(steps[start + PARTS - 1])) < min(enough, steps[-1]):
+            return reached
     first = start + int(found[0])
     lower, upper = steps[first - 1] if first else 0.0, steps[first]
     for _ in range(ROUNDS):
