@@ -5,7 +5,7 @@ import math
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import groupby, pairwise
 from numbers import Real
 from typing import Any
@@ -143,6 +143,11 @@ def prestress_balance_position(prestress: Prestress) -> float:
     are too large to compute with. Source: equation (11) of the paper, section III C.
     """
     check_kind("prestress", prestress, Prestress)
+    return _balance_position(prestress)
+
+
+@lru_cache(maxsize=1024)
+def _balance_position(prestress: Prestress) -> float:
     # Beyond here the profile is its side levels to rounding.
     reaches = [(centre, 40.0 * width) for centre, _, width in prestress.bumps]
     reaches += [(position, prestress.width) for position, _ in prestress.steps]
