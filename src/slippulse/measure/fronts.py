@@ -1,5 +1,7 @@
 """Where the fronts and the trailing edges are, and how fast."""
 
+import math
+
 import numpy as np
 
 from ..data.points import AnyRun
@@ -58,11 +60,12 @@ def front_speed(run: AnyRun, window: float, side: str = "right") -> tuple[float,
 
 def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     """Slope, intercept and standard error of the slope of a straight line by least squares; NaN if all x are equal."""
-    centred = x - x.mean()
-    scatter = float(np.sum(centred**2))
+    mean_x, mean_y = x.sum() / x.size, y.sum() / y.size
+    centred = x - mean_x
+    scatter = float((centred**2).sum())
     if scatter == 0.0:
         return np.nan, np.nan, np.nan
-    slope = float(np.sum(centred * (y - y.mean())) / scatter)
-    intercept = float(y.mean() - slope * x.mean())
+    slope = float((centred * (y - mean_y)).sum() / scatter)
+    intercept = float(mean_y - slope * mean_x)
     rest = y - intercept - slope * x
-    return slope, intercept, float(np.sqrt(np.sum(rest**2) / max(len(x) - 2, 1) / scatter))
+    return slope, intercept, math.sqrt(float((rest**2).sum()) / max(x.size - 2, 1) / scatter)

@@ -27,8 +27,8 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     speed, _, _ = front_speed(run, window)
     release, distance = path(run)
     front = float(distance[-1] + speed * (end - release[-1])) if distance.size else NAN
-    right = np.asarray(run["x"]) >= 0.0
-    r, velocity, slip = (np.asarray(run[name])[right] for name in ("x", "slip_velocity", "slip"))
+    start = np.searchsorted(run["x"], 0.0)
+    r, velocity, slip = (np.asarray(run[name])[start:] for name in ("x", "slip_velocity", "slip"))
     peak, at = parabola_peak(r, velocity)
 
     stick, stuck = path(run, edge="stick_time")
@@ -59,8 +59,8 @@ def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
 def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
     """Slip, slip_velocity and slip_acceleration right of the nucleation point, over xi = distance - front."""
     names = ("x", "slip", "slip_velocity", "slip_acceleration")
-    right = np.asarray(run["x"]) >= 0.0
-    fields = {name: np.asarray(run[name])[right] for name in names}
+    start = np.searchsorted(run["x"], 0.0)
+    fields = {name: np.asarray(run[name])[start:] for name in names}
     return {"xi": fields.pop("x") - pulse.front} | fields
 
 

@@ -150,11 +150,12 @@ def died_out(run: LatticeRun) -> bool:
     """Whether a front stands still on a side where the pre-stress ahead of it would drive it on for ever."""
     released = np.isfinite(run.release_time)
     sliding = released & ~np.isfinite(run.stick_time)
-    for side in (-1.0, 1.0):
-        half = side * run.x >= 0.0
-        reach = side * run.x[half & released]
-        if reach.size and not np.any(half & sliding):
-            ahead = half & (side * run.x > reach.max())
-            if ahead.any() and run.prestress[ahead][np.argmin(side * run.x[ahead])] > 0.0:
+    # From x = 0 outwards.
+    right, left = slice(np.searchsorted(run.x, 0.0), None), slice(np.searchsorted(run.x, 0.0, side="right"))
+    for side, step in ((right, 1), (left, -1)):
+        reached = np.flatnonzero(released[side][::step])
+        if reached.size and not np.any(sliding[side]):
+            ahead = run.prestress[side][::step][reached[-1] + 1 :]
+            if ahead.size and ahead[0] > 0.0:
                 return True
     return False
