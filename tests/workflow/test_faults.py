@@ -87,7 +87,7 @@ def test_an_unreadable_table_is_named(tmp_path):
 
 # A file where a folder goes, or a folder where a file goes.
 PLACES = {
-    "results/data": "file", "results/logs": "file", ".snakemake": "file", "results/kernels.txt": "folder",
+    "results/data": "file", "results/logs": "file", ".snakemake": "file", "results/kernels/localised.txt": "folder",
     "results/measurements/arrest.csv": "folder", "results/records/data/arrest.nc.json": "folder",
 }  # fmt: skip
 REST = [pytest.param(place, marks=pytest.mark.slow) for place in PLACES]

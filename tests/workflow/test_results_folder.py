@@ -89,8 +89,8 @@ CONFIGURATION, UNKNOWN = "made by another configuration", "not known; no rule ma
 OLDER = "older than {}, which it is made from"
 # One of each kind of file, with what is done to it.
 FILES = {
-    "kernels.txt": "old", "data/barrier.nc": "edited", "data/mine/1-of-2.nc": "removed", "data/mine.nc": "emptied",
-    "measurements/arrest.csv": "in the future", "measurements/mine/2-of-2.csv": "old",
+    "kernels/localised.txt": "old", "data/barrier.nc": "edited", "data/mine/1-of-2.nc": "removed",
+    "data/mine.nc": "emptied", "measurements/arrest.csv": "in the future", "measurements/mine/2-of-2.csv": "old",
     "predictions/arrest.csv": "with other line ends", "uncertainties/one.csv": "removed",
     "uncertainties/coarser/one.csv": "edited", "studies/extremes.csv": "grown", f"{FIGURE}.png": "edited",
     f"{FIGURE}.csv": "removed", "figures/fig02_phase_diagram.pdf": "a dead link", "figures/sweep_mine.csv": "old",
@@ -136,7 +136,7 @@ NOTHING_LOST = {
     "rm -r .snakemake": {}, "rm -r results/logs": {}, "cp overlay/index.html results/index.html": {},
     # Times without order.
     "find results | sed 'n;d' | xargs touch -d @0; find results | sed '1d;n;d' | xargs touch -d '3 hours'": {},
-    """echo '{"results/kernels.txt": [1]}' > results/records/.digests""": {},
+    """echo '{"results/kernels/localised.txt": [1]}' > results/records/.digests""": {},
     # What a kill leaves.
     "echo half > results/data/.one-12345678.nc": {},
     "mv results/scenes/one.png elsewhere; ln -s ../../elsewhere results/scenes/one.png": {},
@@ -232,12 +232,12 @@ def test_a_draft_is_verified_as_a_draft(folder):
 
 def test_a_run_is_not_begun_beside_another(folder):
     held = take(folder / ".snakemake/run.lock")
-    (folder / "results/kernels.txt").write_text("mine")
+    (folder / "results/kernels/localised.txt").write_text("mine")
     result = snakemake(folder, "--", "everything", overlay="overlay.yaml")
     assert result.returncode == 1 and "Another run is at work in this folder" in result.stderr
-    assert "Traceback" not in result.stderr and (folder / "results/kernels.txt").exists()
+    assert "Traceback" not in result.stderr and (folder / "results/kernels/localised.txt").exists()
     held.close()
     # What a killed run has left of Snakemake's own lock is in nobody's way.
     (folder / ".snakemake/locks").mkdir(exist_ok=True)
-    (folder / ".snakemake/locks/0.input.lock").write_text(json.dumps(["results/kernels.txt"]))
+    (folder / ".snakemake/locks/0.input.lock").write_text(json.dumps(["results/kernels/localised.txt"]))
     assert "The last run was killed" in run(folder, "everything")

@@ -27,11 +27,10 @@ LOOKING = (
 )
 LOOKS = "verify" in CALLED.targets or any(getattr(CALLED, option) for option in LOOKING.split())
 JOBS = Jobs()
-if workflow.is_main_process:
-    if "SLIPPULSE_LEASH" in os.environ:
-        end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
-    if not LOOKS:
-        JOBS.begin()
+if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
+    end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
+if workflow.is_main_process and not LOOKS:
+    JOBS.begin()
 
 # What each figure and study is made from, as its module says: names by kind of file, keys of the configuration.
 NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
@@ -84,8 +83,10 @@ FILES = {
     "figures": expand("results/figures/{{name}}.{ending}", ending=("pdf", "png", "csv")),
     "scenes": expand("results/scenes/{{name}}.{ending}", ending=("html", "png", "pdf", "csv")),
     "animations": "results/scenes/{name}.gif",
+    "kernels": "results/kernels/{name}.txt",
 }
-KERNELS = ["results/kernels.txt"]
+# The schemes that have kernels, and where: only what reaches them waits for them.
+KERNELS = {"localised": "src/slippulse/solver/taylor.py", "fixed_step": "src/slippulse/solver/fixed_step.py"}
 
 
 def made(kind, names):
@@ -120,10 +121,10 @@ def settings_of(job):
         "measure": {**config["measure"], "share": share},
         # What is predicted: as far as it is read; all of what an overlay adds.
         "topics": sorted({topic for read in READ for topic in read.get(name, ())} or TOPICS),
-        # By scheme: an edit of the theory re-runs exact solutions alone, which do not wait for the kernels of lattices.
+        # By scheme: an edit of the theory re-runs exact solutions alone, which wait for no kernels.
         "simulate": f"simulate{by_scheme}",
         "study_grid": f"study_grid{by_scheme}",
-        "kernels": [] if scheme == "continuum" else KERNELS,
+        "kernels": made("kernels", {scheme} & {*KERNELS}),
         "bound": bound,
         "cost": lambda: [f"{kind}.{name}.{cost}" for cost in [bound().exceeded(simulation.chunks)] if cost],
         "runs": run_count(whole),
@@ -141,7 +142,7 @@ KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
 JOINED = {below(*made(kind, [name])): (kind, name) for name in CHUNKS for kind in KINDS}
 # What each wildcard stands for; a simulation is what one job works at: one without chunks, or a chunk of another.
 ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
-VALUES = {"simulation": ONE_JOB, "joined": [*JOINED], "scene": [*SCENES]}
+VALUES = {"simulation": ONE_JOB, "joined": [*JOINED], "scene": [*SCENES], "scheme": [*KERNELS]}
 
 
 wildcard_constraints:

@@ -9,8 +9,7 @@ for study, needs in STUDY_NEEDS.items():
             f"study_of_{study}"
         input:
             **inputs_of(needs),
-            # Only a study that reaches the solver waits for them.
-            kernels=KERNELS * any("solver" in Path(path).parts for path in sources(f"studies.{study}")),
+            kernels=made("kernels", [of for of in KERNELS if KERNELS[of] in sources(f"studies.{study}")]),
         output:
             table=f"results/studies/{study}.csv",
         priority: 2

@@ -10,10 +10,10 @@ BOUNDS = {
 
 rule compile_kernels:
     output:
-        kernels="results/kernels.txt",
+        kernels="results/kernels/{scheme}.txt",
     priority: 3
     message:
-        "Compiling the lattice kernels (once)"
+        "Compiling the kernels of scheme {wildcards.scheme} (once)"
     run:
         run_step(rule, wildcards, input, output, params, threads)
 

@@ -1,4 +1,6 @@
-"""Compiles every kernel into the cache."""
+"""Compiles kernels into the cache."""
+
+from collections.abc import Iterable
 
 import numba
 
@@ -7,9 +9,9 @@ from ..model.scene import Scene
 from .fixed_step import LATTICES, run_by_scheme
 
 
-def compile_all() -> None:
-    """Compile the kernels of both schemes, unless they are in the cache or the compiler is switched off."""
+def compile_all(schemes: Iterable[str] = LATTICES) -> None:
+    """Compile the kernels of schemes, unless they are in the cache or the compiler is switched off."""
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
-    for scheme in LATTICES:
+    for scheme in schemes:
         run_by_scheme(Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme))
