@@ -37,7 +37,13 @@ def power_basis(count: int) -> np.ndarray:
     return np.array([np.pad(legendre.leg2poly(unit), (0, count - 1 - k)) for k, unit in units]).T
 
 
-TO_POWERS = power_basis(COUNT) @ TO_SERIES
+def with_slopes(powers: np.ndarray) -> np.ndarray:
+    """Coefficients [power, column] and those of the derivative, for `value_and_slope`."""
+    slopes = np.append(powers[1:] * np.arange(1.0, len(powers))[:, None], np.zeros_like(powers[:1]), axis=0)
+    return np.stack([powers, slopes], axis=1).reshape(-1, 8, powers.shape[1])
+
+
+TO_POWERS = with_slopes(power_basis(COUNT) @ TO_SERIES)
 # From powers of a parameter to weights at the nodes of the integral from the left end to it.
 PARTIAL = power_basis(COUNT + 1) @ INTEGRATE
 
@@ -99,7 +105,7 @@ class Curve:
 
     @cached_property
     def powers(self) -> np.ndarray:
-        """Coefficients by powers of the parameter, of MONOTONIC and the source one after another: [power, panel]."""
+        """Of FIELDS one after another, for `value_and_slope`."""
         return TO_POWERS @ np.concatenate([self.x, self.time, self.late, self.early, self.source]).T
 
     def row(self, name: str, panel: np.ndarray) -> np.ndarray:
@@ -113,7 +119,7 @@ class Curve:
 
     def at(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
         """One of FIELDS at a parameter on panels, or its derivative by the parameter (order 1)."""
-        return value_and_slope(self.powers[:, self.row(name, panel)], s)[order]
+        return value_and_slope(self.powers.take(self.row(name, panel), axis=-1), s)[order]
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Whether positions lie on the curve."""
@@ -179,7 +185,7 @@ class Curve:
         todo = np.flatnonzero(off > 1e-15 * np.abs(level))
         least = np.where(flat, 1.0, 1e-8 * np.abs(span) + 1e-300)
         s, level, rising, least = np.array([out, level, np.sign(span), least])[:, todo]
-        coefficients = self.powers[:, row[todo]]
+        coefficients = self.powers.take(row[todo], axis=-1)
         for _ in range(40):
             if not todo.size:
                 break
@@ -187,7 +193,7 @@ class Curve:
             new = clipped(s + rising * (level - value) / np.maximum(rising * slope, least), -1.0, 1.0)
             out[todo] = new
             going = np.abs(new - s) >= 1e-9
-            todo, coefficients = todo[going], coefficients[:, going]
+            todo, coefficients = todo[going], coefficients.compress(going, axis=-1)
             s, level, rising, least = np.array([new, level, rising, least])[:, going]
         return out
 
@@ -208,16 +214,20 @@ def _first_rise(
     return np.minimum(panel, count - 1), panel < count
 
 
-def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Polynomials with coefficients [power, point], and their derivatives, at a parameter each."""
-    value, slope = coefficients[-1] * s, coefficients[-1].copy()
-    value += coefficients[-2]
-    for coefficient in coefficients[-3::-1]:
-        slope *= s
-        slope += value
-        value *= s
-        value += coefficient
-    return value, slope
+def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Polynomials and their derivatives at a parameter each, for every fourth power at once.
+
+    The coefficients are [n, 2 m + derivative, point] of the power 4 n + m.
+    """
+    square = s * s
+    fourth = square * square
+    out = coefficients[-1] * fourth
+    for row in coefficients[-2:0:-1]:
+        out += row
+        out *= fourth
+    out += coefficients[0]
+    out = out[:4] + square * out[4:]
+    return out[:2] + s * out[2:]
 
 
 def clipped(values: np.ndarray, low: float, high: float) -> np.ndarray:

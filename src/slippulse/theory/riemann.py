@@ -58,7 +58,7 @@ class Rest:
 
     def at(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """p (order 0) or p' (1) at a parameter on panels."""
-        return value_and_slope(self._powers[order][:, panel], s)[0]
+        return value_and_slope(self._powers[order].take(panel, axis=-1), s)[0]
 
 
 def _integral(values: np.ndarray) -> np.ndarray:

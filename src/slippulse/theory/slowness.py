@@ -10,14 +10,14 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from .curve import clipped, power_basis, value_and_slope
+from .curve import clipped, power_basis, value_and_slope, with_slopes
 from .front_law import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
 COUNT = 14
 NODES = legendre.leggauss(COUNT)[0]
 TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
-TO_POWERS = power_basis(COUNT)
+TO_POWERS = with_slopes(np.pad(power_basis(COUNT), ((0, 2), (0, 0))))
 RESOLVED = 2e-12
 NARROWEST = 1e-7
 # How near 1, in 1 - tau, the panels lose as many digits as the first terms leave out.
@@ -38,7 +38,7 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     s = 2.0 * (tau - low) / (high - low) - 1.0
     # On the first panel tau grows like psi^2, and Newton starts from above.
     s = np.where(panel == 0, 2.0 * np.sqrt((tau - low) / (high - low)) - 1.0, s)
-    coefficients = powers[:, panel]
+    coefficients = powers.take(panel, axis=-1)
     for _ in range(12):
         value, slope = value_and_slope(coefficients, s)
         step = (value - tau) / np.maximum(slope, 1e-12)
@@ -50,12 +50,13 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     out = np.cos(edges[panel] + 0.5 * (edges[panel + 1] - edges[panel]) * (1.0 + s))
     # And that of the last may be one, where the first terms in 1/v are better.
     near = (1.0 - tau < NEARLY_ONE) & ((release == "total") | (damping_ratio < 1e3))
-    return np.where(near, slowest(np.where(near, tau, 1.0), damping_ratio, release), out).reshape(shape)
+    out[near] = slowest(tau[near], damping_ratio, release)
+    return out.reshape(shape)
 
 
 @lru_cache(maxsize=32)
 def _law(damping_ratio: float, release: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Panels in psi, the pre-stress at their edges, and its coefficients by powers on each: [power, panel]."""
+    """Panels in psi, the pre-stress at their edges, and it on each for `value_and_slope`."""
 
     def prestress(psi: np.ndarray) -> np.ndarray:
         excess = 2.0 * np.sin(0.5 * psi) ** 2 / np.cos(psi)
