@@ -1,5 +1,6 @@
 """Numerical uncertainty from a grid study: three spacings, the observed order, the extrapolated value."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -27,7 +28,7 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     Source: f(h) = f_0 + C h^p through the three values (Richardson).
     """
     finest, middle, coarsest = (float(value) for value in values)
-    if not np.isfinite([finest, middle, coarsest]).all():
+    if not all(map(math.isfinite, (finest, middle, coarsest))):
         return GridStudy(finest, finest, np.nan, np.nan)
     spread = max(finest, middle, coarsest) - min(finest, middle, coarsest)
     first, second = middle - finest, coarsest - finest
@@ -63,10 +64,10 @@ def grid_tables(
     keys : columns that name a point rather than measure it
     """
     finest = tables[0]
-    rows = []
-    studied = {name: np.column_stack([table[name] for table in tables]) for name in quantities(finest, keys)}
-    for index, point in enumerate(finest[list(keys)].to_dict("records")):
-        for name, values in studied.items():
-            numbers = grid_study(values[index].tolist(), factors)._asdict()
-            rows.append({"point": index} | point | {"quantity": name} | numbers)
-    return pd.DataFrame(rows)
+    names = quantities(finest, keys)
+    # One row a point and quantity, one column a spacing.
+    values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
+    numbers = pd.DataFrame([grid_study(of_three, factors) for of_three in values])
+    points = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
+    points = points.loc[points.index.repeat(len(names))].reset_index(drop=True)
+    return points.assign(quantity=names * len(finest)).join(numbers)
