@@ -14,7 +14,7 @@ from typing import Any
 from ..model.checks import check_choice, check_kind, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
-from ..model.stability import safe_step
+from ..model.stability import MARGIN, largest_step
 from ..theory.front_law import front_speed
 from ..theory.pulse import pulse_behind_front
 from .expand import promise_of, runs
@@ -80,7 +80,7 @@ def settings_for(
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
     spacings = _spacings(FRACTION * accuracy, prestress, gamma, damping_ratio, release, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    step = safe_step(STEP, "localised", ORDER, damping_ratio, gamma * dx**2)
+    step = min(STEP, MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step, "order": ORDER}
     # Refuses what is left to refuse.
     Scene(boundary=boundary, prestress=prestress, gamma=gamma, release=release, duration=1.0, **settings)

@@ -11,7 +11,7 @@ from ..data.chunks import runs_of
 from ..model.prestress import Prestress, prestress_balance_position
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..model.stability import safe_step
+from ..model.stability import MARGIN, largest_step
 
 
 class Run(NamedTuple):
@@ -38,9 +38,10 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
     for place, run in enumerate(runs(simulation)):
         dx = _spacing(simulation, run, place)
         beta = run.damping if "beta" in simulation else run.damping * dx
-        # The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less.
         of = (simulation["scheme"], order, beta / dx, run.gamma * dx**2, run.alpha * dx)
-        step = simulation["max_step"] if "max_step" in simulation else safe_step(accuracy["max_step"], *of)
+        bound = largest_step(*of, enough=accuracy["max_step"] / MARGIN)
+        # The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less.
+        step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
         if "promise" in accuracy:
             step = min(step, accuracy["max_step"])
         if "fixed" in simulation["spacing"]:

@@ -110,7 +110,6 @@ class Scene:
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
         stiffness = float(self.gamma) * float(self.dx) ** 2
-        # As far as whoever chose the step has looked.
         bound = self._stable_step(self.max_step / MARGIN if isinstance(self.max_step, float) else math.inf)
         at = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):

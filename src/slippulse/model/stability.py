@@ -16,14 +16,6 @@ MARGIN = 0.9
 ROUNDS, PARTS = 4, 32
 
 
-def safe_step(
-    wanted: float, scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0
-) -> float:
-    """A wanted step, or the fraction MARGIN of the bound where that is less; the rest is as `largest_step` has it."""
-    bound = largest_step(scheme, order, damping_ratio, gamma_dx2, alpha_dx, enough=wanted / MARGIN)
-    return min(wanted, MARGIN * bound)
-
-
 def largest_step(
     scheme: str, order: int, damping_ratio: float, gamma_dx2: float, alpha_dx: float = 0.0,
     enough: float = math.inf,
@@ -50,9 +42,8 @@ def largest_step(
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
     if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2) and math.isfinite(drag)):
         return 0.0
-    return _taylor_bound(
-        order, *(float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)), enough
-    )
+    rounded = [float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)]
+    return _taylor_bound(order, *rounded, enough)
 
 
 @lru_cache(maxsize=4096)

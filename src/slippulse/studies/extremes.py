@@ -13,7 +13,7 @@ from ..measure.fronts import path
 from ..measure.table import measure_run
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..model.stability import safe_step
+from ..model.stability import MARGIN, largest_step
 from ..predict.measured import pulse_state
 from ..simulation.runs import simulate_on_lattice
 from ..solver.lattice import UnstableRun
@@ -174,7 +174,7 @@ def scene(
 ) -> Scene:  # fmt: skip
     """A scene under the displacement boundary, or under the stress boundary when gamma is 0."""
     profile = Prestress(level, level if right is None else right, width, peak, bumps=bumps)
-    step = safe_step(0.5, "localised", 4, ratio, gamma * dx**2)
+    step = min(0.5, MARGIN * largest_step("localised", 4, ratio, gamma * dx**2))
     boundary = "displacement" if gamma > 0.0 else "stress"
     return Scene(boundary, profile, duration, dx, gamma, ratio * dx, **{"max_step": step} | more)
 
