@@ -50,14 +50,12 @@ def runs_in(sweep: xr.Dataset, indices: Iterable[int] | None = None) -> Iterator
     numbers = {name: values for name, dimensions, values in found if dimensions == ("point",)}
     blocks = {name: values for name, dimensions, values in found if dimensions == ("block",)}
     samples = {name: values for name, _, values in found if name in DIMENSIONS}
-    parts = [slice(0)] * sweep.sizes["point"]
-    if "row_size" in numbers:
-        size = numbers.pop("row_size")
-        if "x" not in blocks or np.any(size < 0) or np.sum(size) != blocks["x"].size:
-            allowed = "numbers of blocks whose sum is the length of x"
-            raise ValueError(f"row_size: {short_repr(size.tolist())}; allowed: {allowed}")
-        ends = np.cumsum(size)
-        parts = [*map(slice, ends - size, ends)]
+    size = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    if np.any(size < 0) or np.sum(size) != blocks.get("x", size[:0]).size:
+        allowed = "numbers of blocks whose sum is the length of x"
+        raise ValueError(f"row_size: {short_repr(size.tolist())}; allowed: {allowed}")
+    ends = np.cumsum(size)
+    parts = [*map(slice, ends - size, ends)]
     versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
     for index in range(len(parts)) if indices is None else indices:
         arrays = {name: values[parts[index]] for name, values in blocks.items()}

@@ -1,7 +1,5 @@
 """Where the fronts and the trailing edges are, and how fast."""
 
-import math
-
 import numpy as np
 
 from ..data.points import AnyRun
@@ -13,14 +11,11 @@ def path(run: AnyRun, side: str = "right", edge: str = "release_time") -> tuple[
     In order of distance, as x increases; blocks without the event are left out.
     """
     x, time = np.asarray(run["x"]), np.asarray(run[edge])
-    if side == "right":
-        side_of = slice(np.searchsorted(x, 0.0), None)
-        distance, time = x[side_of], time[side_of]
-    else:
-        side_of = slice(np.searchsorted(x, 0.0, side="right"))
-        distance, time = -x[side_of][::-1], time[side_of][::-1]
+    if side == "left":
+        x, time = -x[::-1], time[::-1]
     reached = np.isfinite(time)
-    return time[reached], distance[reached]
+    reached[: np.searchsorted(x, 0.0)] = False
+    return time[reached], x[reached]
 
 
 def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
@@ -68,4 +63,4 @@ def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
     slope = float((centred * (y - mean_y)).sum() / scatter)
     intercept = float(mean_y - slope * mean_x)
     rest = y - intercept - slope * x
-    return slope, intercept, math.sqrt(float((rest**2).sum()) / max(x.size - 2, 1) / scatter)
+    return slope, intercept, float(np.sqrt((rest**2).sum() / max(x.size - 2, 1) / scatter))

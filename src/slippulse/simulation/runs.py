@@ -23,7 +23,6 @@ ENERGY_RESIDUAL = 1e-2
 # A front of the textbook scheme that takes each of these last blocks in equally many steps runs at a fraction of dx/dt;
 # with fewer steps than this that is off by up to 1 per cent.
 LAST_BLOCKS, FEW_STEPS = 30, 50
-FIELDS = ("x", "prestress", "release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 
 
 class Stopped(Exception):
@@ -79,10 +78,9 @@ def simulate_on_lattice(scene: Scene, samples: Samples | None = None) -> xr.Data
 
 def recorded(scene: Scene, samples: Samples | None, run: LatticeRun) -> Recorded:
     """A run with its scene, and flags for what its numbers are not."""
-    arrays = {name: getattr(run, name) for name in FIELDS}
+    arrays = {name: values for name, values in vars(run).items() if isinstance(values, np.ndarray)}
     if samples is not None:
         arrays |= {"sample_time": samples.times, "sample_position": samples.positions}
-        arrays |= {name: getattr(run, name) for name in ("sample_slip", "sample_velocity")}
     return Recorded(arrays, scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()})
 
 
@@ -150,12 +148,12 @@ def died_out(run: LatticeRun) -> bool:
     """Whether a front stands still on a side where the pre-stress ahead of it would drive it on for ever."""
     released = np.isfinite(run.release_time)
     sliding = released & ~np.isfinite(run.stick_time)
-    # From x = 0 outwards.
-    right, left = slice(np.searchsorted(run.x, 0.0), None), slice(np.searchsorted(run.x, 0.0, side="right"))
-    for side, step in ((right, 1), (left, -1)):
-        reached = np.flatnonzero(released[side][::step])
-        if reached.size and not np.any(sliding[side]):
-            ahead = run.prestress[side][::step][reached[-1] + 1 :]
+    for side in (1, -1):
+        # From x = 0 outwards.
+        start = np.searchsorted(side * run.x[::side], 0.0)
+        reached = np.flatnonzero(released[::side][start:])
+        if reached.size and not np.any(sliding[::side][start:]):
+            ahead = run.prestress[::side][start + reached[-1] + 1 :]
             if ahead.size and ahead[0] > 0.0:
                 return True
     return False
