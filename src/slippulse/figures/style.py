@@ -140,6 +140,9 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> Non
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
     """Write PNG and PDF with no clock in them. The layout is found once, with the formulas of the PNG."""
+    # A spine ends where its axes do, which are asked themselves.
+    for axes in figure.axes:
+        axes.spines[:].set_in_layout(False)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     # With an engine the PDF would be drawn twice.
