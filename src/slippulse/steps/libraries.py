@@ -12,12 +12,15 @@ import matplotlib.pyplot  # noqa: F401
 import numba
 import scipy.optimize
 import scipy.special  # noqa: F401
+from matplotlib.mathtext import MathTextParser
 
 # The first function compiled loads most of numba.
 numba.njit(lambda: 0)()
-# Three jobs in four. One that is at fault is loaded again by its jobs, which say so.
+# Most jobs. One that is at fault is loaded again by its jobs, which say so.
 with suppress(Exception):
-    from . import measure, predict, simulate, study_grid  # noqa: F401
+    from . import draw_figure, measure, predict, simulate, study_grid  # noqa: F401
+# The first formula sets up the grammar of all, and finds its fonts.
+MathTextParser("path").parse("$x$")
 # Memory that nobody touches is shared with every job; of what a job makes little is a cycle.
 gc.freeze()
 gc.set_threshold(50_000)
