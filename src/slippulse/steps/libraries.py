@@ -18,7 +18,10 @@ from matplotlib.mathtext import MathTextParser
 numba.njit(lambda: 0)()
 # Most jobs. One that is at fault is loaded again by its jobs, which say so.
 with suppress(Exception):
+    from ..data.versions import versions
     from . import draw_figure, measure, predict, simulate, study_grid  # noqa: F401
+
+    versions()
 # The first formula sets up the grammar of all, and finds its fonts.
 MathTextParser("path").parse("$x$")
 # Memory that nobody touches is shared with every job; of what a job makes little is a cycle.
