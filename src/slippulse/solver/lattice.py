@@ -106,19 +106,21 @@ class Lattice:
         old, inside, n = self.motion, slice(left, left + self.size), self.segments.count.n
         size = left + self.size + right
         self.motion = arrays.make_motion(old.w.shape[0], size)
-        self.motion.w[:, inside], self.motion.strain[inside] = old.w, old.strain
-        self.motion.tau[:] = self.scene.prestress((np.arange(size) + self.first_block) * self.scene.dx)
+        self.motion.w[:, inside], self.motion.strain[inside], self.motion.tau[inside] = old.w, old.strain, old.tau
+        for first, last in ((0, left), (inside.stop, size)):
+            x = (np.arange(first, last) + self.first_block) * self.scene.dx
+            self.motion.tau[first:last] = self.scene.prestress(x)
         if self.mirror:
             self.motion.tau[0] = self.motion.tau[2]
-        self.largest_force = float(np.max(np.abs(self.motion.tau)))
-        self.sliding = np.pad(self.sliding, (left, right))
+        self.largest_force = float(np.abs(self.motion.tau).max())
+        sliding, release, stick = np.zeros(size, dtype=bool), *np.full((2, size), np.nan)
+        sliding[inside], release[inside] = self.sliding, self.history.release_time
+        stick[inside] = self.history.stick_time
+        self.sliding, self.history = sliding, arrays.History(release, stick, self.tally)
         grown = arrays.make_segments(size)
         grown.starts[:n], grown.ends[:n] = self.segments.starts[:n] + left, self.segments.ends[:n] + left
         grown.count.n = n
         self.segments = grown
-        known = self.history.release_time, self.history.stick_time
-        release, stick = (np.pad(times, (left, right), constant_values=np.nan) for times in known)
-        self.history = arrays.History(release, stick, self.tally)
         self.tally.first_stuck_block += left
         self.recorder = self.recorder._replace(blocks=self._sampled_blocks(size))
         self.scratch = arrays.make_scratch(size, self.scene.order)
