@@ -106,7 +106,11 @@ class Lattice:
         old, inside, n = self.motion, slice(left, left + self.size), self.segments.count.n
         size = left + self.size + right
         self.motion = arrays.make_motion(old.w.shape[0], size)
-        self.motion.w[:, inside], self.motion.strain[inside], self.motion.tau[inside] = old.w, old.strain, old.tau
+        self.motion.w[:, inside], self.motion.strain[inside], self.motion.tau[inside] = (
+            old.w,
+            old.strain,
+            old.tau,
+        )
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
