@@ -129,31 +129,27 @@ class _Chunk:
         cut = (WEIGHTS - partial_weights(s)) * curve.source[k]
         rest = np.tile((curve.source[k + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
         weight = np.concatenate([cut, rest], axis=1)
-        before = early[:, None] - curve.early[k:].ravel()
-        behind = stiffness * before
-        late = curve.late[k:].ravel()
-        own = early[:, None] - early
+        # At the nodes of the curve, and at those of the chunk.
+        behind = early[:, None] - np.append(curve.early[k:], early)
+        late, most = curve.late[k:].ravel(), max(1.0, abs(self.x0))
         x = self.guess(k, start, curve.at("x", same, s))
         change = np.inf
         for _ in range(60):
             eta = early + 2.0 * x
-            z = behind * (eta[:, None] - late)
-            kernel = kernel_of(stiffness, z, z[:, :COUNT])
-            lasting = weight * decay(alpha, before + (eta[:, None] - late)) if alpha else weight
-            ahead = np.add.reduce(lasting * kernel(0), axis=1)
-            growth = 2.0 * np.add.reduce(lasting * kernel(1) * behind, axis=1) - 0.5 * alpha * ahead
+            ahead = eta[:, None] - np.append(late, eta)
+            z = stiffness * behind * ahead
+            kernel = kernel_of(stiffness, z, z)
+            lasting = decay(alpha, behind + ahead) if alpha else 1.0
+            value = lasting * kernel(0)
+            slope = 2.0 * stiffness * lasting * kernel(1) * behind - 0.5 * alpha * value
+            whole, change_of_whole = value[:, late.size :], slope[:, late.size :]
             # From x0 to each position: with a kernel of 1 exactly, and the rest of the kernel at the nodes.
             half = 0.5 * (x - self.x0)
-            area = half * (self.tau(self.x0 + half[:, None] * (1.0 + NODES)) @ WEIGHTS)
-            tau = self.tau(x)
-            apart = eta[:, None] - eta
-            z = stiffness * own * apart
-            kernel = kernel_of(stiffness, z, z)
-            whole, change_of_whole = kernel(0), 2.0 * stiffness * own * kernel(1)
-            if alpha:
-                lasting = decay(alpha, own + apart)
-                whole = whole * lasting
-                change_of_whole = change_of_whole * lasting - 0.5 * alpha * whole
+            tau = self.tau(self.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
+            area, tau = half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
+            entered, growth = (
+                np.add.reduce(weight * each[:, : late.size], axis=1) for each in (value, slope)
+            )
             fall = tau + growth
             if not np.all(fall < 0.0):
                 return None
@@ -162,20 +158,22 @@ class _Chunk:
             turn = CUMULATIVE * change_of_whole * (tau * paces)
             matrix = (beyond * tau) @ SLOPE + beyond * (SLOPE @ tau) - turn
             matrix += np.diag(fall + turn.sum(axis=1))
-            step = np.linalg.solve(matrix, ahead + area + beyond @ (tau * paces))
+            step = np.linalg.solve(matrix, entered + area + beyond @ (tau * paces))
             # Never behind the last position.
             new = np.maximum(x - step, self.x0 + 0.1 * (x - self.x0))
             previous, change = change, float(np.max(np.abs(new - x)))
             x = new
-            if not np.isfinite(change) or change > 1e3:
+            tail = np.max(np.abs(TO_SERIES[-2:] @ x))
+            # Steps that are smaller do not resolve it either.
+            if (
+                not np.isfinite(change)
+                or change > 1e3
+                or (tail > 2.0 * RESOLVED * most and change < 0.1 * tail)
+            ):
                 return None
-            if change < 1e-13 * max(1.0, abs(self.x0)) or (change < 1e-11 and change >= 0.5 * previous):
-                break
-        else:
-            return None
-        if np.max(np.abs((TO_SERIES @ x)[-2:])) > RESOLVED * max(1.0, abs(self.x0)):
-            return None
-        return x, SLOPE @ x
+            if change < 1e-13 * most or (change < 1e-11 and change >= 0.5 * previous):
+                return (x, SLOPE @ x) if tail <= RESOLVED * most else None
+        return None
 
     def guess(self, k: int, start: float, entries: np.ndarray) -> np.ndarray:
         """Positions that go on as they would without leaf springs."""
