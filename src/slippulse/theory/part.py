@@ -171,7 +171,8 @@ class Part:
             return self.scan(x)
         k = np.clip(np.searchsorted(edge.x, x, side="right") - 1, 0, edge.x.size - 2)
         pace, rate = edge.pace, edge.by_xi + edge.by_eta
-        near = (x >= edge.x[0]) & (x <= edge.x[-1]) & np.isfinite(edge.stick[k] + edge.stick[k + 1])
+        on, stuck = (x >= edge.x[0]) & (x <= edge.x[-1]), np.isfinite(edge.stick)
+        near = on & stuck[k] & stuck[k + 1]
         near &= np.maximum(np.abs(pace[k]), np.abs(pace[k + 1])) < 1.0
         # From the stick times on both sides and their slopes, by Hermite's cubic and Newton's steps.
         span = edge.x[k + 1] - edge.x[k]
@@ -192,7 +193,10 @@ class Part:
             done = good & (np.abs(step) < STEP)
             out[todo[done]] = time[todo[done]]
             todo = todo[good & ~done]
-        far = np.flatnonzero(~np.isfinite(out))
+        # What slides at the end, as its neighbours do, has not stuck.
+        slides = np.flatnonzero(on & ~stuck[k] & ~stuck[k + 1])
+        slides = slides[self.velocity(x[slides], np.full(slides.size, self.until)) > 0.0]
+        far = np.setdiff1d(np.flatnonzero(~np.isfinite(out)), slides)
         out[far] = self.scan(x[far])
         return np.where(out <= self.until, out, np.nan)
 
