@@ -179,7 +179,7 @@ class Curve:
         at_left, at_right = self.ends[:, row]
         span = at_right - at_left
         flat = np.abs(span) < 1e-13
-        out = clipped(2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0, -1.0, 1.0)
+        out = (2.0 * (level - at_left) / np.where(flat, 1.0, span) - 1.0).clip(-1.0, 1.0)
         # Where a slow front has stopped its end is a double root, to which Newton's steps halve the way, or go astray.
         off = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         todo = np.flatnonzero(off > 1e-15 * np.abs(level))
@@ -190,7 +190,7 @@ class Curve:
             if not todo.size:
                 break
             value, slope = value_and_slope(coefficients, s)
-            new = clipped(s + rising * (level - value) / np.maximum(rising * slope, least), -1.0, 1.0)
+            new = (s + rising * (level - value) / np.maximum(rising * slope, least)).clip(-1.0, 1.0)
             out[todo] = new
             going = np.abs(new - s) >= 1e-9
             todo, coefficients = todo[going], coefficients.compress(going, axis=-1)
@@ -228,8 +228,3 @@ def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     out += coefficients[0]
     out = out[:4] + square * out[4:]
     return out[:2] + s * out[2:]
-
-
-def clipped(values: np.ndarray, low: float, high: float) -> np.ndarray:
-    """As `np.clip`, which is slow on short arrays."""
-    return np.minimum(np.maximum(values, low), high)

@@ -192,28 +192,19 @@ class FrontLaw:
         parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
         edges = np.unique(np.concatenate(parts))
         edges[0], edges[-1] = start, end
-        todo, done, size = np.stack([edges[:-1], edges[1:]], axis=1), [], 0
-        while todo.size:
-            left, right = todo.T
-            half = 0.5 * (right - left)[:, None]
-            x = left[:, None] + half * (1.0 + NODES)
+        while True:
+            half = 0.5 * np.diff(edges)[:, None]
+            x = edges[:-1, None] + half * (1.0 + NODES)
             tau = analytic(self.prestress, level, x)
             rate = self.slowness(tau)
             tails = np.abs(np.stack([rate, tau]) @ TO_SERIES[-2:].T).max(axis=(0, 2))
-            split = (tails * 2.0 * half[:, 0] > RESOLVED) & (2.0 * half[:, 0] > NARROWEST)
-            done.append(np.concatenate([todo, x, tau, rate], axis=1)[~split])
-            size += split.size
-            if split.any() and size > MOST_PANELS:
+            size = 2.0 * half[:, 0]
+            split = (tails * size > RESOLVED) & (size > NARROWEST)
+            if not split.any():
+                break
+            if edges.size > MOST_PANELS:
                 raise self._too_many(level, start, end)
-            middle = 0.5 * (left + right)
-            todo = np.concatenate(
-                [np.stack([left, middle], axis=1)[split], np.stack([middle, right], axis=1)[split]]
-            )
-        panels = np.concatenate(done)
-        panels = panels[np.argsort(panels[:, 0])]
-        edges = np.append(panels[:, 0], end)
-        half = 0.5 * np.diff(edges)[:, None]
-        x, tau, rate = np.split(panels[:, 2:], 3, axis=1)
+            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
         starts = time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (rate @ WEIGHTS))])
         within = (half * rate) @ CUMULATIVE.T
         columns = x, starts[:-1, None] + within, tau * half, pairwise(edges), pairwise(starts)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import SAME, Curve, clipped
+from .curve import SAME, Curve
 from .riemann import Past, Rest
 
 # Times looked at together, and their distance: a fraction of 1/sqrt(gamma), or of the duration without leaf springs.
@@ -290,8 +290,8 @@ class Part:
             narrower = 1.0 if values[n] > best * (1.0 + 1e-10) else 0.4
             if values[n] > best:
                 best, centre, at = float(values[n]), x[row[n]], fraction[column[n]]
-            x = clipped(centre + reach_x * around, edge.x[0], edge.x[-1])
-            fraction = clipped(at + reach_fraction * around, 0.0, 1.0)
+            x = (centre + reach_x * around).clip(edge.x[0], edge.x[-1])
+            fraction = (at + reach_fraction * around).clip(0.0, 1.0)
             reach_x, reach_fraction = narrower * reach_x, narrower * reach_fraction
         return best
 

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from .curve import clipped, power_basis, value_and_slope, with_slopes
+from .curve import power_basis, value_and_slope, with_slopes
 from .front_law import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
@@ -42,7 +42,7 @@ def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     for _ in range(12):
         value, slope = value_and_slope(coefficients, s)
         step = (value - tau) / np.maximum(slope, 1e-12)
-        s = clipped(s - step, -1.0, 1.0)
+        s = (s - step).clip(-1.0, 1.0)
         if np.max(np.abs(step), initial=0.0) < 1e-11:
             break
     # The end of the first panel is a double root.
