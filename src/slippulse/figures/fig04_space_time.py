@@ -82,7 +82,7 @@ def plot(table: pd.DataFrame) -> Figure:
         when = "first stick"
         if "fraction" in roles:
             when = rf"left front at {100.0 * roles['fraction']['value'].iloc[0]:g} % of its way to $x_-$"
-        side.suptitle(f"{description(roles)}\n" + rf"$T_\mathrm{{trans}}$: {when}", fontsize=9.0)
+        side.suptitle(f"{description(roles)}\n" + rf"$T_\text{{trans}}$: {when}", fontsize=9.0)
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             handles[label], panels[label] = handle, panels.get(label, "") + letter
     for label, colour in (("not yet slipped", "white"), ("stuck again", STUCK)):
@@ -130,7 +130,7 @@ def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
-        look: Look = {"x": time + 0.025 * end, "s": rf"${name}_\mathrm{{trans}} = {value:#.3g}$"}
+        look: Look = {"x": time + 0.025 * end, "s": rf"${name}_\text{{trans}} = {value:#.3g}$"}
         if name == "T" and time > 0.45 * end:
             # On a long arrow, away from what is marked beyond it.
             look |= {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}

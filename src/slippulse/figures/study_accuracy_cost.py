@@ -11,7 +11,7 @@ from .style import BLACK, BLUE, GREY, HALO, ORDER_COLOURS, PAGE, Look, entry, ne
 NEEDS = {"studies": ["accuracy_cost"]}
 
 PANELS = {
-    "front_speed": "front speed", "peak_velocity": "peak slip velocity", "transition_time": r"$T_\mathrm{trans}$"
+    "front_speed": "front speed", "peak_velocity": "peak slip velocity", "transition_time": r"$T_\text{trans}$"
 }  # fmt: skip
 MARKERS = dict(zip(ORDER_COLOURS, "osD^P>", strict=True))
 # Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.

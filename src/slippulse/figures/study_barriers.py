@@ -100,7 +100,7 @@ def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNo
         depth = group["measured"] * np.sqrt(gamma)
         look |= {"c": depth, "edgecolors": _ink(depth), "marker": marker}
         axes.scatter(group["tau0"], -group["barrier"], **look)
-    axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\mathrm{b}$")
+    axes.set(yscale="log", xlabel=r"pre-stress before $\tau_0$", ylabel=r"barrier $-\tau_\text{b}$")
     few_ticks(axes.yaxis, (0.1, 0.2, 0.5, 1.0))
     return image
 
@@ -122,7 +122,7 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
         axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
-    axes.set(xscale="log", yscale="log", ylim=(0.33, 14.0), xlabel=r"barrier $-\tau_\mathrm{b}$")
+    axes.set(xscale="log", yscale="log", ylim=(0.33, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
     axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))

@@ -51,7 +51,7 @@ def plot(table: pd.DataFrame) -> Figure:
         look: Look = {"color": colour_scale("gamma").to_rgba(gamma), "label": rf"$\gamma = {gamma:g}$"}
         last.plot(line["left"], line["over_paper"], **look)
     last.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
-    last.set_ylabel(r"exact $T_\mathrm{trans}\,\gamma^{1/2}/\pi$")
+    last.set_ylabel(r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$")
     last.set_title(r"$\Gamma = 1$, $b = 0$, exact", loc="right")
     last.legend(loc="upper right", ncols=2)
     return figure

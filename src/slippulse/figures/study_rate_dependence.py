@@ -26,11 +26,11 @@ def plot(table: pd.DataFrame) -> Figure:
     _draw_plane(plane, parts["lattice"], parts["limit"])
     shown = parts["lattice"]["level"] == parts["map"]["level"].iloc[0]
     runs, steady = parts["lattice"][shown], parts["steady"]
-    sizes = {"pulse_width": (BLACK, "o", r"width $W_\mathrm{p}$"), "pulse_slip": (GREY, "s", r"slip $u$")}
+    sizes = {"pulse_width": (BLACK, "o", r"width $W_\text{p}$"), "pulse_slip": (GREY, "s", r"slip $u$")}
     for column, (colour, marker, label) in sizes.items():
         pulses.plot(steady["over"], steady[column], color=colour, label=label)
         pulses.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
-    pulses.set(xlabel=RATE, ylabel=r"width $W_\mathrm{p}$, slip $u$", yscale="log")
+    pulses.set(xlabel=RATE, ylabel=r"width $W_\text{p}$, slip $u$", yscale="log")
     level = runs["level"].iloc[0]
     pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice", loc="right")
     pulses.legend(loc="upper center")

@@ -67,7 +67,7 @@ def plot(table: pd.DataFrame) -> Figure:
     rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
     rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center", fontsize=8.0)
     rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING, 3.0))
-    rest_axes.set(xlabel=r"distance / $W_\mathrm{p}/(v - 1)$", ylabel="|slip / new steady slip $-$ 1|")
+    rest_axes.set(xlabel=r"distance / $W_\text{p}/(v - 1)$", ylabel="|slip / new steady slip $-$ 1|")
     rest_axes.set_title(r"$\Gamma = 1$", loc="right")
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure

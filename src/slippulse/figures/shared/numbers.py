@@ -20,7 +20,7 @@ LABELS = {
 
 def with_symbols(label: str) -> str:
     """A label of LABELS with its symbol as a formula."""
-    symbols = {"|x_minus|": "|x_-|", "T_trans": r"T_\mathrm{trans}", "L_trans": r"L_\mathrm{trans}"}
+    symbols = {"|x_minus|": "|x_-|", "T_trans": r"T_\text{trans}", "L_trans": r"L_\text{trans}"}
     return f"${symbols[label]}$" if label in symbols else label
 
 

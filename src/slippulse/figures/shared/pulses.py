@@ -18,14 +18,14 @@ from .scaling import chosen
 
 # Their labels in the units of each boundary.
 FIELDS = {
-    "slip": {"displacement": r"slip $u\,\gamma/2\tau_0$", "stress": r"slip $u/u_\mathrm{max}$"},
+    "slip": {"displacement": r"slip $u\,\gamma/2\tau_0$", "stress": r"slip $u/u_\text{max}$"},
     "slip_velocity": {
         "displacement": r"slip velocity $\dot u\,\sqrt{\gamma}$",
-        "stress": r"slip velocity $\dot u/\dot u_\mathrm{max}$",
+        "stress": r"slip velocity $\dot u/\dot u_\text{max}$",
     },
     "slip_acceleration": {
         "displacement": r"acceleration $\ddot u\,\tau_0$",
-        "stress": r"acceleration $\ddot u\,W/\dot u_\mathrm{max}$",
+        "stress": r"acceleration $\ddot u\,W/\dot u_\text{max}$",
     },
 }
 DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from ..style import BLACK, GREY, PAGE, Look, colour_scale, entry, few_ticks, legend_below, new_panels
 
-SYMBOLS = {"length": r"L_\mathrm{trans}", "time": r"T_\mathrm{trans}"}
+SYMBOLS = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
 # What varies beside the level: column, and its symbol.
 OTHER = {"displacement": ("gamma", r"$\gamma$"), "stress": ("width", r"$W$")}
 LEVEL = {"displacement": ("tau_0", r"$\tau_0$"), "stress": ("tau_l", r"$\tau_{0,l}$")}
