@@ -213,13 +213,9 @@ def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
 
 
 def root(
-    tau: np.ndarray,
-    ratio: np.ndarray,
-    springs: float,
-    release: str,
-    slowest: float = SLOWEST,
+    tau: np.ndarray, ratio: np.ndarray, springs: float, release: str, slowest: float = SLOWEST,
     drag: float = 0.0,
-) -> np.ndarray:
+) -> np.ndarray:  # fmt: skip
     """x = ln(v - 1) from the slowest on where the pre-stress is tau, by secants in ln(tau/(1 - tau)).
 
     Monotone and nearly linear in x, hence bracketed: a secant that leaves the bracket is replaced by its middle.
