@@ -24,11 +24,8 @@ DERIVE = legendre.legder(TO_SERIES)
 CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
 SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
-
-
-# What has a value and a slope on each panel, and what of it is monotonic.
-MONOTONIC = ("x", "time", "late", "early")
-FIELDS = (*MONOTONIC, "source")
+# What has a value and a slope on each panel, all but the source monotonic.
+FIELDS = ("x", "time", "late", "early", "source")
 
 
 def power_basis(count: int) -> np.ndarray:
@@ -99,7 +96,7 @@ class Curve:
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
         self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
         self.late, self.early = self.time + self.x, self.time - self.x
-        # Values at both ends of each panel, of MONOTONIC one after another: [end, panel].
+        # Values at both ends of each panel, of FIELDS but the source one after another: [end, panel].
         self.ends = np.concatenate([x_ends, time_ends, time_ends + x_ends, time_ends - x_ends]).T
         self.restarts_left, self.restarts_right = tuple(restarts_left), tuple(restarts_right)
 
@@ -155,7 +152,7 @@ class Curve:
         What leaves a region across a slow front sees no source beyond.
         """
         out = []
-        _, _, late, early = np.split(self.ends, len(MONOTONIC), axis=1)
+        _, _, late, early = np.split(self.ends, 4, axis=1)
         right, left = late[1], early[0, ::-1]
         for exits, edges, restarts in (
             (right, self.edges, self.restarts_left),

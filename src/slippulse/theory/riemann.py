@@ -233,13 +233,12 @@ def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.nd
     scaled = z - 0.5 * (lower + upper)
     scaled *= 2.0 / (upper - lower)
     scaled.clip(-1.0, 1.0, out=scaled)
-    first, *coefficients = _polynomial(lower, upper, order)
-    out = first * scaled
-    for coefficient in coefficients[:-1]:
+    coefficients = _polynomial(lower, upper, order)
+    out = coefficients[0] * scaled
+    for coefficient in coefficients[1:-1]:
         out += coefficient
         out *= scaled
-    out += coefficients[-1]
-    return out
+    return out + coefficients[-1]
 
 
 @lru_cache(maxsize=256)

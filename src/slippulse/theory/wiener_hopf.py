@@ -115,9 +115,7 @@ def log_factor(
 
 def log(z: np.ndarray) -> np.ndarray:
     """The logarithm, in a fifth of the time of `np.log` of complex numbers."""
-    out = np.empty_like(z)
-    out.real, out.imag = np.log(np.abs(z)), np.arctan2(z.imag, z.real)
-    return out
+    return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
 def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> tuple[np.ndarray, np.ndarray]:
