@@ -1,7 +1,7 @@
 """Finished runs as Datasets, with flags for what their numbers are not: one, or many in threads put together."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from threading import Event
 
@@ -42,28 +42,24 @@ def run_all(
     order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
     stopped = Event()
 
-    def run(i: int) -> tuple[int, Recorded]:
+    def run(i: int) -> None:
         def check(done: float) -> None:
             if stopped.is_set():
                 raise Stopped
             if progress is not None and len(scenes) == 1:
                 progress(done, 1)
 
-        return i, recorded(scenes[i], samples[i], solve(scenes[i], samples[i], check))
+        results[i] = recorded(scenes[i], samples[i], solve(scenes[i], samples[i], check))
 
     # What exact solutions take is Python's, one at a time, and stops at once in the main thread alone.
     alone = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
     with ThreadPoolExecutor(max_workers=threads) as pool:
-
-        def finished() -> Iterator[tuple[int, Recorded]]:
-            futures = [pool.submit(run, i) for i in order]
-            yield from (future.result() for future in as_completed(futures))
-
         try:
-            for i, result in map(run, order) if alone else finished():
-                results[i] = result
+            futures = [] if alone else [pool.submit(run, i) for i in order]
+            finished = map(run, order) if alone else (future.result() for future in as_completed(futures))
+            for done, _ in enumerate(finished, start=1):
                 if progress is not None:
-                    progress(len(results), len(scenes))
+                    progress(done, len(scenes))
         except BaseException:
             stopped.set()
             pool.shutdown(cancel_futures=True)

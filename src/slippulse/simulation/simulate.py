@@ -90,9 +90,8 @@ def run_sweep(
     listed = isinstance(scenes, Sequence) and scenes and all(isinstance(scene, Scene) for scene in scenes)
     _require(bool(listed), "scenes", scenes, "a list of Scenes, at least one")
     schemes = sorted({scene.scheme for scene in scenes})
-    _require(
-        schemes[0] != "continuum" or len(schemes) == 1, "scheme", schemes, "'continuum' for all, or for none"
-    )
+    alike = schemes[0] != "continuum" or len(schemes) == 1
+    _require(alike, "scheme", schemes, "'continuum' for all, or for none")
     samples = [None] * len(scenes) if samples is None else samples
     listed = isinstance(samples, Sequence) and all(isinstance(each, Samples | None) for each in samples)
     one_each = listed and len(samples) == len(scenes)
@@ -111,9 +110,8 @@ def run_sweep(
             )
         _require(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
     check_number("threads", threads, whole=True, at_least=1, at_most=1024)
-    _require(
-        progress is None or callable(progress), "progress", progress, "a function of (done, all), or None"
-    )
+    known = progress is None or callable(progress)
+    _require(known, "progress", progress, "a function of (done, all), or None")
     return described(run_all(_run, scenes, samples, record, int(threads), progress))
 
 
