@@ -11,6 +11,7 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.run import run_scene
 from ..theory.front_law import steady_pulse
+from ..theory.pulse import SteadyPulse
 from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 
 NEEDS = {}  # type: dict[str, list[str]]
@@ -45,11 +46,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS
     ):
         found = depths(tau0, barrier, GAMMAS[(row + column) % len(GAMMAS)], ratio)
+        pulse = steady_pulse(tau0, found["gamma"], damping_ratio=ratio)
         for dx in SPACINGS:
-            depth = entered(found, dx, (0.0, barrier))
+            depth = entered(found, pulse, dx, (0.0, barrier))
             rows.append(found | {"part": "depth", "dx": dx, "measured": depth})
         for length in LENGTHS:
-            depth = entered(found, PASSING_SPACING, (0.0, barrier), (length * found["exact"], tau0))
+            depth = entered(found, pulse, PASSING_SPACING, (0.0, barrier), (length * found["exact"], tau0))
             past = {"length": length, "measured": float(depth > (length + 0.5) * found["exact"])}
             passing.append(found | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING} | past)
     return pd.DataFrame(rows + passing)
@@ -62,14 +64,13 @@ def depths(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str,
     return point | {"exact": barrier_depth(tau0, barrier, gamma, ratio), "paper": estimate}
 
 
-def entered(scene: dict[str, Any], dx: float, *steps: tuple[float, float]) -> float:
-    """How far the right front of a lattice enters a barrier, to half a block beyond the last released one.
+def entered(scene: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[float, float]) -> float:
+    """How far the right front of a pulse enters a barrier on a lattice, to half a block beyond the last released one.
 
     The pre-stress has ``steps``, counted from where the barrier begins, on both sides: between two blocks, and farther
     out than the pulse remembers its nucleation.
     """
     tau0, gamma, ratio = (scene[name] for name in ("tau0", "gamma", "damping_ratio"))
-    pulse = steady_pulse(tau0, gamma, damping_ratio=ratio)
     start = (math.floor((TAIL * WIDTH + pulse.width / (pulse.speed - 1.0)) / dx) + 0.5) * dx
     both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
     profile = Prestress(tau0, tau0, WIDTH, steps=both)

@@ -105,8 +105,8 @@ def _arrest(alpha: float, dx: float) -> pd.DataFrame:
     of = ("stress", ARRESTING, float(TIMES[-1]), dx, 0.0, RATIO * dx)
     samples = Samples(TIMES, np.arange(-8.0, TIMES[-1] + 10.0, 0.25))
     run = simulate_on_lattice(Scene(*of, rate_strengthening=alpha, max_step=0.4), samples)
-    left = run.where(run["x"] < 0.0, drop=True)
-    front = np.array([left["x"].values[left["release_time"].values <= time].min() for time in TIMES])
+    x, release = run["x"].values, run["release_time"].values
+    front = np.array([x[release <= time].min() for time in TIMES])
     found = {"time": TIMES, "largest_velocity": run["sample_velocity"].values.max(axis=1)}
     found["gap"] = front - prestress_balance_position(ARRESTING)
     return pd.DataFrame(found | {"rate_strengthening": alpha, "dx": dx})
