@@ -13,9 +13,9 @@ def path(run: AnyRun, side: str = "right", edge: str = "release_time") -> tuple[
     x, time = np.asarray(run["x"]), np.asarray(run[edge])
     if side == "left":
         x, time = -x[::-1], time[::-1]
-    reached = np.isfinite(time)
-    reached[: np.searchsorted(x, 0.0)] = False
-    return time[reached], x[reached]
+    start = np.searchsorted(x, 0.0)
+    reached = np.isfinite(time[start:])
+    return time[start:][reached], x[start:][reached]
 
 
 def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:

@@ -106,9 +106,11 @@ def sliding_at_once(run: AnyRun) -> float:
     start = 0.5 * run.attrs["end_time"]
     chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
     release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]
-    # The number rises at a release only, so that it is largest right after one, or at the start. NaN is sorted last.
+    # The number rises at a release only, so that it is largest right after one, or at the start.
     times = np.append(start, release[release > start])
-    released, stuck = (np.searchsorted(np.sort(when), times, side="right") for when in (release, stick))
+    # Nearly in order, which a stable sort takes less time for. NaN is sorted last.
+    in_order = [np.sort(when, kind="stable") for when in (release, stick)]
+    released, stuck = (np.searchsorted(when, times, side="right") for when in in_order)
     return float(np.max(released - stuck))
 
 
