@@ -63,6 +63,7 @@ SCENES = {
     "gamma: nan; allowed: 0 or left out": {"boundary": "stress", "gamma": math.nan},
     "gamma: 0.0; allowed: a finite number and > 0": {"gamma": 0.0},
     "gamma: 1e+200": {"gamma": 1e200},
+    "gamma: 1e+250": {"gamma": 1e250, "beta": 1e200},
     "beta: -0.001; allowed: a finite number and >= 0": {"beta": -1e-3},
     "dx: 0.0; allowed: a finite number and > 0": {"dx": 0.0},
     "prestress.width: 1.0; allowed: >= dx = 1.5": {"dx": 1.5},

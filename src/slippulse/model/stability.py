@@ -63,6 +63,8 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
 
     # From small steps on, a few at a time: the first that is unstable is what counts.
     smallest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
+    if smallest == 0.0:
+        return 0.0
     steps = np.geomspace(smallest, 8.0, 160)
     for start in range(0, steps.size, PARTS):
         found = np.flatnonzero(unstable(steps[start : start + PARTS]))
