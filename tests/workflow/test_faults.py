@@ -10,6 +10,7 @@ import sys
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -21,6 +22,7 @@ from slippulse.data.files import UnreadableFile
 from slippulse.data.records import Origin
 from slippulse.data.store import save_dataset
 from slippulse.data.tables import load_table, save_table
+from slippulse.steps import job
 from slippulse.steps.job import JobFailed, Jobs, logged
 
 SCENE = "results/measurements/one.csv"
@@ -83,6 +85,19 @@ def test_an_unreadable_table_is_named(tmp_path):
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
     with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run again"):
         load_table(path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="jobs are forked on Linux alone")
+def test_what_is_loaded_once_has_its_digests_from_before(monkeypatch):
+    """Else an edit in between would be in the records, and not in the results."""
+    begun = []
+    monkeypatch.setattr(job, "digest_of_files", begun.append)
+    monkeypatch.setattr(job, "Thread", lambda **_: SimpleNamespace(start=lambda: begun.append("loaded")))
+    Jobs().begin()
+    read, loaded = begun
+    assert loaded == "loaded" and {f"src/slippulse/steps/{step}.py" for step in ("simulate", "measure")} <= {
+        *read
+    }
 
 
 # A file where a folder goes, or a folder where a file goes.

@@ -23,6 +23,7 @@ from typing import Any
 
 from ..data.files import CONFIGURATION
 from ..data.records import Origin, write_record
+from .reach import digest_of_files, sources
 
 # Seconds between two lines of progress.
 BETWEEN = 2.0
@@ -68,6 +69,8 @@ class Jobs:
                 self._wait_for(self._processes.Process())
 
         if self._forks:
+            # Kept for the records: what is edited between this and the loading is then made anew by the next run.
+            digest_of_files(sources("steps.libraries"))
             Thread(target=load, daemon=True).start()
 
     def run(self, *job) -> None:

@@ -19,7 +19,7 @@ numba.njit(lambda: 0)()
 # Most jobs. One that is at fault is loaded again by its jobs, which say so.
 with suppress(Exception):
     from ..data.versions import versions
-    from . import draw_figure, draw_scene, measure, predict, simulate, study_grid  # noqa: F401
+    from . import draw_figure, draw_scene, job, measure, predict, simulate, study_grid  # noqa: F401
 
     versions()
 # The first formula sets up the grammar of all, and finds its fonts.
