@@ -58,7 +58,7 @@ OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 
 def run_step(rule, wildcards, input, output, params, threads):
-    """Run the step of a rule in a process of its own, on plain values, for which that need not load Snakemake."""
+    """Run the step of a rule in another process, on plain values, for which that need not load Snakemake."""
     plain = lambda named: {key: it if isinstance(it, str) else [*it] for key, it in named.items()}
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
     log = f"results/logs/{'/'.join([rule, *wildcards])}.log"

@@ -1,6 +1,6 @@
-"""Jobs of the workflow: a process each, with its log, its record, and one line on failure.
+"""Jobs of the workflow, each with its log, its record, and one line on failure.
 
-Each is forked from one that has loaded what most of them use.
+Processes that run them are forked from one that has loaded what most of them use; each runs one job after another.
 """
 
 import errno
@@ -15,7 +15,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
-from multiprocessing.connection import wait
+from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from threading import Lock, Thread
@@ -23,7 +23,6 @@ from typing import Any
 
 from ..data.files import CONFIGURATION
 from ..data.records import Origin, write_record
-from .reach import digest_of_files, sources
 
 # Seconds between two lines of progress.
 BETWEEN = 2.0
@@ -45,16 +44,16 @@ def end_with(descriptor: int) -> None:
 
 
 class Jobs:
-    """Runs jobs, each in a process of its own; threads may share it."""
+    """Runs jobs in processes that are kept from one to the next; threads may share it."""
 
     def __init__(self) -> None:
-        # Else each job would load the main program again, of which it needs nothing.
-        main = sys.modules["__main__"]
-        main.__spec__, main.__file__ = None, None
+        # Else each process would load the main program again, of which it needs nothing.
+        vars(sys.modules["__main__"]).update(__spec__=None, __file__=None)
         # Elsewhere libraries of the system do not all survive a fork.
-        self._forks = sys.platform == "linux"
-        self._processes: Any = multiprocessing.get_context("forkserver" if self._forks else "spawn")
-        self._processes.set_forkserver_preload(["slippulse.steps.libraries"])
+        kind = "forkserver" if sys.platform == "linux" else "spawn"
+        self._context: Any = multiprocessing.get_context(kind)
+        self._context.set_forkserver_preload(["slippulse.steps.libraries"])
+        self._idle: list[tuple[BaseProcess, Connection]] = []
         # A process that starts looks after those that have ended: not while another thread does.
         self._turn = Lock()
         # What is loaded by now stays to the end, when Python would look through it for 0.4 s.
@@ -64,46 +63,60 @@ class Jobs:
         """Load the libraries while Snakemake still plans."""
 
         def load() -> None:
-            # That the server has ended, the first job says.
-            with suppress(JobFailed):
-                self._wait_for(self._processes.Process())
+            # That it cannot be started, the first job says.
+            with suppress(JobFailed), self._turn:
+                self._idle.append(self._start())
 
-        if self._forks:
-            # Kept for the records: what is edited between this and the loading is then made anew by the next run.
-            digest_of_files(sources("steps.libraries"))
-            Thread(target=load, daemon=True).start()
+        Thread(target=load, daemon=True).start()
 
     def run(self, *job) -> None:
         """Run a job, given as `run_job` takes it. Raises JobFailed."""
-        self._wait_for(self._processes.Process(target=run_job, args=job))
-
-    def _wait_for(self, process: BaseProcess) -> None:
+        with self._turn:
+            process, jobs = self._idle.pop() if self._idle else self._start()
         try:
-            with self._turn:
-                process.start()
-            wait([process.sentinel])
+            jobs.send(job)
+            jobs.recv()
+        except (EOFError, OSError):
             with self._turn:
                 process.join()
+            raise JobFailed(f"exit code {process.exitcode}") from None
+        self._idle.append((process, jobs))
+
+    def _start(self) -> tuple[BaseProcess, Connection]:
+        jobs, theirs = self._context.Pipe()
+        process = self._context.Process(target=run_jobs, args=(theirs,), daemon=True)
+        try:
+            process.start()
         except (EOFError, OSError) as error:
             raise JobFailed("the process that starts the jobs has ended") from error
-        if process.exitcode:
-            raise JobFailed(f"exit code {process.exitcode}")
+        theirs.close()
+        return process, jobs
+
+
+def run_jobs(jobs: Connection) -> None:
+    """Run those that come through a pipe, until one fails or the other end is closed."""
+    with suppress(EOFError, OSError, KeyboardInterrupt):
+        while True:
+            run_job(*jobs.recv())
+            jobs.send(None)
 
 
 def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path) -> None:
-    """Run one step as all that a process does; files and outputs are paths, or lists of them, by name."""
-    began = time.monotonic()
+    """Run one step; files and outputs are paths, or lists of them, by name."""
+    began, processor = time.monotonic(), time.process_time()
+    # Else the record would have the most memory of all jobs before.
+    with suppress(OSError):
+        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log):
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name)})
-        seconds, used = time.monotonic() - began, resource.getrusage(resource.RUSAGE_SELF)
-        memory = used.ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
-        processor = round(used.ru_utime + used.ru_stime, 2)
-        times = {"seconds": round(seconds, 2), "processor_seconds": processor}
-        write_record(origin, times | {"memory_MB": round(memory)})
+        used = {"seconds": time.monotonic() - began, "processor_seconds": time.process_time() - processor}
+        bits = 20 if sys.platform == "darwin" else 10
+        memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> bits
+        write_record(origin, {key: round(value, 2) for key, value in used.items()} | {"memory_MB": memory})
     if not sys.stderr.isatty():
-        sys.stderr.write(f"  {name}: {seconds:.1f} s\n")
+        sys.stderr.write(f"  {name}: {used['seconds']:.1f} s\n")
 
 
 def progress_of(name: str) -> Callable[[float, int], None]:
