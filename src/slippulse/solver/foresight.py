@@ -16,7 +16,7 @@ LOOKS = 4
 ROUNDING = 1e-12
 
 
-@inner()
+@inner(inline=True)
 def polynomial(coefficients, degree, h):
     """Value at h of a polynomial, lowest power first."""
     value = coefficients[degree]
@@ -69,7 +69,7 @@ def turning_point(coefficients, slopes, degree, lower, upper):
     return upper
 
 
-@inner()
+@inner(inline=True)
 def highest_possible(coefficients, degree, h):
     """An upper bound of a polynomial between 0 and h."""
     value = 0.0
@@ -181,7 +181,7 @@ def due_releases(segments, forecast, latest, due):
     return count
 
 
-@inner()
+@inner(inline=True)
 def foresee_stick(coefficients, slopes, degree, after, now, h):
     """Time at which a velocity passes below 0 between ``now`` and h, where it is ``after``; inf where it does not."""
     before = polynomial(coefficients, degree, now)
@@ -201,7 +201,7 @@ def foresee_stick(coefficients, slopes, degree, after, now, h):
     return crossing(coefficients, degree, now, h) if before > 0.0 else now
 
 
-@inner()
+@inner(inline=True)
 def find_sticks(motion, forecast, first, last, suspects, now, h, top):
     """Add the sticks between ``now`` and h of the blocks first..last-1; at most ``suspects`` of them may stick.
 
