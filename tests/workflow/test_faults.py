@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import multiprocessing
 import os
 import resource
 import shutil
@@ -140,6 +141,21 @@ def test_a_job_that_fails_has_said_why(tmp_path, capfd):
     assert "Traceback" in (tmp_path / "logs/one.traceback").read_text()
     # The logger prints the log.
     assert (tmp_path / "logs/one.log").read_text() == ""
+
+
+def test_jobs_run_one_after_another_in_a_process_until_it_ends(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", frozenset())
+    job = (origin, "a job", {}, {"html": "results/scenes.html"}, {"scenes": {}}, "results/logs/one.log")
+    before = set(multiprocessing.active_children())
+    for _ in range(3):
+        jobs.run(*job)
+    (kept,) = set(multiprocessing.active_children()) - before
+    kept.kill()
+    with pytest.raises(JobFailed, match="exit code -9"):
+        jobs.run(*job)
+    jobs.run(*job)
+    assert Path("results/records/scenes.html.json").exists()
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root, to become somebody without rights")
