@@ -16,7 +16,7 @@ LOOKS = 4
 ROUNDING = 1e-12
 
 
-@inner(inline=True)
+@inner()
 def polynomial(coefficients, degree, h):
     """Value at h of a polynomial, lowest power first."""
     value = coefficients[degree]
@@ -69,7 +69,7 @@ def turning_point(coefficients, slopes, degree, lower, upper):
     return upper
 
 
-@inner(inline=True)
+@inner()
 def highest_possible(coefficients, degree, h):
     """An upper bound of a polynomial between 0 and h."""
     value = 0.0
@@ -181,7 +181,7 @@ def due_releases(segments, forecast, latest, due):
     return count
 
 
-@inner(inline=True)
+@inner()
 def foresee_stick(coefficients, slopes, degree, after, now, h):
     """Time at which a velocity passes below 0 between ``now`` and h, where it is ``after``; inf where it does not."""
     before = polynomial(coefficients, degree, now)
@@ -228,7 +228,7 @@ def find_sticks(motion, forecast, first, last, suspects, now, h, top):
     return True
 
 
-@inner()
+@inner(inline=True)
 def forget_sticks(forecast, first, last):
     """Drop the foreseen sticks of the blocks first..last-1."""
     block, time = forecast.stick_block, forecast.stick_time
