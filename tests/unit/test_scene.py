@@ -127,3 +127,15 @@ def test_the_integral_is_that_of_the_profile(name, ends):
     accuracy = {"points": inside, "epsabs": 1e-13, "epsrel": 1e-12, "limit": 400}
     expected, _ = quad(lambda x: float(profile(x)), *ends, **accuracy)
     assert profile.integral(*ends) == pytest.approx(expected, abs=tol.QUADRATURE)
+
+
+@pytest.mark.parametrize("width", [1e-200, 1.0, 1e300])
+def test_the_pre_stress_is_balanced_where_its_closed_form_says(width):
+    """Far enough behind the peak for the tail there to be below rounding: a level, and two halves of a Gaussian."""
+    found = sp.theory.prestress_balance_position(sp.Prestress(-0.1, 0.0, width))
+    assert found / width == pytest.approx(-21.0 * np.sqrt(0.5 * np.pi), rel=tol.ALGEBRA)
+
+
+def test_a_pre_stress_without_balance_is_refused():
+    with pytest.raises(ArithmeticError, match="no balance at x < 0"):
+        sp.theory.prestress_balance_position(sp.Prestress(-0.5, 0.0, bumps=((5.0, -3.0, 2.0),)))

@@ -81,9 +81,7 @@ class Event(NamedTuple):
 class Forecast(NamedTuple):
     """Events foreseen within the step."""
 
-    release: (
-        np.ndarray
-    )  # (N,), time of release of each stuck neighbour of a segment; inf: none, or a mirror image
+    release: np.ndarray  # (N,), time of each stuck neighbour of a segment; inf: none, or a mirror image
     stick_block: np.ndarray  # (N,), blocks that stick, the first ``sticks.n`` entries
     stick_time: np.ndarray  # (N,)
     sticks: np.record
