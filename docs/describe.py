@@ -13,7 +13,11 @@ import yaml
 
 from slippulse.configuration.read import json_schema, read_overlay, resolved, words
 
-README, SCHEMA, SHIPPED = "config/README.md", "workflow/schemas/config.schema.yaml", "config/config.yaml"
+README, SCHEMA, SHIPPED = (
+    "config/README.md",
+    "workflow/schemas/config.schema.yaml",
+    "config/config.yaml",
+)
 # A table stands between these two lines; the first names the model, and where its values stand in config/config.yaml.
 TABLE = re.compile(r"(<!-- keys: (\w+)(?: at (\w+))? -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 HEAD = "| key | meaning | allowed | default |\n|---|---|---|---|\n"
@@ -39,7 +43,9 @@ def rows(node: dict[str, Any], values: Mapping | None = None, prefix: str = "") 
         if name in node.get("required", ()):
             default = "required" if mapping or values is None else _short(values[name])
         else:
-            default = "none" if mapping or key.get("default") in (None, []) else _short(key["default"])
+            default = (
+                "none" if mapping or key.get("default") in (None, []) else _short(key["default"])
+            )
         cells = (f"`{prefix}{name}`", key["description"], words(key), default)
         yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
         if "properties" in inside and node is not json_schema():

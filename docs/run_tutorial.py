@@ -22,7 +22,11 @@ def run(folder: str | Path) -> dict:
         *body, last = ast.parse(cell.source).body
         shown = isinstance(last, ast.Expr)
         exec(
-            compile(ast.Module([*body, *([] if shown else [last])], []), f"tutorial, cell {number}", "exec"),
+            compile(
+                ast.Module([*body, *([] if shown else [last])], []),
+                f"tutorial, cell {number}",
+                "exec",
+            ),
             names,
         )
         value = (

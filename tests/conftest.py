@@ -25,7 +25,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 # Files first that run no kernel, while the kernels are compiled; then those that take longest, so that the workers end
 # together.
-WITHOUT_KERNELS = ("test_final_regime", "test_refused_commands", "test_refusals", "test_dependencies")
+WITHOUT_KERNELS = (
+    "test_final_regime",
+    "test_refused_commands",
+    "test_refusals",
+    "test_dependencies",
+)
 FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults")
 # Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
@@ -35,12 +40,16 @@ READY, LONGEST_WAIT = "ready", 300.0
 
 def compile_into(folder: Path) -> None:
     program = "from slippulse.solver.compilation import compile_all; compile_all()"
-    subprocess.run([sys.executable, "-c", program], env=os.environ | {SHARED: str(folder)}, check=True)
+    subprocess.run(
+        [sys.executable, "-c", program], env=os.environ | {SHARED: str(folder)}, check=True
+    )
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     """Compile the kernels once, while the workers collect their tests."""
-    if getattr(session.config.option, "numprocesses", None) and not hasattr(session.config, "workerinput"):
+    if getattr(session.config.option, "numprocesses", None) and not hasattr(
+        session.config, "workerinput"
+    ):
         folder = Path(tempfile.mkdtemp(prefix="slippulse-kernels-"))
         os.environ |= {SHARED: str(folder / "shared"), UNTOUCHED: str(folder / "untouched")}
         Thread(target=prepare, args=(folder,)).start()
@@ -79,7 +88,9 @@ def untouched_kernels(tmp_path_factory) -> Path:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """In the order of files above; within a file the order stays."""
-    items.sort(key=lambda item: FIRST.index(item.path.stem) if item.path.stem in FIRST else len(FIRST))
+    items.sort(
+        key=lambda item: FIRST.index(item.path.stem) if item.path.stem in FIRST else len(FIRST)
+    )
 
 
 @pytest.fixture(scope="session")
@@ -120,7 +131,9 @@ def study(project, shipped, shared):
             needs = declared(f"studies.{name}", "NEEDS")
             settings = selected(shipped, needs.get("settings", ()), {})
             if "sweeps" in needs:
-                settings["sweeps"] = {sweep: small_sweep(shipped, sweep) for sweep in needs["sweeps"]}
+                settings["sweeps"] = {
+                    sweep: small_sweep(shipped, sweep) for sweep in needs["sweeps"]
+                }
             module = import_module(f"slippulse.studies.{name}")
             lists = given({"lists": [project / listed for listed in needs.get("lists", [])]})[1]
             save_table(module.table(data or {}, (tables or {}) | lists, settings), path)

@@ -65,7 +65,9 @@ def start(folder: Path, targets: Sequence[str], by_make: bool = True) -> subproc
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
     """Every result but logs, times and notes; a hidden name is a file that its writer was killed over."""
-    paths = {path.relative_to(folder / results): path for path in sorted((folder / results).rglob("*"))}
+    paths = {
+        path.relative_to(folder / results): path for path in sorted((folder / results).rglob("*"))
+    }
     return {
         str(name): hashlib.sha256(path.read_bytes()).hexdigest()
         for name, path in paths.items()
@@ -82,7 +84,11 @@ def at_work(folder: Path) -> dict[int, bytes]:
         with suppress(OSError):
             arguments, here = (entry / "cmdline").read_bytes(), (entry / "cwd").resolve()
             named = os.fsencode(folder) in arguments + (entry / "environ").read_bytes()
-            if arguments and int(entry.name) != os.getpid() and (named or here.is_relative_to(folder)):
+            if (
+                arguments
+                and int(entry.name) != os.getpid()
+                and (named or here.is_relative_to(folder))
+            ):
                 found[int(entry.name)] = arguments
     return found
 
@@ -97,7 +103,9 @@ def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -
         others = {number: name for number, name in at_work(folder).items() if number != run.pid}
         # The first is the server, if there is another, which is a job.
         servers = sorted(number for number, name in others.items() if b"forkserver" in name)
-        able = {"a job": [*others], "the server of jobs": servers[: len(servers) > 1]}.get(way, [run.pid])
+        able = {"a job": [*others], "the server of jobs": servers[: len(servers) > 1]}.get(
+            way, [run.pid]
+        )
     kill = os.killpg if way in (*SIGNALS, "everything") else os.kill
     with suppress(ProcessLookupError):
         for victim in able and [chance.choice(able)]:
@@ -109,7 +117,10 @@ def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -
     # That the server is gone, the run has to see first.
     since = since if way in SIGNALS else time.monotonic()
     while left := at_work(folder):
-        assert time.monotonic() - since < (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE), (way, left)
+        assert time.monotonic() - since < (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE), (
+            way,
+            left,
+        )
         time.sleep(0.02)
     said = (folder / "said.txt").read_text(encoding="utf-8")
     assert "Traceback" not in said and ("Exception" not in said or way not in SIGNALS), said[-4000:]
@@ -121,7 +132,9 @@ def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARG
     chance, stopped, compared = random.Random(seed), Counter(), 0
     quiet, harmed = prepare(folder / "quiet"), prepare(folder / "harmed")
     began = time.monotonic()
-    assert start(quiet, targets).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(encoding="utf-8")
+    assert start(quiet, targets).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(
+        encoding="utf-8"
+    )
     duration = time.monotonic() - began
     expected = digests(quiet)
     assert len(expected) >= 3 * len(targets)

@@ -69,7 +69,9 @@ def imitate_steps(folder: Path) -> None:
     path.write_text(text + IMITATION, encoding="utf-8")
 
 
-def snakemake(folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how):
+def snakemake(
+    folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
+):
     """Run Snakemake in a folder, with that folder's library; returns the completed process."""
     overlays = [overlay] if isinstance(overlay, str | Path) else overlay
     options = ["--cores", str(cores), *(["--configfile", *overlays] if overlay else [])]

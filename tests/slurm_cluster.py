@@ -25,7 +25,12 @@ from pipeline_copy import SNAKEMAKE, copy_project
 
 PROJECT = Path(__file__).resolve().parents[1]
 # What is called, and the Debian package that holds it.
-PROGRAMS = {"munged": "munge", "slurmctld": "slurmctld", "slurmd": "slurmd", "sbatch": "slurm-client"}
+PROGRAMS = {
+    "munged": "munge",
+    "slurmctld": "slurmctld",
+    "slurmd": "slurmd",
+    "sbatch": "slurm-client",
+}
 # proctrack/linuxproc and task/none need no control groups, which containers often lack; select by cores and memory,
 # as clusters do, so that limits which do not fit are seen; finished jobs stay visible to squeue; a log of them.
 SLURM_CONF = """\
@@ -68,7 +73,9 @@ def install() -> None:
         unable("make slurm-test starts a Slurm cluster, for which it must be root")
     missing = sorted({package for program, package in PROGRAMS.items() if not find(program)})
     if missing and not shutil.which("apt-get"):
-        unable(f"make slurm-test needs {', '.join(missing)}, and there is no apt-get to install them")
+        unable(
+            f"make slurm-test needs {', '.join(missing)}, and there is no apt-get to install them"
+        )
     quiet = os.environ | {"DEBIAN_FRONTEND": "noninteractive"}
     for command in ("update", "install -y --no-install-recommends") if missing else ():
         words = ["apt-get", "-qq", *command.split(), *(missing if "install" in command else ())]
@@ -95,7 +102,10 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
     megabytes = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20 * 9 // 10
     machine = {"cores": len(os.sched_getaffinity(0)), "megabytes": megabytes}
     # Two ports of the loopback that nobody listens at.
-    with socket.create_server(("127.0.0.1", 0)) as one, socket.create_server(("127.0.0.1", 0)) as other:
+    with (
+        socket.create_server(("127.0.0.1", 0)) as one,
+        socket.create_server(("127.0.0.1", 0)) as other,
+    ):
         machine["ports"] = [each.getsockname()[1] for each in (one, other)]
     conf, key, srun = folder / "slurm.conf", folder / "munged.key-file", folder / "bin/srun"
     conf.write_text(SLURM_CONF.format(folder=folder, **machine), encoding="ascii")
@@ -109,7 +119,11 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
     environment = os.environ | {"SLURM_CONF": str(conf), "PATH": path}
 
     def daemon(name: str, *arguments: str) -> None:
-        options = {"stdin": subprocess.DEVNULL, "stderr": subprocess.STDOUT, "start_new_session": True}
+        options = {
+            "stdin": subprocess.DEVNULL,
+            "stderr": subprocess.STDOUT,
+            "start_new_session": True,
+        }
         with open(folder / f"{name}.out", "wb") as said:
             subprocess.Popen([find(name), *arguments], env=environment, stdout=said, **options)
 
@@ -119,7 +133,11 @@ def cluster(folder: Path) -> Iterator[dict[str, str]]:
         wait_for((folder / "munged.socket").exists, "munged", folder)
         daemon("slurmctld", "-D")
         daemon("slurmd", "-D", "-N", "localhost")
-        wait_for(lambda: asked(environment, "sinfo", "--noheader", "--format=%T") == "idle", "slurmd", folder)
+        wait_for(
+            lambda: asked(environment, "sinfo", "--noheader", "--format=%T") == "idle",
+            "slurmd",
+            folder,
+        )
         yield environment
     finally:
         asked(environment, "scancel", "--user=root")
@@ -150,8 +168,12 @@ def wait_for(ready, name: str, folder: Path, seconds: float = 30.0) -> None:
     until = time.monotonic() + seconds
     while not ready():
         if time.monotonic() > until:
-            said = [path.read_text(errors="replace") for path in sorted(folder.glob(f"{name}.[ol]*"))]
-            unable(f"{name} did not start within {seconds:g} s: {last_line(''.join(reversed(said)))}")
+            said = [
+                path.read_text(errors="replace") for path in sorted(folder.glob(f"{name}.[ol]*"))
+            ]
+            unable(
+                f"{name} did not start within {seconds:g} s: {last_line(''.join(reversed(said)))}"
+            )
         time.sleep(0.1)
 
 
@@ -159,16 +181,24 @@ def draft(folder: Path, environment: dict[str, str], *options: str) -> dict[str,
     """The draft replication in a folder; returns the digest of each file of data."""
     began = time.monotonic()
     command = [*SNAKEMAKE, *options, "--config", "preset=draft", "--", "all"]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, (done.stdout + done.stderr)[-6000:]
-    found = {name: digest for name, digest in digests(folder).items() if name.endswith((".nc", ".csv"))}
-    print(f"{folder.name}: {len(found)} files of data in {time.monotonic() - began:.0f} s", flush=True)
+    found = {
+        name: digest for name, digest in digests(folder).items() if name.endswith((".nc", ".csv"))
+    }
+    print(
+        f"{folder.name}: {len(found)} files of data in {time.monotonic() - began:.0f} s", flush=True
+    )
     return found
 
 
 def compare(folder: Path) -> str:
     """Run both ways, assert that no job failed and no file differs; returns the closing line."""
-    local, remote = (copy_project(PROJECT, folder / name, link=True) for name in ("local", "remote"))
+    local, remote = (
+        copy_project(PROJECT, folder / name, link=True) for name in ("local", "remote")
+    )
     daemons = folder / "cluster"
     daemons.mkdir()
     # munge wants its socket to be within everybody's reach; the key is not.

@@ -26,7 +26,9 @@ def arguments(what: str) -> list[str]:
     """Of Snakemake, for a target of the Makefile."""
     given = {name: value for name, value in os.environ.items() if value}
     targets = [meant(target) for target in given.get("TARGET", "").split()]
-    values = [f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if name in given]
+    values = [
+        f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if name in given
+    ]
     options = ["--config", *values] if values else []
     options += ["--configfile", given["OVERLAY"]] if "OVERLAY" in given else []
     if what == "verify":
@@ -87,7 +89,10 @@ def main(what: str) -> int:
         signal.signal(number, stop)
     command = [sys.executable, "-m", "snakemake", *arguments(what)]
     process = subprocess.Popen(
-        command, env=os.environ | {"SLIPPULSE_LEASH": str(leash)}, pass_fds=[leash], start_new_session=True
+        command,
+        env=os.environ | {"SLIPPULSE_LEASH": str(leash)},
+        pass_fds=[leash],
+        start_new_session=True,
     )
     os.close(leash)
     code = process.wait()

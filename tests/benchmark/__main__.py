@@ -54,7 +54,9 @@ def stencil_rates(blocks: int, seconds: float) -> dict[str, float]:
     constants = (1e-6, 1.0, 1e-6, RATIO)
     calls = {
         "taylor": lambda count: stencils.taylor_steps(w, tau, count, *constants),
-        "two_stage": lambda count: stencils.two_stage_steps(w[0], w[1], force, tau, count, *constants),
+        "two_stage": lambda count: stencils.two_stage_steps(
+            w[0], w[1], force, tau, count, *constants
+        ),
     }
     rates = {}
     for name, call in calls.items():
@@ -79,11 +81,16 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
 def kernel() -> dict:
     """The kernel against branch-free stencils, the best of turns: a slow spell of the machine meets both."""
     more = {"max_step": 0.5, "order": 4}
-    crack = Scene("displacement", Prestress(LEVEL, LEVEL, 8.0), CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **more)
+    crack = Scene(
+        "displacement", Prestress(LEVEL, LEVEL, 8.0), CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **more
+    )
     width = steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO).width
     pulse = _scene(PULSE[0], width / 200.0, more)
     found = {}
-    for name, scene, until in (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1])):
+    for name, scene, until in (
+        ("many_blocks", crack, CRACK[1]),
+        ("pulse_of_200_blocks", pulse, PULSE[1]),
+    ):
         timed, rates = [], []
         for _ in range(TURNS):
             timed.append(kernel_rate(scene, until))
@@ -126,7 +133,9 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
 
 
 def _scene(duration: float, dx: float, accuracy: Mapping) -> Scene:
-    values = {"gamma": GAMMA, "beta": RATIO * dx} | {key: accuracy[key] for key in ("max_step", "order")}
+    values = {"gamma": GAMMA, "beta": RATIO * dx} | {
+        key: accuracy[key] for key in ("max_step", "order")
+    }
     return Scene("displacement", Prestress(LEVEL, LEVEL), duration, dx, **values)
 
 
@@ -143,7 +152,9 @@ def textbook_errors(window: float) -> list[dict]:
 
     reference = speed("localised", 0.5)
     steps = [factor * 2.0**-power for power in POWERS for factor in (1.0, 0.93, 0.86)]
-    return [{"step": step, "error": abs(speed("fixed_step", step) / reference - 1.0)} for step in steps]
+    return [
+        {"step": step, "error": abs(speed("fixed_step", step) / reference - 1.0)} for step in steps
+    ]
 
 
 def textbook_numba_step(blocks: int) -> float:
@@ -165,7 +176,9 @@ def textbook_numba_step(blocks: int) -> float:
 def textbook_numpy_step(blocks: int) -> float:
     """Seconds a step of the textbook scheme in plain numpy over a lattice of ``blocks`` blocks."""
     tau, steps = Prestress(LEVEL, LEVEL)(DX * (np.arange(blocks) - blocks // 2)), 60
-    return best(lambda: stencils.numpy_steps(tau, steps, 0.25 * DX, DX, GAMMA, RATIO * DX), 2) / steps
+    return (
+        best(lambda: stencils.numpy_steps(tau, steps, 0.25 * DX, DX, GAMMA, RATIO * DX), 2) / steps
+    )
 
 
 def main(config_path: str, folder: str) -> None:
@@ -180,7 +193,11 @@ def main(config_path: str, folder: str) -> None:
     write_text(json.dumps(found, indent=1).replace("NaN", "null") + "\n", output)
     faster = {"times_faster_than_textbook": scene["times_faster_than_textbook"]}
     for name, entry in (timed | {"whole_scene": scene} | faster).items():
-        print(name, *(f"{key}: {x:.3g}" for key, x in entry.items() if isinstance(x, float)), sep="\n  ")
+        print(
+            name,
+            *(f"{key}: {x:.3g}" for key, x in entry.items() if isinstance(x, float)),
+            sep="\n  ",
+        )
     print(f"All in {output}")
 
 

@@ -43,7 +43,9 @@ def critical_path(jobs: dict[str, Job]) -> list[Job]:
 
 def at_once(jobs: dict[str, Job]) -> dict[int, float]:
     """For how many seconds how many jobs ran."""
-    changes = sorted(change for job in {*jobs.values()} for change in ((job.began, 1), (job.ended, -1)))
+    changes = sorted(
+        change for job in {*jobs.values()} for change in ((job.began, 1), (job.ended, -1))
+    )
     running, seconds = 0, dict[int, float]()
     for (time, change), (later, _) in pairwise(changes):
         running += change
@@ -61,7 +63,9 @@ def main(results: str = "results") -> None:
         print(
             f"{before.ended - start:7.1f} {job.began - before.ended:8.1f} {job.ended - job.began:8.1f}  {job.name}"
         )
-    print(", ".join(f"{count} at a time: {seconds:.1f} s" for count, seconds in at_once(jobs).items()))
+    print(
+        ", ".join(f"{count} at a time: {seconds:.1f} s" for count, seconds in at_once(jobs).items())
+    )
 
 
 if __name__ == "__main__":

@@ -20,7 +20,9 @@ def second_difference(out, lower, upper, per_dx2, leaf, damping):
 def advance_polynomials(slip, velocity, a, b, c, d, h):
     """Slip and velocity by the Taylor polynomial of order 4."""
     for i in range(slip.shape[0]):
-        slip[i] += h * (velocity[i] + h / 2.0 * (a[i] + h / 3.0 * (b[i] + h / 4.0 * (c[i] + h / 5.0 * d[i]))))
+        slip[i] += h * (
+            velocity[i] + h / 2.0 * (a[i] + h / 3.0 * (b[i] + h / 4.0 * (c[i] + h / 5.0 * d[i])))
+        )
         velocity[i] += h * (a[i] + h / 2.0 * (b[i] + h / 3.0 * (c[i] + h / 4.0 * d[i])))
 
 
@@ -66,7 +68,9 @@ def two_stage_steps(slip, velocity, force, tau, steps, h, per_dx2, leaf, damping
         kick_and_drift(slip[1 : n - 1], velocity[1 : n - 1], force[1 : n - 1], h)
 
 
-def numpy_steps(tau: np.ndarray, steps: int, h: float, dx: float, leaf: float, beta: float) -> np.ndarray:
+def numpy_steps(
+    tau: np.ndarray, steps: int, h: float, dx: float, leaf: float, beta: float
+) -> np.ndarray:
     """Slip of each block between fixed ends by the textbook scheme: symplectic Euler, events looked at once a step."""
     (slip, velocity, force), sliding = np.zeros((3, tau.size)), tau >= 1.0
     for _ in range(steps):

@@ -21,7 +21,9 @@ STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
 def test_the_branch_free_step_is_a_taylor_step_of_order_four():
     derivatives = [1.0, 2.0]
     for _ in range(4):
-        derivatives.append(-(STIFFNESS + GAMMA) * derivatives[-2] - BETA * STIFFNESS * derivatives[-1])
+        derivatives.append(
+            -(STIFFNESS + GAMMA) * derivatives[-2] - BETA * STIFFNESS * derivatives[-1]
+        )
     w = np.zeros((6, SINE.size))
     w[0], w[1] = SINE, 2.0 * SINE
     stencils.taylor_steps(w, np.zeros(SINE.size), 1, STEP, 1.0, GAMMA, BETA)
@@ -58,7 +60,14 @@ def test_the_kernel_is_timed_with_everything_included():
 @pytest.mark.slow
 def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatch, capsys):
     """On scenes a hundredth of the size."""
-    small = {"DURATION": 20.0, "DX": 0.05, "REPEATS": 1, "TURNS": 2, "POWERS": (3, 4), "LENGTH": 60.0}
+    small = {
+        "DURATION": 20.0,
+        "DX": 0.05,
+        "REPEATS": 1,
+        "TURNS": 2,
+        "POWERS": (3, 4),
+        "LENGTH": 60.0,
+    }
     for name, value in (small | {"CRACK": (60.0, 90.0), "PULSE": (20.0, 30.0)}).items():
         monkeypatch.setattr(benchmark, name, value)
     benchmark.main(str(project / "config/config.yaml"), str(tmp_path))
@@ -70,18 +79,32 @@ def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatc
         total = scene["textbook_steps"] * scene["textbook_seconds_a_step"][kind]
         assert scene["times_faster_than_textbook"][kind] == pytest.approx(total / scene["seconds"])
     printed = capsys.readouterr().out
-    assert all(f"\n  {name}: " in printed for name in ("cost_of_twice_the_duration", "numba", "numpy"))
+    assert all(
+        f"\n  {name}: " in printed for name in ("cost_of_twice_the_duration", "numba", "numpy")
+    )
 
 
 def test_the_critical_path_is_of_the_inputs_that_came_last(tmp_path):
     # Name: seconds taken, when it ended, what it is made from.
-    run = {"a": (4.0, 4.0, []), "b": (1.0, 1.0, []), "c": (2.0, 6.5, ["a", "b"]), "d": (1.0, 3.0, ["b"])}
+    run = {
+        "a": (4.0, 4.0, []),
+        "b": (1.0, 1.0, []),
+        "c": (2.0, 6.5, ["a", "b"]),
+        "d": (1.0, 3.0, ["b"]),
+    }
     for name, (seconds, ended, inputs) in run.items():
         path = tmp_path / f"records/{name}.json"
         path.parent.mkdir(exist_ok=True)
-        record = {"outputs": {name: ""}, "inputs": dict.fromkeys(inputs, ""), "used": {"seconds": seconds}}
+        record = {
+            "outputs": {name: ""},
+            "inputs": dict.fromkeys(inputs, ""),
+            "used": {"seconds": seconds},
+        }
         path.write_text(json.dumps(record), encoding="utf-8")
         os.utime(path, (ended, ended))
     jobs = critical_path.jobs_in(tmp_path)
-    assert [(job.name, job.began) for job in critical_path.critical_path(jobs)] == [("a", 0.0), ("c", 4.5)]
+    assert [(job.name, job.began) for job in critical_path.critical_path(jobs)] == [
+        ("a", 0.0),
+        ("c", 4.5),
+    ]
     assert critical_path.at_once(jobs) == {0: 0.5, 1: 4.0, 2: 2.0}

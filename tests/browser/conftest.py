@@ -56,12 +56,18 @@ def violations():
     axe = Axe()
 
     def find(page: Page) -> list[str]:
-        wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        wide = page.evaluate(
+            "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+        )
         # Thousands of elements in the colour of their text, which take most of the time of all.
-        page.evaluate("document.querySelectorAll('math[display=inline]').forEach((each) => each.remove())")
+        page.evaluate(
+            "document.querySelectorAll('math[display=inline]').forEach((each) => each.remove())"
+        )
         options = {"runOnly": {"type": "tag", "values": LEVELS}, "resultTypes": ["violations"]}
         found = axe.run(page, options=options).response["violations"]
-        problems = [f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]]
+        problems = [
+            f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]
+        ]
         return problems + [f"wider than the page by {wide}"] * (wide > 0)
 
     return find

@@ -56,7 +56,9 @@ def test_every_column_of_every_table_is_explained(results, project):
     assert len(tables) > 100
     for path in tables:
         columns = path.open(encoding="utf-8").readline().rstrip("\n").split(",")
-        assert {column for column in columns if not column.startswith("trailing_edge_")} <= described, path
+        assert {
+            column for column in columns if not column.startswith("trailing_edge_")
+        } <= described, path
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -201,8 +203,13 @@ def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(ex
             SCENE,
         )
     ruptures = [Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 20.0, 1, alpha) for alpha in rates]
-    assert found == pytest.approx([rupture.transition_time for rupture in ruptures], rel=EXPLORER_SPEED)
-    assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5) and beyond == [True, False]
+    assert found == pytest.approx(
+        [rupture.transition_time for rupture in ruptures], rel=EXPLORER_SPEED
+    )
+    assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5) and beyond == [
+        True,
+        False,
+    ]
 
 
 def test_beta_over_dx_alone_sets_the_speed_and_axes_stand_still(explorer, opened):
@@ -238,7 +245,9 @@ def test_every_setting_works_by_keyboard_typed_and_by_address(explorer, opened):
         for name in SLIDERS:
             page.reload()
             slider, typed = page.locator(f"#{name}"), page.locator(f"#{name}-typed")
-            assert page.locator(f"label[for={name}]").text_content() and typed.get_attribute("aria-label")
+            assert page.locator(f"label[for={name}]").text_content() and typed.get_attribute(
+                "aria-label"
+            )
             values, pictures = {typed.input_value()}, {page.locator("#map").inner_html()}
             for key in ("ArrowLeft", "End", "Home"):
                 press(page, f"#{name}", key)

@@ -22,7 +22,9 @@ def test_the_tutorial_keeps_what_it_says(project, tmp_path):
     balance = (1.5 + 1.0) / 0.5 * math.sqrt(math.pi / 2.0)
     assert 0.9 * balance < -names["stopped"] < 1.001 * balance
     # The lattice is near the exact solution.
-    assert all(0.0 < names[error] < 2.0 * names["scene"].dx for error in ("stick_error", "slip_error"))
+    assert all(
+        0.0 < names[error] < 2.0 * names["scene"].dx for error in ("stick_error", "slip_error")
+    )
     # Softer springs give more slip at the same speed.
     assert names["slip"]["soft"] > 1.5 * names["slip"]["stiff"]
     assert names["fronts"]["soft"] == pytest.approx(names["fronts"]["stiff"], rel=tol.FRONT_SPEED)
@@ -70,7 +72,9 @@ def test_schema_and_tables_are_those_of_the_definition(project, config, tmp_path
     key = describe.json_schema()["$defs"]["Model"]["properties"]["release"]
     monkeypatch.setitem(key, "description", "something else")
     describe.main(str(tmp_path))
-    assert "| `release` | something else |" in (tmp_path / describe.README).read_text(encoding="utf-8")
+    assert "| `release` | something else |" in (tmp_path / describe.README).read_text(
+        encoding="utf-8"
+    )
     assert "something else" in (tmp_path / describe.SCHEMA).read_text(encoding="utf-8")
 
 
@@ -79,5 +83,7 @@ def test_jobs_do_not_load_what_only_the_check_needs():
         "import sys, slippulse.configuration.expand, slippulse.steps.simulate;"
         "print(sorted({'pydantic', 'ruamel.yaml', 'jsonschema'} & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
     assert done.stdout.strip() == "[]"

@@ -67,12 +67,16 @@ def draw(shipped, shared, tmp_path_factory, study):
         if name not in drawn:
             module = import_module(f"slippulse.figures.{name}")
             needs = declared(f"figures.{name}", "NEEDS")
-            settings = selected(shipped, needs.get("settings", ()), shipped["figures"].get(name, {}))
+            settings = selected(
+                shipped, needs.get("settings", ()), shipped["figures"].get(name, {})
+            )
             data, tables = inputs(needs)
             save_table(module.table(data, tables, settings), folder / f"{name}.csv")
             table = load_table(folder / f"{name}.csv")
             figure = module.plot(table)
-            drawn[name] = SimpleNamespace(table=table, figure=figure, measured=tables, module=module)
+            drawn[name] = SimpleNamespace(
+                table=table, figure=figure, measured=tables, module=module
+            )
         return drawn[name]
 
     return drawn_by

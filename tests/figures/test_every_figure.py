@@ -21,7 +21,9 @@ from slippulse.measure.regime import REGIMES
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
 # The figures of the paper, and among the slow tests the studies.
-DRAWN = [pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES]
+DRAWN = [
+    pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES
+]
 # Points, at the width of the journal.
 SMALLEST = 7.0
 UNLABELLED = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone"}
@@ -29,7 +31,9 @@ BOUNDARIES = ("displacement", "stress")
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_written(draw, tmp_path, name):
+def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_written(
+    draw, tmp_path, name
+):
     table, figure = draw(name).table, draw(name).figure
     width, height = figure.get_size_inches()
     assert width <= PAGE + 1e-9 and height <= 9.0
@@ -45,21 +49,29 @@ def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_wr
     # As many grey levels as letters and lines have.
     with Image.open(tmp_path / "first.png") as picture:
         assert len(picture.convert("L").getcolors()) > 20
-    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    texts = [
+        text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()
+    ]
     assert min(text.get_fontsize() for text in texts) > SMALLEST - 1e-9
     page = figure.bbox.padded(1.0)
     for legend in figure.findobj(Legend):
         assert page.count_contains(legend.get_window_extent().get_points()) == 2, "cut off"
 
 
-@pytest.mark.parametrize("name", ["fig03_steady_state", pytest.param("study_arrest", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["fig03_steady_state", pytest.param("study_arrest", marks=pytest.mark.slow)]
+)
 def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
     drawn = draw(name)
     with matplotlib.rc_context({"figure.dpi": 50}):
         for take in ("first", "again"):
-            save_figure(drawn.module.plot(drawn.table), tmp_path / f"{take}.png", tmp_path / f"{take}.pdf")
+            save_figure(
+                drawn.module.plot(drawn.table), tmp_path / f"{take}.png", tmp_path / f"{take}.pdf"
+            )
     for ending in ("png", "pdf"):
-        assert (tmp_path / f"first.{ending}").read_bytes() == (tmp_path / f"again.{ending}").read_bytes()
+        assert (tmp_path / f"first.{ending}").read_bytes() == (
+            tmp_path / f"again.{ending}"
+        ).read_bytes()
 
 
 def test_areas_and_lines_have_the_regime_that_the_runs_on_them_end_in(draw):
@@ -69,7 +81,11 @@ def test_areas_and_lines_have_the_regime_that_the_runs_on_them_end_in(draw):
         for run in drawn.measured[sweep].itertuples():
             rows = drawn.table[drawn.table["boundary"] == run.boundary]
             role, at = ("line" if run.left * run.right == 0.0 else "area"), [run.left, run.right]
-            if run.exact_regime not in REGIMES or (role == "line" and max(at) > 0.0) or at == [0.0, 0.0]:
+            if (
+                run.exact_regime not in REGIMES
+                or (role == "line" and max(at) > 0.0)
+                or at == [0.0, 0.0]
+            ):
                 continue
             found = []
             for regime, part in rows[rows["role"] == role].groupby(["series", "regime"]):
@@ -108,7 +124,9 @@ def test_looks_tell_all_regimes_apart():
 def curves(axes, kind: str) -> dict[str, np.ndarray]:
     """Drawn lines of one kind by run."""
     named = [line for line in axes.lines if (line.get_gid() or "").startswith(f"{kind} ")]
-    return {line.get_gid().removeprefix(f"{kind} "): np.column_stack(line.get_data()) for line in named}
+    return {
+        line.get_gid().removeprefix(f"{kind} "): np.column_stack(line.get_data()) for line in named
+    }
 
 
 PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady_state_stress")
@@ -126,7 +144,9 @@ def test_simulated_pulses_lie_on_the_exact_ones(draw, name):
             assert len(curve) <= 400 and len(exact[run]) <= 801
 
 
-def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_falls_behind_the_front(draw):
+def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_falls_behind_the_front(
+    draw,
+):
     table, figure = draw(PULSES[1]).table, draw(PULSES[1]).figure
     runs = table[table["role"] == "run"].set_index("run")
     fields = ["slip", "slip_velocity", "slip_acceleration"]
@@ -136,7 +156,10 @@ def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_f
     runs["peak"] = peaks["slip_velocity"]
     by_damping = runs.pivot(index="left", columns="damping_ratio", values="peak")
     assert (np.diff(by_damping.to_numpy(), axis=1) < 0.0).all()
-    assert all((np.diff(line[:, 1]) <= 1e-5).all() for line in curves(figure.axes[0], "simulation").values())
+    assert all(
+        (np.diff(line[:, 1]) <= 1e-5).all()
+        for line in curves(figure.axes[0], "simulation").values()
+    )
 
 
 def test_the_arrows_are_the_measured_transition(draw):
@@ -168,7 +191,9 @@ def test_every_run_is_drawn_in_the_collapse_in_two_colours(draw):
         expected = np.sort(sound[f"transition_{quantity}"].dropna())
         drawn_at = offsets(axes, "runs")
         assert len(drawn_at) == len(sound)
-        assert np.sort(drawn_at[np.isfinite(drawn_at).all(axis=1), 1]) == pytest.approx(expected, rel=1e-6)
+        assert np.sort(drawn_at[np.isfinite(drawn_at).all(axis=1), 1]) == pytest.approx(
+            expected, rel=1e-6
+        )
         assert axes.get_xscale() == axes.get_yscale() == "log"
         (line,) = [line for line in axes.lines if line.get_gid() == "equality"]
         assert np.array_equal(line.get_xdata(), line.get_ydata())
@@ -178,12 +203,16 @@ def test_every_run_is_drawn_in_the_collapse_in_two_colours(draw):
         assert len(np.unique(group.get_edgecolors(), axis=0)) == sound[other].nunique()
 
 
-@pytest.mark.parametrize("name", ["fig05_scaling", "fig10_damping_displacement", "fig11_damping_stress"])
+@pytest.mark.parametrize(
+    "name", ["fig05_scaling", "fig10_damping_displacement", "fig11_damping_stress"]
+)
 def test_lattices_tend_to_the_exact_transition(draw, name):
     table = draw(name).table
     runs = table[table["run_flags"].isna() & (table["boundary"] == "displacement")]
     for quantity in ("length", "time"):
-        assert runs[quantity].to_numpy() == pytest.approx(runs[f"exact_{quantity}"], rel=tol.DRAFT_TRANSITION)
+        assert runs[quantity].to_numpy() == pytest.approx(
+            runs[f"exact_{quantity}"], rel=tol.DRAFT_TRANSITION
+        )
     stress = table[(table["boundary"] == "stress") & table["time"].notna()]
     assert (stress["time"] > stress["paper_time"]).all()
 
@@ -197,5 +226,7 @@ def test_every_damping_ratio_is_drawn_and_damping_lengthens_the_transition(draw)
             assert np.allclose(axes.get_xticks(), ratios)
             assert np.allclose(np.unique(offsets(axes, "runs")[:, 0]), ratios)
     runs = drawn[0].table
-    off = (runs["length"] / runs["paper_length"] - 1.0).abs().groupby(runs["damping_ratio"]).median()
+    off = (
+        (runs["length"] / runs["paper_length"] - 1.0).abs().groupby(runs["damping_ratio"]).median()
+    )
     assert off[1.0] > 2.0 * off[0.0]

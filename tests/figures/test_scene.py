@@ -46,7 +46,9 @@ def drawn(shipped, tmp_path_factory):
         folder = tmp_path_factory.mktemp("scene")
         kinds = ("measured", "predicted", "uncertainties", "coarser")
         files = {kind: folder / f"{kind}.csv" for kind in kinds} | {"data": folder / "one.nc"}
-        outputs = {kind: folder / f"one.{kind}" for kind in ("numbers", "csv", "png", "pdf", "html")}
+        outputs = {
+            kind: folder / f"one.{kind}" for kind in ("numbers", "csv", "png", "pdf", "html")
+        }
         simulation = scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model)
         factors = (1.0, *accuracy["coarser"])
         sweeps = {factor: resolve(simulation, model, accuracy, factor) for factor in factors}
@@ -72,7 +74,9 @@ def test_samples_reach_beyond_the_fronts_and_the_figure_shows_them(drawn, name):
     assert scene.outputs["png"].stat().st_size > 20_000
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in drawing.axes]
     assert sum(map(bool, labels)) >= 4
-    (profile,) = (axes for axes in drawing.axes if "velocity $\\dot u$ at the end" in axes.get_ylabel())
+    (profile,) = (
+        axes for axes in drawing.axes if "velocity $\\dot u$ at the end" in axes.get_ylabel()
+    )
     shown = profile.lines[1].get_ydata()
     assert np.max(shown) == pytest.approx(float(run["slip_velocity"].max()), rel=1e-8)
     texts = " ".join(text.get_text() for part in drawing.subfigs for text in part.texts)
@@ -145,7 +149,9 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
     (legend,) = drawn.legends
     texts = [text.get_text() for text in legend.get_texts()]
-    assert {"simulation", "exact theory"} <= {*texts} and len(texts) >= 2 + (lines if lines > 1 else 0)
+    assert {"simulation", "exact theory"} <= {*texts} and len(texts) >= 2 + (
+        lines if lines > 1 else 0
+    )
     shown = [axes for axes in drawn.axes if axes.get_visible()]
     values = [tuple(np.round(axes.lines[1].get_ydata(), 9)) for axes in shown]
     assert len({*values}) == len(values), "no panel twice"
@@ -168,7 +174,9 @@ def test_fronts_trailing_edge_and_slip_are_drawn(samples):
     _, times, slip = figure.axes[:3]
     lines = {line.get_label(): line for line in times.lines}
     released = np.isfinite(run["release_time"].values)
-    assert lines["front"].get_xdata() == pytest.approx(run["release_time"].values[released], abs=0.1)
+    assert lines["front"].get_xdata() == pytest.approx(
+        run["release_time"].values[released], abs=0.1
+    )
     stick = run.attrs["first_stick_time"]
     assert np.nanmin(lines["trailing edge"].get_xdata()) == pytest.approx(stick, abs=0.01)
     assert np.max(slip.lines[0].get_xdata()) == pytest.approx(float(run["slip"].max()))
@@ -188,7 +196,9 @@ def test_what_is_no_run_is_refused():
 @pytest.mark.parametrize(("peak", "times", "positions"), [(1.0, 0, 0), (0.9, 1, 9), (1.0, 5, 1)])
 def test_every_run_is_drawn(boundary, scheme, peak, times, positions):
     gamma = 0.65 * (boundary == "displacement")
-    scene = sp.Scene(boundary, sp.Prestress(-0.5, 0.0, peak=peak), 4.0, 0.1, gamma=gamma, scheme=scheme)
+    scene = sp.Scene(
+        boundary, sp.Prestress(-0.5, 0.0, peak=peak), 4.0, 0.1, gamma=gamma, scheme=scheme
+    )
     samples = sp.Samples(np.linspace(0.0, 4.0, times), np.linspace(-3.0, 3.0, positions))
     assert sp.plot(sp.simulate(scene, samples))._repr_png_().startswith(b"\x89PNG")
 
@@ -196,4 +206,6 @@ def test_every_run_is_drawn(boundary, scheme, peak, times, positions):
 def test_a_scene_shows_its_parameters():
     html = PLAIN._repr_html_()
     for name, value in PLAIN.attributes().items():
-        assert f"<th>{name}</th>" in html and (isinstance(value, str) or f"<td>{value}</td>" in html)
+        assert f"<th>{name}</th>" in html and (
+            isinstance(value, str) or f"<td>{value}</td>" in html
+        )

@@ -24,7 +24,9 @@ def rises(values) -> bool:
 
 def of(table, **values):
     """Rows with a value in each of some columns."""
-    return table[np.logical_and.reduce([table[column] == value for column, value in values.items()])]
+    return table[
+        np.logical_and.reduce([table[column] == value for column, value in values.items()])
+    ]
 
 
 def between(marks, line, value: str, along: str = "position"):
@@ -39,7 +41,9 @@ def order(line, error) -> float:
     return np.polyfit(np.log(line["dx"]), np.log(error), 1)[0]
 
 
-def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down_to_one_block_a_layer(draw):
+def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down_to_one_block_a_layer(
+    draw,
+):
     drawn = draw("study_front_speed")
     uniform = of(drawn.table, role="simulation", panel="prestress")
     for _, rows in uniform.query("left >= 0.3 and damping_ratio <= 1").groupby("release"):
@@ -51,11 +55,17 @@ def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down_to_on
     ids = {line.get_gid() for axes in drawn.figure.axes for line in axes.lines}
     assert {f"theory {ratio:g}" for ratio in uniform["damping_ratio"].unique()} <= ids
     # Leaf springs, under both rules.
-    wide = of(drawn.measured["front_speed_springs"], pulse_state="steady").query("pulse_width >= 4 * dx")
+    wide = of(drawn.measured["front_speed_springs"], pulse_state="steady").query(
+        "pulse_width >= 4 * dx"
+    )
     wide = wide[wide["run_flags"].isna()]
     assert len(wide) >= 20 and (wide["dx"] == 1.0).sum() >= 10 and wide["release"].nunique() == 2
     assert off(wide, "front_speed_right", "lattice_front_speed_right").max() < 3e-4
-    lines = of(drawn.table, panel="springs", role="theory").dropna(subset="speed").sort_values("springs")
+    lines = (
+        of(drawn.table, panel="springs", role="theory")
+        .dropna(subset="speed")
+        .sort_values("springs")
+    )
     assert all(rises(-line["speed"]) for _, line in lines.groupby(["left", "damping_ratio"]))
 
 
@@ -87,10 +97,15 @@ def test_pulse_theory_beats_the_paper_where_there_is_damping_and_is_the_limit(dr
 
 def test_exact_theory_collapses_what_the_paper_scatters_and_is_the_limit(draw):
     table = draw("study_exact_transition").table
-    sound, refined = of(table[table["run_flags"].isna()], role="sweep"), of(table, role="refinement")
+    sound, refined = (
+        of(table[table["run_flags"].isna()], role="sweep"),
+        of(table, role="refinement"),
+    )
     for number in ("transition_time", "transition_length"):
         for _, rows in sound.dropna(subset=number).groupby("boundary"):
-            exact, paper = (off(rows, number, f"{source}_{number}").median() for source in ("exact", "paper"))
+            exact, paper = (
+                off(rows, number, f"{source}_{number}").median() for source in ("exact", "paper")
+            )
             assert exact < 0.25 * paper
         largest = off(refined, number, f"exact_{number}").groupby(refined["dx"]).max()
         assert rises(largest) and largest.iloc[-1] < 0.03
@@ -102,7 +117,9 @@ def test_the_time_of_a_fraction_converges_and_the_last_release_is_beyond_it(draw
     by_spacing = off(runs, "fraction_time", "exact_fraction_time").groupby(runs["dx"]).max()
     assert by_spacing.iloc[0] == by_spacing.min()
     assert (runs["last_release"] > runs["fraction_time"]).all()
-    assert all(rises(path["time"]) for _, path in of(table, role="exact_path").groupby("damping_ratio"))
+    assert all(
+        rises(path["time"]) for _, path in of(table, role="exact_path").groupby("damping_ratio")
+    )
 
 
 def test_pulses_settle_grow_or_decay_by_sign_the_exact_one_is_steady_beyond_its_memory_alone(draw):
@@ -112,7 +129,9 @@ def test_pulses_settle_grow_or_decay_by_sign_the_exact_one_is_steady_beyond_its_
         first, *_, last = rows["largest_velocity"]
         assert np.sign(last / first - 1.0) == np.sign(level) or level == 0.0
     exact = of(table, role="exact")
-    assert exact["level"].nunique() >= 4 and exact["slip"].notna().all(), "no construction ends early"
+    assert exact["level"].nunique() >= 4 and exact["slip"].notna().all(), (
+        "no construction ends early"
+    )
     for level, rows in exact.groupby("level"):
         rest, fraction = off(rows, "slip", "steady"), rows["x"] / rows["memory"]
         assert rest[fraction >= 1.0].max() < 1e-8 and (fraction >= 1.0).sum() >= 10
@@ -142,7 +161,9 @@ def test_lattices_tend_to_the_exact_depth_which_the_estimate_falls_short_of_at_l
     curves = of(table, part="curve").sort_values("barrier")
     for (tau0, _), line in curves.groupby(["tau0", "damping_ratio"]):
         assert rises(line["exact"])
-        estimate = [barrier_depth_estimate(*row) for row in line[["tau0", "barrier", "gamma"]].to_numpy()]
+        estimate = [
+            barrier_depth_estimate(*row) for row in line[["tau0", "barrier", "gamma"]].to_numpy()
+        ]
         assert line["paper"].to_numpy() == pytest.approx(estimate, rel=1e-3)
         assert tau0 >= 0.3 or (line["paper"] < 0.5 * line["exact"]).all()
 
@@ -163,7 +184,9 @@ def test_every_quantity_converges_at_first_order_to_the_exact_curves(draw):
         assert line["places"].min() >= 20
     # Marks lie on the curves, and the trailing edge follows the front.
     for scene, exact in of(table, role="exact").groupby("scene"):
-        assert (exact["release"].notna() & (exact["slip"] >= 0.0)).all(), "no construction ends early"
+        assert (exact["release"].notna() & (exact["slip"] >= 0.0)).all(), (
+            "no construction ends early"
+        )
         known = exact.dropna(subset="stick")
         assert len(known) > 100 and (known["stick"] > known["release"]).all()
         for quantity in ("release", "stick", "slip"):
@@ -172,7 +195,9 @@ def test_every_quantity_converges_at_first_order_to_the_exact_curves(draw):
     # Both halves of the map agree.
     table = table.assign(position=table["position"].abs().round(6))
     axes = {"index": "time", "columns": "position", "values": "slip_velocity"}
-    exact, lattice = (of(table, role=f"map_{source}").pivot(**axes) for source in ("exact", "lattice"))
+    exact, lattice = (
+        of(table, role=f"map_{source}").pivot(**axes) for source in ("exact", "lattice")
+    )
     exact, lattice = exact.fillna(0.0).align(lattice.fillna(0.0), fill_value=0.0)
     assert (exact - lattice).abs().to_numpy().mean() < 0.02 * exact.to_numpy().max()
 
@@ -189,7 +214,9 @@ def test_uniform_prestress_leaves_the_papers_estimate_from_above(study):
 
 def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
     found = np.empty((3, 3, 3))
-    for (row, left), (column, right) in product(enumerate((-1.0, -0.3, -0.1)), enumerate((0.1, 0.5, 0.9))):
+    for (row, left), (column, right) in product(
+        enumerate((-1.0, -0.3, -0.1)), enumerate((0.1, 0.5, 0.9))
+    ):
         rupture = Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)
         end = rupture.front_ends[0][0]
         assert end.reason == "stops" and not rupture.limit
@@ -222,13 +249,17 @@ def test_numbers_are_those_of_the_figures_own_table_and_regions_are_around_the_b
         for release in ("total", "elastic"):
             found = again[release]
             patches = {patch.get_gid(): patch for patch in panel.collections}
-            outer, inner = (patches[f"{release} {level}"].get_paths()[0].vertices for level in (0.95, 0.68))
+            outer, inner = (
+                patches[f"{release} {level}"].get_paths()[0].vertices for level in (0.95, 0.68)
+            )
             low, high = found["regions"][0.95][name]
             # A joint region of two parameters is wider than that of one.
             assert outer[:, 1].min() < low and outer[:, 1].max() > high
             assert np.ptp(inner[:, 0]) < np.ptp(outer[:, 0])
             assert inner[:, 0].min() < found["damping_ratio"] < inner[:, 0].max()
-    assert max(line.get_ydata().max() for line in axes[0].lines if line.get_gid()) <= likely(0.95, 7)
+    assert max(line.get_ydata().max() for line in axes[0].lines if line.get_gid()) <= likely(
+        0.95, 7
+    )
 
 
 def test_lattices_a_tenth_away_from_the_line_where_pulses_end_are_on_its_exact_side(draw):
@@ -240,10 +271,14 @@ def test_lattices_a_tenth_away_from_the_line_where_pulses_end_are_on_its_exact_s
     steady = of(table, role="steady").sort_values("rate_strengthening")
     pulses = of(runs, level=0.5, regime="pulse").query("over_critical <= 0.5")
     for quantity, most in (("pulse_width", 0.05), ("pulse_slip", 0.08)):
-        exact = np.interp(pulses["rate_strengthening"], steady["rate_strengthening"], steady[quantity])
+        exact = np.interp(
+            pulses["rate_strengthening"], steady["rate_strengthening"], steady[quantity]
+        )
         assert (pulses[quantity] / exact - 1.0).abs().max() < most
     # Without leaf springs: the late height is that of diffusion. The right front, its leading edge gone, goes on in
     # jerks, which stand above it for 15 % of t = 20 to 100 at dx = 0.05, for 1 % at 0.025 and never at 0.0125.
     late = of(table, role="arrest", dx=0.025, rate_strengthening=0.5).query("time > 20")
-    late = late.merge(of(table, role="asymptote"), on=["rate_strengthening", "time"], suffixes=("", "_limit"))
+    late = late.merge(
+        of(table, role="asymptote"), on=["rate_strengthening", "time"], suffixes=("", "_limit")
+    )
     assert (late["largest_velocity"] / late["largest_velocity_limit"]).between(0.8, 1.1).all()

@@ -19,9 +19,15 @@ from slippulse.model.scene import ORDERS
 # Rows of linear red, green, blue.
 VISION = {
     "usual": np.eye(3),
-    "deuteranopia": np.array([[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]]),
-    "protanopia": np.array([[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]]),
-    "tritanopia": np.array([[1.256, -0.077, -0.179], [-0.078, 0.931, 0.148], [0.005, 0.691, 0.304]]),
+    "deuteranopia": np.array(
+        [[0.367, 0.861, -0.228], [0.280, 0.673, 0.047], [-0.012, 0.043, 0.969]]
+    ),
+    "protanopia": np.array(
+        [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]]
+    ),
+    "tritanopia": np.array(
+        [[1.256, -0.077, -0.179], [-0.078, 0.931, 0.148], [0.005, 0.691, 0.304]]
+    ),
     "grey": np.tile([0.2126, 0.7152, 0.0722], (3, 1)),
 }
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
@@ -32,7 +38,9 @@ APART, GREYS_APART = 10.0, 15.0
 
 def linear(colour) -> np.ndarray:
     """Linear red, green and blue of a colour."""
-    return np.array([c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)])
+    return np.array(
+        [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    )
 
 
 def lab(colour, vision: str) -> np.ndarray:
@@ -63,7 +71,9 @@ def test_levels_are_seen_on_white(quantity, value):
 def test_a_scale_goes_one_way_in_lightness(quantity, vision):
     _, _, ends, norm = SCALES[quantity]
     values = np.geomspace(*ends, 9) if norm is LogNorm else np.linspace(*ends, 9)
-    lightness = np.array([lab(colour_scale(quantity).to_rgba(value), vision)[0] for value in values])
+    lightness = np.array(
+        [lab(colour_scale(quantity).to_rgba(value), vision)[0] for value in values]
+    )
     steps = np.diff(lightness)
     assert (steps > 0.0).all() or (steps < 0.0).all()
     assert abs(lightness[-1] - lightness[0]) > 40.0

@@ -61,17 +61,26 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
     """Each finding with a number for everything that any text asks of one."""
     names = set(re.findall(r"\b(?:n|late|literal|damped|made_with|collapse)\.(\w+)", texts))
     names |= set(re.findall(r'found\("\w+"\)\.(\w+)', texts))
-    numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))} | {"release": "total"}
-    return [{"id": id, "numbers": numbers, "text": f"found {id.replace('_', ' ')}"} for id in findings]
+    numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))} | {
+        "release": "total"
+    }
+    return [
+        {"id": id, "numbers": numbers, "text": f"found {id.replace('_', ' ')}"} for id in findings
+    ]
 
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     """What the report reads, with a number for each that its text asks for."""
 
     def row(variable: str) -> dict[str, float]:
-        return {name: 1.0 + 0.01 * i for i, name in enumerate(re.findall(rf"\b{variable}\.(\w+)", texts))}
+        return {
+            name: 1.0 + 0.01 * i
+            for i, name in enumerate(re.findall(rf"\b{variable}\.(\w+)", texts))
+        }
 
-    quoted = [{"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()]
+    quoted = [
+        {"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()
+    ]
     for name in ("release_time", "stick_time", "final_slip"):
         quoted += [{"quantity": name, "x": x, "value": 1.0 + x} for x in (0.0, 1.0)]
     found = {
@@ -86,7 +95,12 @@ def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
     }  # fmt: skip
     for name in write_report.NEEDS["uncertainties"]:
         found[f"uncertainties/{name}"] = [
-            {"quantity": "front_speed_right", "value": 1.25, "uncertainty": 0.0013, "observed_order": 1.04},
+            {
+                "quantity": "front_speed_right",
+                "value": 1.25,
+                "uncertainty": 0.0013,
+                "observed_order": 1.04,
+            },
             {"quantity": "front_speed_right", "value": 1.25},
         ]
     return {name: pd.DataFrame(rows) for name, rows in found.items()}
@@ -108,7 +122,9 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
         for ending in ("png", "pdf"):
             drawn.savefig(folder / f"{name}.{ending}")
     entries = read(manuscript / "claims.yaml")
-    texts = "\n".join(path.read_text(encoding="utf-8") for path in sorted(manuscript.glob("*.[my]*")))
+    texts = "\n".join(
+        path.read_text(encoding="utf-8") for path in sorted(manuscript.glob("*.[my]*"))
+    )
 
     def make(config: dict = shipped, scale: float = 1.0) -> Inputs:
         return Inputs(
@@ -126,7 +142,9 @@ def build(tmp_path_factory):
 
     def made(inputs: Inputs) -> SimpleNamespace:
         folder = tmp_path_factory.mktemp("report")
-        outputs = {kind: [folder / f"{name}.{kind}" for name in DOCUMENTS] for kind in ("html", "pdf")}
+        outputs = {
+            kind: [folder / f"{name}.{kind}" for name in DOCUMENTS] for kind in ("html", "pdf")
+        }
         outputs |= {"verdicts": folder / "verdicts"}
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv(CONFIGURATION, DIGEST)

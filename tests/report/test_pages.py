@@ -29,7 +29,12 @@ NEVER = CLAIM | {
     "deviation": None, "note": "",
 }  # fmt: skip
 CLAIMS = [CLAIM, FAILED, NEVER, OPEN]
-TABLES = ["measurements/runs.csv", "predictions/runs.csv", "studies/other.csv", "uncertainties/runs.csv"]
+TABLES = [
+    "measurements/runs.csv",
+    "predictions/runs.csv",
+    "studies/other.csv",
+    "uncertainties/runs.csv",
+]
 NAMES = {"fig01_one": "One <figure>", "fig02_two": "Another & another"}
 
 
@@ -75,12 +80,21 @@ def results(project, tmp_path_factory):
         "alt": "A line <up>", "caption": "(a) $x$.", "finding": "Found in {{ claim('speed').runs }} runs.",
     }  # fmt: skip
     lines = [
-        {"topic": "Yes", "named": "fronts run", "claims": ["speed"], "text": "Gap {{ found('ours').gap }}."},
+        {
+            "topic": "Yes",
+            "named": "fronts run",
+            "claims": ["speed"],
+            "text": "Gap {{ found('ours').gap }}.",
+        },
         {"topic": "Fronts", "named": "a width", "claims": ["speed", "width"], "text": "No."},
         {"topic": "Back", "named": "a length", "claims": ["length"], "text": "No."},
         {"topic": "Ahead", "named": "a front", "claims": ["length"], "text": "No."},
     ]
-    summary = {"picture": "fig01_one", "accuracy": "Of {{ claim('speed').runs }} runs.", "verdict": lines}
+    summary = {
+        "picture": "fig01_one",
+        "accuracy": "Of {{ claim('speed').runs }} runs.",
+        "verdict": lines,
+    }
     captions = {name: caption | {"title": title} for name, title in NAMES.items()}
     for path, content in {
         "results/claims.json": CLAIMS, "results/findings.json": [FINDING], "results/provenance.json": facts,
@@ -92,7 +106,10 @@ def results(project, tmp_path_factory):
 
 
 def written(results, captions: str = "captions") -> str:
-    texts = {"captions": results.parent / f"{captions}.yaml", "summary": results.parent / "summary.yaml"}
+    texts = {
+        "captions": results.parent / f"{captions}.yaml",
+        "summary": results.parent / "summary.yaml",
+    }
     galleries = {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]}
     scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
     return index_page(results, texts, galleries, scenes)
@@ -108,7 +125,9 @@ def check_accessible(text: str) -> Outline:
     outline = Outline(text)
     assert text.startswith("<!DOCTYPE html>")
     assert outline.all("html") == [{"lang": "en"}]
-    assert {"name": "viewport", "content": "width=device-width, initial-scale=1"} in outline.all("meta")
+    assert {"name": "viewport", "content": "width=device-width, initial-scale=1"} in outline.all(
+        "meta"
+    )
     for tag in ("title", "h1", "main", "header"):
         assert len(outline.all(tag)) == 1
     levels = [int(tag[1]) for tag, _ in outline.tags if re.fullmatch("h[1-6]", tag)]
@@ -119,11 +138,15 @@ def check_accessible(text: str) -> Outline:
     labels = [attributes.get("aria-label") for attributes in outline.all("nav")]
     assert len(labels) == len(set(labels)) and all(labels)
     # What scrolls sideways can be reached by keyboard and has a name.
-    for region in (attributes for attributes in outline.all("div") if attributes.get("class") == "scroll"):
+    for region in (
+        attributes for attributes in outline.all("div") if attributes.get("class") == "scroll"
+    ):
         assert region["tabindex"] == "0" and region["role"] == "region" and region["aria-label"]
     assert len(outline.all("caption")) == len(outline.all("table"))
     assert all(attributes["scope"] == "col" for attributes in outline.all("th"))
-    assert not any(attributes.get("tabindex", "0") not in ("0", "-1") for _, attributes in outline.tags)
+    assert not any(
+        attributes.get("tabindex", "0") not in ("0", "-1") for _, attributes in outline.tags
+    )
     assert not outline.all("script") and "@import" not in text and "url(" not in text
     return outline
 
@@ -153,14 +176,21 @@ def test_links_lead_somewhere_and_only_the_paper_is_outside(page, results):
 
 
 def test_it_says_what_was_found_and_from_what(page):
-    assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable. 1 more follow from these." in page
+    assert (
+        "3 claims: 1 reproduced, 1 not reproduced, 1 not testable. 1 more follow from these."
+        in page
+    )
     exceptions = "a width is not reproduced, and a length and a front are not tested in this run."
     assert f"<strong>Yes</strong>, fronts run, except that {exceptions}" in page
     assert "Gap 0.500." in page
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
     assert "Found in 4 runs." in page and "Of 4 runs." in page
     assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
-    assert page.index("values differ") < page.index('id="verdict"') < page.index("Figures of the paper</h2>")
+    assert (
+        page.index("values differ")
+        < page.index('id="verdict"')
+        < page.index("Figures of the paper</h2>")
+    )
     assert "results/scenes/not_made.html" in page
     # A line has the worst verdict of its claims.
     assert re.search(r'href="claims\.html#width">. not reproduced<', page)
@@ -169,7 +199,12 @@ def test_it_says_what_was_found_and_from_what(page):
 def test_the_ledger_has_a_page_with_failures_first():
     text = claims_page(CLAIMS, findings=[FINDING], tables=TABLES)
     outline = check_accessible(text)
-    assert [row["id"] for row in outline.all("tr") if "id" in row] == ["width", "always", "length", "speed"]
+    assert [row["id"] for row in outline.all("tr") if "id" in row] == [
+        "width",
+        "always",
+        "length",
+        "speed",
+    ]
     assert outline.all("a")[1] == {"href": "index.html"}
     assert "20 %, tolerance 0.1 %" in text and 'aria-label="200 × tolerance"' in text
     assert '<p class="why">It is <em>off</em>.</p>' in text and "3 of 5, 2 undecided" in text

@@ -32,7 +32,8 @@ WORDS = (
 WORD = re.compile(rf"\b(?:{WORDS})s?\b|\bper cent\b", re.I)
 NUMBERED = r"\(?[A-D]?\d{1,2}\)?"
 REFERENCE = re.compile(
-    rf"\b(?:equations?|sections?|figures?|appendix|tables?) {NUMBERED}(?:(?:, | and ){NUMBERED})*", re.I
+    rf"\b(?:equations?|sections?|figures?|appendix|tables?) {NUMBERED}(?:(?:, | and ){NUMBERED})*",
+    re.I,
 )
 MATH = re.compile(r"\$\$.+?\$\$|\$[^$]+\$", re.S)
 CITATION = re.compile(r"\[[^\]]*@\w+[^\]]*\]|@\w+")
@@ -54,7 +55,11 @@ def captions(manuscript) -> dict[str, Caption]:
 
 
 def mentioned(text: str) -> set[str]:
-    return set(re.findall(r"""\b(?:claim(?:\.(?!count\b)\w+)?|off|measured|cite)\(\s*["'](\w+)["']""", text))
+    return set(
+        re.findall(
+            r"""\b(?:claim(?:\.(?!count\b)\w+)?|off|measured|cite)\(\s*["'](\w+)["']""", text
+        )
+    )
 
 
 @pytest.fixture(scope="module")
@@ -73,10 +78,14 @@ def test_every_claim_that_is_mentioned_is_in_the_ledger(source, manuscript, entr
     for line in summary["verdict"]:
         names |= {*line["claims"], *mentioned(line["text"])}
     assert len(names) > 30
-    assert names | mentioned(summary["accuracy"]) <= set(entries["claims"]) | set(entries["findings"])
+    assert names | mentioned(summary["accuracy"]) <= set(entries["claims"]) | set(
+        entries["findings"]
+    )
 
 
-def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(manuscript, entries):
+def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(
+    manuscript, entries
+):
     statements = read(manuscript / "statements.yaml")["statements"]
     ids = [sentence["id"] for sentence in statements]
     assert len(set(ids)) == len(ids)
@@ -91,7 +100,11 @@ def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentenc
         assert entry["sentences"] and set(entry["sentences"]) <= set(ids), id
     counts = coverage(statements)
     assert counts["tested"] > 150
-    assert sum(count for key, count in counts.items() if key != "all") == counts["all"] == len(statements)
+    assert (
+        sum(count for key, count in counts.items() if key != "all")
+        == counts["all"]
+        == len(statements)
+    )
 
 
 def test_every_claim_is_whole_and_has_a_shipped_verdict(manuscript, entries, captions):
@@ -109,7 +122,9 @@ def test_every_erratum_is_shown_and_the_bibliography_is_what_is_cited(manuscript
         for title in re.findall(r'[Dd]erivation "([^"]+)"|Section "([^"]+)"', entry["shown"]):
             assert "".join(title) in headings, entry
     bibliography = (manuscript / "references.bib").read_text(encoding="utf-8")
-    assert set(re.findall(r"@([A-Z]\w+)", source)) == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.M))
+    assert set(re.findall(r"@([A-Z]\w+)", source)) == set(
+        re.findall(r"^@\w+\{(\w+),", bibliography, re.M)
+    )
 
 
 @pytest.mark.parametrize(("reader", "keys"), [(read_captions, PARTS), (read_errata, ERRATUM)])
@@ -137,8 +152,14 @@ def test_every_figure_has_one_position_and_a_caption(source, captions, project, 
         assert not set("$*_{") & set(caption.title + caption.alt)
         assert caption.finding.endswith(".") and ". " not in EXPRESSION.sub(" ", caption.finding)
         text = f"{caption.finding} {caption.caption}"
-        assert 20 < len(re.findall(r"[^\W\d_][\w'-]+", MATH.sub(" ", EXPRESSION.sub(" ", text)))) <= 120, name
-        assert "runs(" in text or r"\Gamma=" in text or "no run" in text or name == "own_sweep", name
+        assert (
+            20
+            < len(re.findall(r"[^\W\d_][\w'-]+", MATH.sub(" ", EXPRESSION.sub(" ", text))))
+            <= 120
+        ), name
+        assert "runs(" in text or r"\Gamma=" in text or "no run" in text or name == "own_sweep", (
+            name
+        )
 
 
 def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_path):
@@ -149,22 +170,37 @@ def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_
     texts = {"report": "figure('a') figure('fig05_scaling') figure('b')", "more": "figure('c')"}
     gallery = Gallery(["new_one", "c", "fig05_scaling", "a"], texts, captions, tmp_path, "report")
     assert gallery.figure("c").startswith(f"![**Figure S1. C.** finding what]({tmp_path}/c){{")
-    assert gallery.figure("fig05_scaling").startswith("![**Figure 2 (paper, figure 5). FIG05_SCALING.**")
+    assert gallery.figure("fig05_scaling").startswith(
+        "![**Figure 2 (paper, figure 5). FIG05_SCALING.**"
+    )
     assert "width=49%" in gallery.figure("a") and "width=100%" in gallery.figure("c")
     assert gallery.see("c", " (figure ", ")") == " ([figure S1](more.html#c))"
     assert gallery.see("a", " and ") == " and [1](#a)"
     # One without files is left out; one that the text does not place comes last, with its name.
     assert gallery.figure("b") == gallery.see("b") == ""
-    assert gallery.further() == gallery.figure("new_one") and "**Figure S2. new one.**" in gallery.further()
+    assert (
+        gallery.further() == gallery.figure("new_one")
+        and "**Figure S2. new one.**" in gallery.further()
+    )
 
 
 def test_the_parameters_of_a_simulation_in_words(shipped):
-    one = {"boundary": "displacement", "left": [0.3], "right": "same", "gamma": [1e-3, 0.1, 0.2, 1.0]}
-    profiles = [{"left": -1.0, "right": 0.0, "width": 1.0}, {"left": -0.5, "right": 0.0, "width": 2.0}]
+    one = {
+        "boundary": "displacement",
+        "left": [0.3],
+        "right": "same",
+        "gamma": [1e-3, 0.1, 0.2, 1.0],
+    }
+    profiles = [
+        {"left": -1.0, "right": 0.0, "width": 1.0},
+        {"left": -0.5, "right": 0.0, "width": 2.0},
+    ]
     two = {"boundary": "stress", "profiles": profiles, "damping_ratio": [0.0, 0.1, 0.3]}
     two |= {"beyond": {"position": 5.0, "levels": [0.1, 0.3]}}
     config = {"simulations": {"one": one, "two": two}, "model": {"damping_ratio": 0.1}}
-    assert parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
+    assert (
+        parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
+    )
     assert parameters(config, "two") == (
         r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
         "$b$ = 0, 0.1 and 0.3"
@@ -175,7 +211,9 @@ def test_the_parameters_of_a_simulation_in_words(shipped):
         assert "$b$" in text or r"$\beta$" in text
 
 
-def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_checked(source, project):
+def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_checked(
+    source, project
+):
     appendix = source[source.index("\n# Derivations") : source.index("\n# How accurate")]
     derivations = appendix.split("\n## ")[1:]
     assert len(derivations) >= 10
@@ -191,8 +229,14 @@ def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_che
 
 
 def test_the_table_of_stick_times():
-    values = {"release_time": (0.0, None), "stick_time": (3.93122803, None), "final_slip": (1.94166, 0.0)}
-    table = pd.DataFrame(values, index=pd.Index([0.0, 9.0], name="x")).rename_axis(columns="quantity")
+    values = {
+        "release_time": (0.0, None),
+        "stick_time": (3.93122803, None),
+        "final_slip": (1.94166, 0.0),
+    }
+    table = pd.DataFrame(values, index=pd.Index([0.0, 9.0], name="x")).rename_axis(
+        columns="quantity"
+    )
     table = table.stack(future_stack=True).rename("value").reset_index()
     found = sticking(table).splitlines()[2:]
     assert found == ["| 0 | 0 | 3.9312 | 1.9417 |", "| 9 | not measured | not measured | 0 |"]
@@ -239,7 +283,9 @@ def test_no_text_has_a_typed_number(manuscript):
     for name in DOCUMENTS:
         assert typed_numbers((manuscript / f"{name}.md").read_text(encoding="utf-8")) == []
     texts = [text for entry in read(manuscript / "errata.yaml") for text in entry.values()]
-    texts += [text for parts in read(manuscript / "captions.yaml").values() for text in parts.values()]
+    texts += [
+        text for parts in read(manuscript / "captions.yaml").values() for text in parts.values()
+    ]
     summary = read(manuscript / "summary.yaml")
     texts += [line[key] for line in summary["verdict"] for key in ("topic", "named", "text")]
     texts.append(summary["accuracy"])

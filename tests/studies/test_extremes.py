@@ -43,8 +43,12 @@ def test_the_verdict_is_computed(monkeypatch, expected, found, verdict):
 
 def test_every_edge_ends_as_it_should(study):
     table = study("extremes")
-    assert (table["verdict"] == table["should"]).all(), table[table["verdict"] != table["should"]].to_string()
-    assert {name: (len(rows), rows["value"].iloc[-1]) for name, rows in table.groupby("family")} == FAMILIES
+    assert (table["verdict"] == table["should"]).all(), table[
+        table["verdict"] != table["should"]
+    ].to_string()
+    assert {
+        name: (len(rows), rows["value"].iloc[-1]) for name, rows in table.groupby("family")
+    } == FAMILIES
     assert len(edges(table).splitlines()) == len(table) + 2
     # Refusals say the bound, flags their reason.
     messages = table.set_index("verdict")["message"]

@@ -46,7 +46,10 @@ READINGS = {"profile": 10, "arrows": 12}
 @pytest.mark.parametrize("part", READINGS)
 @pytest.mark.parametrize("release", ["total", "elastic"])
 def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, panel, release, part):
-    best, fitted = inference(table, part=part)[release], ~panel.readings["arrow"] | (part == "arrows")
+    best, fitted = (
+        inference(table, part=part)[release],
+        ~panel.readings["arrow"] | (part == "arrows"),
+    )
     assert fitted.sum() == READINGS[part]
     ratio, dx = best["damping_ratio"], best["dx"]
     assert dx == pytest.approx(BETA / ratio, rel=1e-3)
@@ -62,7 +65,11 @@ def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, pane
 def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel, part):
     profile = table[(table["part"] == part) & (table["release"] == "total")]
     rows = profile[profile["damping_ratio"] == profile["damping_ratio"].unique()[2]]
-    first, correction, weight = rows.iloc[0], rows["correction"].to_numpy(), rows["weight"].to_numpy()
+    first, correction, weight = (
+        rows.iloc[0],
+        rows["correction"].to_numpy(),
+        rows["weight"].to_numpy(),
+    )
     own = (weight * rows["pull"] ** 2).sum()
     for change in ((0.004, 0.0), (-0.004, 0.0), (0.0, 0.008), (0.0, -0.008)):
         trial = np.array([first["tau0"] + change[0], first["gamma"] + change[1]])
@@ -91,7 +98,12 @@ def test_regions_end_where_chi_square_has_risen_enough(table, release, part):
 
 def test_an_end_beyond_the_fits_is_not_known(table):
     ratio = table["damping_ratio"]
-    kept = (table["part"] == "profile") & (table["release"] == "elastic") & (ratio < 0.29) & (ratio > 0.1)
+    kept = (
+        (table["part"] == "profile")
+        & (table["release"] == "elastic")
+        & (ratio < 0.29)
+        & (ratio > 0.1)
+    )
     low, high = inference(table[kept])["elastic"]["regions"][0.95]["damping_ratio"]
     assert np.isnan(low) and np.isfinite(high)
 
@@ -103,7 +115,9 @@ def test_the_right_panel_fixes_the_width_and_nothing_else(table):
     x = np.linspace(-3.0 * width, 8.0 * width, 200_001)
     tau = Prestress(level, 0.0, width)(x)
     zero = np.flatnonzero(tau < 0.0)[-1] + 1
-    assert rows["exact"].to_numpy() == pytest.approx(0.5 * np.trapezoid(tau[zero:], x[zero:]), rel=1e-5)
+    assert rows["exact"].to_numpy() == pytest.approx(
+        0.5 * np.trapezoid(tau[zero:], x[zero:]), rel=1e-5
+    )
     # In reading errors; and the W that would meet the reading exactly, at that level.
     assert np.ptp(rows["pull"]) < 1.0
     fit = (width * rows["drawn"] / (rows["exact"] + rows["correction"])).mean()

@@ -20,10 +20,14 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
         def __init__(self, prestress, gamma, damping_ratio, release, refinement=1, alpha=0.0):
             # Half a lattice is no other scene than the whole: equal keys give equal moves.
             rng = np.random.default_rng(abs(hash((prestress, gamma, damping_ratio))) % 2**32)
-            *moved, alpha = [nudged(value, rng) for value in (prestress, gamma, damping_ratio, alpha)]
+            *moved, alpha = [
+                nudged(value, rng) for value in (prestress, gamma, damping_ratio, alpha)
+            ]
             super().__init__(*moved, release, refinement, alpha)
 
     as_numbers = rupture.as_numbers
     monkeypatch.setattr(rupture, "FrontLaw", Law)
     for module in (rupture, domains):
-        monkeypatch.setattr(module, "as_numbers", lambda *a, **k: np.array(nudged(as_numbers(*a, **k), rng)))
+        monkeypatch.setattr(
+            module, "as_numbers", lambda *a, **k: np.array(nudged(as_numbers(*a, **k), rng))
+        )

@@ -15,7 +15,13 @@ SCENES = {
     "asymmetric": (sp.Prestress(0.2, 0.6), 0.65, 0.1, 6.0, [-2.0, -1.0, 0.0, 1.0, 2.4, 4.0]),
     "strengthening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], 0.4),
     "weakening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], -0.3),
-    "across a step": (sp.Prestress(0.3, 0.3, steps=((4.0, 0.6),)), 0.65, 0.1, 7.0, [0.0, 2.4, 3.6, 4.4, 5.0]),
+    "across a step": (
+        sp.Prestress(0.3, 0.3, steps=((4.0, 0.6),)),
+        0.65,
+        0.1,
+        7.0,
+        [0.0, 2.4, 3.6, 4.4, 5.0],
+    ),
 }
 ORDER = (0.9, 1.1)
 RICHARDSON = 1e-4
@@ -23,7 +29,13 @@ RICHARDSON = 1e-4
 
 def lattice_run(profile, gamma, ratio, duration, dx, samples=None, alpha=0.0):
     boundary = "displacement" if gamma else "stress"
-    values = {"gamma": gamma, "beta": ratio * dx, "max_step": 0.5, "order": 8, "rate_strengthening": alpha}
+    values = {
+        "gamma": gamma,
+        "beta": ratio * dx,
+        "max_step": 0.5,
+        "order": 8,
+        "rate_strengthening": alpha,
+    }
     return sp.simulate(sp.Scene(boundary, profile, duration, dx, **values), samples=samples)
 
 
@@ -69,7 +81,9 @@ def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma, alpha,
     for dx in (0.02, 0.01):
         run = lattice_run(*scene, 5.0, dx, sp.Samples(times, x), alpha)
         pairs = (("sample_velocity", "slip_velocity"), ("sample_slip", "slip"))
-        errors.append([np.max(np.abs(run[sampled].values - fields[name])) for sampled, name in pairs])
+        errors.append(
+            [np.max(np.abs(run[sampled].values - fields[name])) for sampled, name in pairs]
+        )
         arrival.append(np.max(np.abs(at(run, slow, "release_time") - exact.release_time(slow))))
     for coarse, fine in zip(*errors, strict=True):
         assert fine < 0.62 * coarse

@@ -69,7 +69,9 @@ LEVELS = [(-0.02, 0.1), (-0.6, 0.6), (-0.1, 0.02), (-0.9, 0.02)]
 LATE = [pytest.param(*levels, 3000.0, marks=pytest.mark.slow) for levels in LEVELS]
 
 
-@pytest.mark.parametrize(("left", "right", "end"), [*((*levels, 800.0) for levels in LEVELS[:2]), *LATE])
+@pytest.mark.parametrize(
+    ("left", "right", "end"), [*((*levels, 800.0) for levels in LEVELS[:2]), *LATE]
+)
 def test_without_leaf_springs_a_barrier_leaves_the_centre_part_of_the_velocity(left, right, end):
     """Which fraction for large times, a crack or a pulse as it is above or below what counts as still."""
     times = np.array([0.5 * end, end])
@@ -88,7 +90,9 @@ def test_without_leaf_springs_a_barrier_leaves_the_centre_part_of_the_velocity(l
 
 
 @pytest.mark.parametrize(("left", "right"), [(0.0, 0.0), (0.02, 0.9), (0.3, 0.3)])
-def test_without_leaf_springs_the_centre_never_slows_down_between_levels_that_are_not_negative(left, right):
+def test_without_leaf_springs_the_centre_never_slows_down_between_levels_that_are_not_negative(
+    left, right
+):
     assert regime(left, right, 0.0) == "crack-like, two-way"
     found = rupture(left, right, 0.0, 80.0)
     velocity = found.slip_velocity(0.0, np.linspace(5.0, 80.0, 31))
@@ -103,12 +107,17 @@ def test_a_pulse_grows_by_half_of_the_prestress_on_its_way():
         times = np.array([20.0, 30.0])
         x = np.outer(times, np.linspace(0.6, 1.05, 401))
         early, late = np.max(found.slip_velocity(x, times[:, None]), axis=1)
-        assert growth_beyond(level) == f"pulse, one-way, {end}" and (late - early) * np.sign(level) > 0.02
+        assert (
+            growth_beyond(level) == f"pulse, one-way, {end}"
+            and (late - early) * np.sign(level) > 0.02
+        )
 
 
 def test_every_answer_is_a_regime_and_a_level_at_the_threshold_is_refused():
     levels = (-0.9, -0.02, 0.0, 0.02, 0.9)
-    found = {regime(left, right, gamma) for left in levels for right in levels for gamma in (0.0, 0.65)}
+    found = {
+        regime(left, right, gamma) for left in levels for right in levels for gamma in (0.0, 0.65)
+    }
     assert found == {*REGIMES, UNDECIDED}
     assert regime(0.0, 0.0, 0.65) == regime(0.0, 0.3, 0.65) == UNDECIDED
     with pytest.raises(ValueError, match="right"):

@@ -14,7 +14,13 @@ SCENES = [*range(18), *(pytest.param(number, marks=pytest.mark.slow) for number 
 BEFORE = 1e-7
 # Ends at which the width of a pulse and the first stick have been wrong; a front 48 times as fast as the waves.
 KNOWN = [
-    {"prestress": profile, "gamma": gamma, "damping_ratio": ratio, "release": "total", "duration": duration}
+    {
+        "prestress": profile,
+        "gamma": gamma,
+        "damping_ratio": ratio,
+        "release": "total",
+        "duration": duration,
+    }
     for profile, gamma, ratio, durations in (
         (Prestress(0.63, 0.416, 1.352), 0.215, 1.703, (20.0, 30.0)),
         (Prestress(0.5, 0.91), 0.033, 4.5321, (16.77, 17.0)),
@@ -35,8 +41,14 @@ def scene(number: int) -> dict:
         more["steps"] = ((rng.choice([-1, 1]) * rng.uniform(1.0, 4.0), rng.uniform(-0.5, 0.8)),)
     if rng.random() < 0.2:
         # Where they are felt at x = 0, they raise the peak.
-        centre, amplitude, width = rng.uniform(-4.0, 4.0), rng.uniform(-0.4, 0.4), rng.uniform(0.3, 1.5)
-        more["bumps"] = ((centre, amplitude if abs(centre) > 9.0 * width else abs(amplitude), width),)
+        centre, amplitude, width = (
+            rng.uniform(-4.0, 4.0),
+            rng.uniform(-0.4, 0.4),
+            rng.uniform(0.3, 1.5),
+        )
+        more["bumps"] = (
+            (centre, amplitude if abs(centre) > 9.0 * width else abs(amplitude), width),
+        )
     gamma = 0.0 if rng.random() < 0.2 else float(rng.choice([0.1, 0.65, rng.uniform(0.05, 1.0)]))
     return {
         "prestress": Prestress(left, right, rng.uniform(0.5, 2.0), **more),
@@ -44,14 +56,17 @@ def scene(number: int) -> dict:
         "damping_ratio": float(rng.choice([0.0, 0.1, rng.uniform(0.01, 1.0)])),
         "release": str(rng.choice(["total", "elastic"])),
         # At times that mean something too: a peak's transition, an odd multiple of it.
-        "duration": float(rng.choice([1.0, 1.5, rng.uniform(0.5, 2.5)])) * np.pi / np.sqrt(gamma or 0.5),
+        "duration": float(rng.choice([1.0, 1.5, rng.uniform(0.5, 2.5)]))
+        * np.pi
+        / np.sqrt(gamma or 0.5),
     }
 
 
 def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarray]:
     """Every method of a rupture, at positions, and at a time that is or was its end."""
     fields = {
-        name: getattr(rupture, name)(x) for name in ("release_time", "stick_time", "final_slip", "horizon")
+        name: getattr(rupture, name)(x)
+        for name in ("release_time", "stick_time", "final_slip", "horizon")
     }
     numbers = ("transition_time", "transition_length", "largest_velocity")
     found = fields | {name: getattr(rupture, name) for name in numbers} | at(rupture, x, time)
@@ -74,7 +89,9 @@ def at(rupture: Rupture, x: np.ndarray, time: float) -> dict:
 
 def reasons(rupture: Rupture) -> list[str]:
     limit = rupture.limit
-    return [end.reason for pair in rupture.front_ends for end in pair] + [limit.reason if limit else ""]
+    return [end.reason for pair in rupture.front_ends for end in pair] + [
+        limit.reason if limit else ""
+    ]
 
 
 def positions(rupture: Rupture, number: int) -> np.ndarray:
@@ -98,7 +115,9 @@ def test_inputs_nudged_in_their_last_bits(number):
     # Where a front has been slow and outruns the waves again its position is a double root too.
     again = any(part.restarts[side] for part in rupture.stretches for side in part.restarts)
     for name, value in expected.items():
-        tolerance = NUDGED_DOUBLE if again or name in ("first_stick", "limit", "horizon") else NUDGED
+        tolerance = (
+            NUDGED_DOUBLE if again or name in ("first_stick", "limit", "horizon") else NUDGED
+        )
         assert found[name] == pytest.approx(value, rel=tolerance, abs=tolerance, nan_ok=True), name
 
 
@@ -116,9 +135,13 @@ def test_the_end_is_a_time_like_any_other(number):
     for name in ("release_time", "stick_time"):
         value = getattr(longer, name)(inside)
         value = np.where(value <= duration, value, np.nan)
-        assert getattr(rupture, name)(inside) == pytest.approx(value, rel=END, abs=END, nan_ok=True), name
+        assert getattr(rupture, name)(inside) == pytest.approx(
+            value, rel=END, abs=END, nan_ok=True
+        ), name
     first = longer.first_stick if longer.first_stick and longer.first_stick[0] <= duration else None
-    assert (rupture.first_stick or (np.nan,)) == pytest.approx(first or (np.nan,), rel=END, nan_ok=True)
+    assert (rupture.first_stick or (np.nan,)) == pytest.approx(
+        first or (np.nan,), rel=END, nan_ok=True
+    )
     # What the front has come to at the end is released then, and has not moved.
     known = np.isfinite(rupture.slip(fronts, duration))
     assert np.array_equal(np.isfinite(rupture.release_time(fronts)), known)

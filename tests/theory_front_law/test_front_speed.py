@@ -26,9 +26,13 @@ def test_ratios_one_and_zero_are_closed_forms():
     assert prestress_for_speed(v, 1.0) == pytest.approx((v - 1.0) / v, rel=ROUNDING)
     # And without damping.
     for release in ("total", "elastic"):
-        assert front_speed(LEVELS, 0.0, release) == pytest.approx(1.0 / np.sqrt(1.0 - LEVELS**2), rel=1e-14)
+        assert front_speed(LEVELS, 0.0, release) == pytest.approx(
+            1.0 / np.sqrt(1.0 - LEVELS**2), rel=1e-14
+        )
         # The first order in b is within 10 b of it.
-        assert front_speed(LEVELS, 1e-14, release) == pytest.approx(front_speed(LEVELS, 0.0), rel=SPEED)
+        assert front_speed(LEVELS, 1e-14, release) == pytest.approx(
+            front_speed(LEVELS, 0.0), rel=SPEED
+        )
 
 
 @pytest.mark.parametrize("ratio", [1e4, 1e6, 1e12])
@@ -70,13 +74,17 @@ def test_springs_without_damping():
         x = np.sqrt(gamma) * dx / (2.0 * tau)
         closed = x / np.arcsin(x * np.sqrt(1.0 - tau**2))
         assert lattice_front_speed(tau, gamma, dx) == pytest.approx(closed, rel=1e-14)
-        assert lattice_front_speed(tau, gamma, dx, 1e-15, "elastic") == pytest.approx(closed, rel=1e-11)
+        assert lattice_front_speed(tau, gamma, dx, 1e-15, "elastic") == pytest.approx(
+            closed, rel=1e-11
+        )
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
 @pytest.mark.parametrize("ratio", [0.0, 0.05, 1.0, 6.0])
 def test_springs_of_no_strength(ratio, release):
-    found = [lattice_front_speed(0.5, gamma, 1.0, ratio, release) for gamma in (1e-12, 1e-20, 1e-40)]
+    found = [
+        lattice_front_speed(0.5, gamma, 1.0, ratio, release) for gamma in (1e-12, 1e-20, 1e-40)
+    ]
     assert found == pytest.approx([front_speed(0.5, ratio, release)] * 3, rel=1e-10)
 
 
@@ -86,7 +94,9 @@ def test_springs_next_to_one(ratio, release):
     """Fast fronts outrun what leaf springs do, and nothing jumps where the series takes over from the quadrature."""
     for rest in (1e-10, 1e-12, 1e-14):
         free = front_speed(1.0 - rest, ratio, release)
-        assert lattice_front_speed(1.0 - rest, 0.65, 0.01, ratio, release) == pytest.approx(free, rel=1e-10)
+        assert lattice_front_speed(1.0 - rest, 0.65, 0.01, ratio, release) == pytest.approx(
+            free, rel=1e-10
+        )
     quadrature = lattice_front_speed(1.0 - 1.001e-7, 1.0, 1.0, ratio, release)
     series = lattice_front_speed(1.0 - 0.999e-7, 1.0, 1.0, ratio, release)
     free = front_speed(1.0 - 0.999e-7, ratio, release) / front_speed(1.0 - 1.001e-7, ratio, release)
@@ -98,10 +108,15 @@ def test_the_continuum_is_the_limit_of_the_lattice():
     tau, gamma, beta = 0.5, 1.0, 0.3
     limit = sp.theory.continuum_front_speed(tau, gamma, beta)
     assert limit == pytest.approx(1.3545709229571927, rel=1e-15)
-    errors = [lattice_front_speed(tau, gamma, dx, beta / dx, "elastic") - limit for dx in (4e-4, 2e-4, 1e-4)]
+    errors = [
+        lattice_front_speed(tau, gamma, dx, beta / dx, "elastic") - limit
+        for dx in (4e-4, 2e-4, 1e-4)
+    ]
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=1e-2)
     assert abs(2.0 * errors[2] - errors[1]) < 1e-6
-    assert sp.theory.continuum_front_speed(0.3, 0.0, 1.0) == pytest.approx(1.0 / np.sqrt(0.7), rel=1e-15)
+    assert sp.theory.continuum_front_speed(0.3, 0.0, 1.0) == pytest.approx(
+        1.0 / np.sqrt(0.7), rel=1e-15
+    )
 
 
 def test_a_fold():
@@ -112,12 +127,15 @@ def test_a_fold():
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
 @pytest.mark.parametrize(
-    ("v", "b", "g"), [(1.2, 0.1, 0.01), (1.05, 0.3, 0.3), (2.0, 1.0, 0.65), (1.5, 0.3, 3.0), (1.2, 0.1, 0.0)]
+    ("v", "b", "g"),
+    [(1.2, 0.1, 0.01), (1.05, 0.3, 0.3), (2.0, 1.0, 0.65), (1.5, 0.3, 3.0), (1.2, 0.1, 0.0)],
 )
 def test_block_by_block(v, b, g, release):
     front = steady_front(v, b, g, release, blocks=100 if g == 0.0 else 60)
     if g == 0.0:
-        assert front.prestress == pytest.approx(prestress_for_speed(v, b, release), rel=BLOCK_BY_BLOCK)
+        assert front.prestress == pytest.approx(
+            prestress_for_speed(v, b, release), rel=BLOCK_BY_BLOCK
+        )
     else:
         found = lattice_front_speed(front.prestress, g, 1.0, b, release)
         assert found == pytest.approx(v, rel=BLOCK_BY_BLOCK)
@@ -146,9 +164,18 @@ LATTICES = [
 @pytest.mark.parametrize("case", LATTICES, ids=str)
 def test_lattice(case):
     tau, gamma, dx, b, release, alpha = (*case, 0.0)[:6]
-    law = lattice_front_speed(tau, gamma, dx, b, release, alpha) if gamma else front_speed(tau, b, release)
+    law = (
+        lattice_front_speed(tau, gamma, dx, b, release, alpha)
+        if gamma
+        else front_speed(tau, b, release)
+    )
     accuracy = {"order": 8, "max_step": 0.15, "resolved_blocks": 1} if gamma else {"max_step": 0.05}
-    values = {"gamma": gamma, "beta": b * dx, "release": release, "rate_strengthening": alpha} | accuracy
+    values = {
+        "gamma": gamma,
+        "beta": b * dx,
+        "release": release,
+        "rate_strengthening": alpha,
+    } | accuracy
     boundary, duration = ("displacement", 600.0 * dx / law) if gamma else ("stress", 14.0)
     run = sp.simulate(sp.Scene(boundary, sp.Prestress(tau, tau), duration, dx, **values))
     x, t = run.x.to_numpy(), run.release_time.to_numpy()

@@ -26,12 +26,24 @@ NO_NUMBERS = (
     None, "0.5", True, [], {}, object(), 1j, math.nan, math.inf, 10**400, [None], [[1.0], [2.0, 3.0]], b"bytes",
     np.float32("inf"),
 )  # fmt: skip
-OF_SCENES = ("dx", "duration", "gamma", "beta", "max_step", "order", "friction_ratio", "resolved_blocks")
+OF_SCENES = (
+    "dx",
+    "duration",
+    "gamma",
+    "beta",
+    "max_step",
+    "order",
+    "friction_ratio",
+    "resolved_blocks",
+)
 # By the argument.
 TAKE_A_NUMBER = [
     *((name, lambda x, name=name: sp.Scene(**HELD | {name: x})) for name in OF_SCENES),
     *(
-        (f"prestress.{name}", lambda x, name=name: sp.Prestress(**{"left": 0.0, "right": 0.0} | {name: x}))
+        (
+            f"prestress.{name}",
+            lambda x, name=name: sp.Prestress(**{"left": 0.0, "right": 0.0} | {name: x}),
+        )
         for name in ("left", "right", "width", "peak")
     ),
     ("prestress.bumps", lambda x: sp.Prestress(0.0, 0.0, bumps=((x, 0.1, 1.0),))),
@@ -98,7 +110,9 @@ PRESTRESSES = {
     "prestress.steps position: inf; allowed: a finite number": {"steps": ((math.inf, 0.1),)},
     "prestress.steps level: 1.2; allowed: a finite number and < 1": {"steps": ((30.0, 1.2),)},
     "prestress.bumps width: 0.0; allowed: a finite number and > 0": {"bumps": ((1.0, 0.1, 0.0),)},
-    "prestress.bumps: (1.0, '0.1', 1.0); allowed: a list of [centre,": {"bumps": ((1.0, "0.1", 1.0),)},
+    "prestress.bumps: (1.0, '0.1', 1.0); allowed: a list of [centre,": {
+        "bumps": ((1.0, "0.1", 1.0),)
+    },
     "prestress.bumps: 'abc'; allowed: a list of [centre, amplitude, width]": {"bumps": "abc"},
 }
 ATTRIBUTES = {
@@ -109,11 +123,15 @@ ATTRIBUTES = {
 }
 RUPTURES = {
     "gamma: -1.0; allowed: a finite number and >= 0": {"gamma": -1.0},
-    "damping_ratio: 1000000000.0; allowed: a finite number and >= 0 and <= 1000000": {"damping_ratio": 1e9},
+    "damping_ratio: 1000000000.0; allowed: a finite number and >= 0 and <= 1000000": {
+        "damping_ratio": 1e9
+    },
     "damping_ratio: 1e+200; allowed": {"damping_ratio": 1e200},
     "release: 'both'; allowed: total, elastic": {"release": "both"},
     "duration: 0.0; allowed: a finite number and >= 1e-09": {"duration": 0.0},
-    "prestress: below 1 everywhere; allowed: a profile that": {"prestress": sp.Prestress(0, 0, peak=0.9)},
+    "prestress: below 1 everywhere; allowed: a profile that": {
+        "prestress": sp.Prestress(0, 0, peak=0.9)
+    },
     "prestress: 'flat'; allowed: a Prestress": {"prestress": "flat"},
     "lowest prestress: -1e+308; allowed": {"prestress": sp.Prestress(-1e308, 0.0)},
     "refinement: 0; allowed: a whole number and >= 1": {"refinement": 0},
@@ -134,7 +152,10 @@ SETTINGS = {
 }
 SAMPLES = {
     "samples.times: not increasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
-    "samples.times: not increasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
+    "samples.times: not increasing or negative; allowed: increasing times >= 0": (
+        [-0.1, 1.0],
+        [0.0],
+    ),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
     "samples: times and positions; allowed: one-dimensional": ([[0.0, 1.0]], [0.0]),
     "samples: times and positions; allowed: one-dimensional arrays": ([0.0, 1.0], 0.0),
@@ -200,7 +221,9 @@ KINDS = (
     (SETTINGS, lambda change: sp.settings_for(**GOOD_SETTINGS | change)),
     (SAMPLES, lambda change: sp.Samples(*change)),
 )
-CALLS += [(named, partial(call, change)) for cases, call in KINDS for named, change in cases.items()]
+CALLS += [
+    (named, partial(call, change)) for cases, call in KINDS for named, change in cases.items()
+]
 
 
 @pytest.mark.parametrize(("argument", "call"), TAKE_A_NUMBER)

@@ -88,7 +88,8 @@ SLOW = [("stress", 5), ("displacement", 5), ("profiles", 2)]
 
 
 @pytest.mark.parametrize(
-    ("name", "chunks"), [("displacement", 2), *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW)]
+    ("name", "chunks"),
+    [("displacement", 2), *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW)],
 )
 def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
     whole = made(name)
@@ -108,5 +109,9 @@ def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
     for index, kind in enumerate(KINDS):
         files = {"chunks": [short[index], long[index]], "finest": [whole[1]]}
         with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
-            join.run(files, {"joined": tmp_path / "joined"}, {"kind": kind, "record": ["fronts", "fields"]})
+            join.run(
+                files,
+                {"joined": tmp_path / "joined"},
+                {"kind": kind, "record": ["fronts", "fields"]},
+            )
     assert not any(tmp_path.iterdir())

@@ -19,7 +19,14 @@ CONFIG = {"preset": "paper", "model": {"release": "total"}}
 
 
 def tree(
-    folder, run=None, speed=1.0, studied=None, uncertainty=0.01, verdict="reproduced", config=None, **more
+    folder,
+    run=None,
+    speed=1.0,
+    studied=None,
+    uncertainty=0.01,
+    verdict="reproduced",
+    config=None,
+    **more,
 ) -> Path:
     """Results with one measured number, and a grid study of it, or of another value, and more columns."""
     run = RUN | (run or {})
@@ -28,7 +35,11 @@ def tree(
         (folder / name).mkdir(parents=True)
     lattice = {"scheme": "localised", "dx": 0.01, "order": 8, "max_step": 1.0, "speed": speed}
     pd.DataFrame([run | lattice | more]).to_csv(folder / TABLE, index=False)
-    study = {"quantity": "speed", "value": speed if studied is None else studied, "uncertainty": uncertainty}
+    study = {
+        "quantity": "speed",
+        "value": speed if studied is None else studied,
+        "uncertainty": uncertainty,
+    }
     pd.DataFrame([{"point": 0} | run | study]).to_csv(folder / STUDY, index=False)
     (folder / "claims.json").write_text(json.dumps([{"id": "speed", "verdict": verdict}]))
     (folder / "provenance.json").write_text(json.dumps({"config": config or CONFIG}))
@@ -48,7 +59,11 @@ DIFFERENT = [
     # On one lattice everything agrees.
     ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: 1 against 1.5"),
     ({}, {"speed": NAN, "studied": 1.0}, "speed: 1 against nan"),
-    ({"pulse_state": "steady"}, {"pulse_state": "unsteady"}, "pulse_state: 'steady' against 'unsteady'"),
+    (
+        {"pulse_state": "steady"},
+        {"pulse_state": "unsteady"},
+        "pulse_state: 'steady' against 'unsteady'",
+    ),
     ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
     ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
     ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
@@ -67,7 +82,10 @@ CHANGED = pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}])
 MISSING = [
     # As after a run of a single figure with another gamma: the study of uncertainties is the old one.
     (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
-    (lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"), "own.csv: in one tree only"),
+    (
+        lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"),
+        "own.csv: in one tree only",
+    ),
     (lambda tree: (tree / "provenance.json").unlink(), "configurations not compared"),
     (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
     (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
@@ -115,4 +133,8 @@ def test_an_odd_tree_is_refused_in_one_line(tmp_path, capsys, case, which):
     path.mkdir() if text is None else path.write_text(text)
     assert main([str(trees["here"]), str(trees["there"])]) == 1
     printed = capsys.readouterr().out
-    assert printed.startswith(f"{path}: cannot be read (") and said in printed and printed.count("\n") == 1
+    assert (
+        printed.startswith(f"{path}: cannot be read (")
+        and said in printed
+        and printed.count("\n") == 1
+    )

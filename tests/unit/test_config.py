@@ -21,7 +21,9 @@ SMALL_FACTOR = 3.0
 
 
 def scenes_of(shipped: dict, name: str, coarser: float = 1.0):
-    sweep = resolve(shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"], coarser)
+    sweep = resolve(
+        shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"], coarser
+    )
     return sweep, expand(sweep)[0]
 
 
@@ -36,14 +38,18 @@ def test_a_sweep_is_the_product_of_its_lists_and_the_paper_preset_the_published_
 
 
 def test_a_coarser_lattice_keeps_the_damping_ratio(shipped):
-    (_, fine), (_, coarse) = (scenes_of(shipped, "steady_displacement", coarser) for coarser in (1.0, 2.0))
+    (_, fine), (_, coarse) = (
+        scenes_of(shipped, "steady_displacement", coarser) for coarser in (1.0, 2.0)
+    )
     for a, b in zip(fine, coarse, strict=True):
         assert (b.dx, b.damping_ratio) == pytest.approx((2.0 * a.dx, a.damping_ratio))
         assert b.duration == a.duration
 
 
 def test_the_sweeps_cover_what_the_paper_states(shipped):
-    sweep, held = (shipped["simulations"][f"scaling_{boundary}"] for boundary in ("displacement", "stress"))
+    sweep, held = (
+        shipped["simulations"][f"scaling_{boundary}"] for boundary in ("displacement", "stress")
+    )
     assert min(sweep["left"]) <= 0.1 and max(sweep["left"]) >= 0.9
     assert min(sweep["gamma"]) <= 1e-3 and max(sweep["gamma"]) >= 1.0
     assert len(sweep["left"]) * len(sweep["gamma"]) >= 60
@@ -54,7 +60,23 @@ def test_the_sweeps_cover_what_the_paper_states(shipped):
         assert ratios[0] == 0.0 < ratios[1] and len(ratios) >= 5 and ratios[-1] / ratios[1] >= 100.0
 
 
-LEVELS = (-100.0, -10.0, -1.0, -0.3, -0.01, 0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.99, 0.999, 0.9999, 1.0 - 1e-8)
+LEVELS = (
+    -100.0,
+    -10.0,
+    -1.0,
+    -0.3,
+    -0.01,
+    0.0,
+    0.01,
+    0.1,
+    0.3,
+    0.6,
+    0.9,
+    0.99,
+    0.999,
+    0.9999,
+    1.0 - 1e-8,
+)
 RATIOS = (0.0, 1e-3, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4)
 GAMMAS = (1e-8, 1e-4, 1e-2, 0.3, 0.65, 1.0, 10.0, 1e3, 1e5)
 WIDTHS = (0.5, 1.0, 3.0, 16.0, 1e3, 1e9)
@@ -107,7 +129,12 @@ def test_slipping_again_and_again_is_bounded():
     assert run.attrs["block_updates"] < SMALL_FACTOR * bound_of(scene).block_updates
 
 
-PULSE = {"boundary": "displacement", "gamma": 0.65, "prestress": sp.Prestress(0.5, 0.5), "damping_ratio": 0.1}
+PULSE = {
+    "boundary": "displacement",
+    "gamma": 0.65,
+    "prestress": sp.Prestress(0.5, 0.5),
+    "damping_ratio": 0.1,
+}
 CRACK = {"boundary": "stress", "prestress": sp.Prestress(-1.0, 0.0), "damping_ratio": 0.1}
 
 
@@ -117,8 +144,12 @@ def accuracy_for(config: dict, **changes) -> dict:
 
 @pytest.mark.parametrize("scene", [PULSE, CRACK], ids=["pulse", "crack"])
 def test_a_smaller_error_takes_a_finer_lattice_at_the_same_damping_ratio(scene):
-    plain = {key: value for key, value in scene.items() if key != "damping_ratio"} | {"duration": 1.0}
-    found = [sp.Scene(**plain, **sp.settings_for(error, **scene)) for error in (1e-2, 3e-3, 1e-3, 1e-4)]
+    plain = {key: value for key, value in scene.items() if key != "damping_ratio"} | {
+        "duration": 1.0
+    }
+    found = [
+        sp.Scene(**plain, **sp.settings_for(error, **scene)) for error in (1e-2, 3e-3, 1e-3, 1e-4)
+    ]
     spacings = [scene.dx for scene in found]
     assert spacings == sorted(spacings, reverse=True)
     # First order where it is fine: the front speed, of second order, does not set it.
@@ -135,7 +166,9 @@ def test_the_spacing_follows_the_scenes_own_lengths():
     assert spacing(prestress=sp.Prestress(0.1, 0.5)) < spacing()
     assert spacing(damping_ratio=1.0) < spacing()
     assert spacing(fields=False) > spacing()
-    wide, bumped = (sp.Prestress(0.5, 0.5, 4.0, bumps=bumps) for bumps in ((), ((20.0, -0.2, 0.05),)))
+    wide, bumped = (
+        sp.Prestress(0.5, 0.5, 4.0, bumps=bumps) for bumps in ((), ((20.0, -0.2, 0.05),))
+    )
     assert spacing(prestress=bumped) < spacing(prestress=wide)
     deep = CRACK | {"prestress": sp.Prestress(-10.0, 0.0)}
     assert sp.settings_for(1e-2, **deep)["dx"] < sp.settings_for(1e-2, **CRACK)["dx"]
@@ -164,7 +197,11 @@ def test_with_an_accuracy_each_scene_has_its_own_spacing(config):
     assert [scene.dx for scene in coarser] == pytest.approx([2.0 * scene.dx for scene in scenes])
 
 
-OWN = {"continuum_fixed_ratio": "dx", "burridge_knopoff_speed": "spacing", "continuum_fixed_beta": "beta"}
+OWN = {
+    "continuum_fixed_ratio": "dx",
+    "burridge_knopoff_speed": "spacing",
+    "continuum_fixed_beta": "beta",
+}
 
 
 @pytest.mark.parametrize(("name", "own"), OWN.items())
@@ -182,7 +219,12 @@ def test_a_spacing_that_is_the_question_stays(config, name, own):
 
 
 def test_the_textbook_scheme_promises_nothing(config):
-    model, accuracy = config["model"] | {"scheme": "fixed_step"}, accuracy_for(config, accuracy=1e-2)
+    model, accuracy = (
+        config["model"] | {"scheme": "fixed_step"},
+        accuracy_for(config, accuracy=1e-2),
+    )
     block = resolve(config["simulations"]["steady_displacement"], model, accuracy)
-    with pytest.raises(ValueError, match=r"scheme: 'fixed_step'; allowed: 'localised' where accuracy"):
+    with pytest.raises(
+        ValueError, match=r"scheme: 'fixed_step'; allowed: 'localised' where accuracy"
+    ):
         promised(block)

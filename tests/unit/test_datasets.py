@@ -22,12 +22,19 @@ from slippulse.simulation.simulate import run_sweep
 RECORDS = ("fronts", "fields", "samples")
 SCENES = [
     sp.Scene("displacement", sp.Prestress(tau, 0.5), duration, dx, gamma=0.65, beta=0.1 * dx)
-    for tau, duration, dx in ((0.3, 2.0, 0.05), (0.5, 6.0, 0.02), (0.7, 1.0, 0.1), (-0.2, 4.0, 0.05))
+    for tau, duration, dx in (
+        (0.3, 2.0, 0.05),
+        (0.5, 6.0, 0.02),
+        (0.7, 1.0, 0.1),
+        (-0.2, 4.0, 0.05),
+    )
 ] + [
     sp.Scene("stress", sp.Prestress(-0.5, 0.0), 4.0, 0.05),
     sp.Scene("stress", sp.Prestress(0.5, 0.5, peak=0.9), 4.0, 0.05),
 ]
-SAMPLES = [sp.Samples(np.linspace(0.0, scene.duration, 7), np.linspace(-1.0, 1.0, 5)) for scene in SCENES]
+SAMPLES = [
+    sp.Samples(np.linspace(0.0, scene.duration, 7), np.linspace(-1.0, 1.0, 5)) for scene in SCENES
+]
 
 
 @cache
@@ -57,7 +64,9 @@ def test_a_point_is_what_the_scene_alone_gives():
 def test_only_what_is_asked_for_is_kept():
     fields, whole = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
     sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
-    for record, names in zip(RECORDS, (fields | {*FRONTS}, fields | {*FIELDS}, sampled), strict=True):
+    for record, names in zip(
+        RECORDS, (fields | {*FRONTS}, fields | {*FIELDS}, sampled), strict=True
+    ):
         run = point(sweep(record=(record,)), 1)
         assert set(run.variables) == names
         assert all(run[name].variable.equals(whole[name].variable) for name in names), record
@@ -74,7 +83,9 @@ def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_
         run_sweep([*SCENES, broken], None, ("fronts",), 2)
 
 
-ONE = sp.Scene("displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, gamma=0.65, beta=0.005, max_step=0.4)
+ONE = sp.Scene(
+    "displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, gamma=0.65, beta=0.005, max_step=0.4
+)
 
 
 @pytest.mark.parametrize("scheme", ["localised", "continuum"])
@@ -142,17 +153,27 @@ def test_a_data_file_follows_the_conventions_it_names_and_every_variable_has_uni
 
 
 def test_the_table_of_columns_has_the_units_and_the_meaning_that_files_have(project):
-    rows = (project / "docs/columns.md").read_text(encoding="utf-8").replace("\\|", "|").splitlines()
-    exact = sp.run_sweep([dataclasses.replace(HELD, scheme="continuum")] * 2, record=("fronts", "fields"))
+    rows = (
+        (project / "docs/columns.md").read_text(encoding="utf-8").replace("\\|", "|").splitlines()
+    )
+    exact = sp.run_sweep(
+        [dataclasses.replace(HELD, scheme="continuum")] * 2, record=("fronts", "fields")
+    )
     assert exact.sizes["point"] == 2 and np.isfinite(exact["first_stick_time"]).all()
-    kinds = {name: values.dtype.kind for data in (sweep(), exact) for name, values in data.variables.items()}
+    kinds = {
+        name: values.dtype.kind
+        for data in (sweep(), exact)
+        for name, values in data.variables.items()
+    }
     for name, meaning in VARIABLES.items():
         units = ("1", "count") if kinds.get(name) in (None, *"bif") else ("text",)
         assert any(f"| `{name}` | {unit} | {meaning} |" in rows for unit in units), name
 
 
 def test_a_table_has_nine_digits_and_no_index(tmp_path):
-    save_table(pd.DataFrame({"name": ["a"], "value": [np.pi], "missing": [np.nan]}), tmp_path / "t.csv")
+    save_table(
+        pd.DataFrame({"name": ["a"], "value": [np.pi], "missing": [np.nan]}), tmp_path / "t.csv"
+    )
     assert (tmp_path / "t.csv").read_text() == "name,value,missing\na,3.14159265,\n"
     assert load_table(tmp_path / "t.csv")["value"].tolist() == [3.14159265]
 
@@ -184,7 +205,9 @@ def test_a_writer_sees_the_old_file_until_it_is_done_and_leaves_one_as_readable_
     write_whole(path, write)
     assert path.read_text() == "new"
     (tmp_path / "plain.txt").touch()
-    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE((tmp_path / "plain.txt").stat().st_mode)
+    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(
+        (tmp_path / "plain.txt").stat().st_mode
+    )
 
 
 HELD = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 9.0, 0.1, gamma=0.65, beta=0.01)

@@ -46,7 +46,13 @@ def test_a_second_nucleation_point_beyond_the_first_lattice_is_released_at_once(
 
 @pytest.mark.parametrize(("level", "ratio"), [(0.0, 0.0), (-0.6, 5.0)], ids=["three", "one"])
 def test_the_lowest_stress_of_a_stuck_block_is_not_above_what_is_left_at_the_end(level, ratio):
-    values = {"gamma": 0.65, "max_step": 0.05, "order": 8, "resolved_blocks": 1, "friction_ratio": ratio}
+    values = {
+        "gamma": 0.65,
+        "max_step": 0.05,
+        "order": 8,
+        "resolved_blocks": 1,
+        "friction_ratio": ratio,
+    }
     scene = sp.Scene("displacement", sp.Prestress(level, level), 40.0, 1.0, **values)
     run = sp.simulate(scene)
     lowest = elastic_stress(run)[~sliding(run)].min()

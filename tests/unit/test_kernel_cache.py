@@ -15,7 +15,9 @@ COMPILE_ALL = "from slippulse.solver.compilation import compile_all; compile_all
 
 def run_with(folder, program: str, **more: str) -> str:
     environment = os.environ | {"SLIPPULSE_CACHE": str(folder)} | more
-    return subprocess.check_output([sys.executable, "-c", program], env=environment, text=True).strip()
+    return subprocess.check_output(
+        [sys.executable, "-c", program], env=environment, text=True
+    ).strip()
 
 
 def test_any_edit_a_new_source_and_a_new_name_change_the_digest(tmp_path):
@@ -48,14 +50,21 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
     shutil.copy2(jit.__file__, package / "jit.py")
     (package / "__init__.py").write_text("")
     caller = "@entry\ndef caller(x): return 10 * helper(x)\n"
-    (package / "caller.py").write_text(f"from .helper import helper\nfrom .jit import entry\n{caller}")
+    (package / "caller.py").write_text(
+        f"from .helper import helper\nfrom .jit import entry\n{caller}"
+    )
     for added, result in ((1, "20"), (2, "30")):
         helper = f"from .jit import inner\n@inner()\ndef helper(x): return x + {added}\n"
         (package / "helper.py").write_text(helper)
         # Python's own cache tells files apart by the second of their last change.
         environment = {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
-        assert run_with(cache, "from edited.caller import caller; print(caller(1))", **environment) == result
-        assert len(list(cache.iterdir())) == added and list(cache.rglob("*.nbi")), "nothing was cached"
+        assert (
+            run_with(cache, "from edited.caller import caller; print(caller(1))", **environment)
+            == result
+        )
+        assert len(list(cache.iterdir())) == added and list(cache.rglob("*.nbi")), (
+            "nothing was cached"
+        )
 
 
 @pytest.mark.slow
@@ -63,9 +72,13 @@ def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
     compiled = {path.name for path in untouched_kernels.rglob("*.nbc")}
     assert len(compiled) == 2
     for scheme in SCHEMES:
-        scene = f"'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1, beta=0.01, scheme={scheme!r}, order=8"
+        scene = (
+            f"'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1, beta=0.01, scheme={scheme!r}, order=8"
+        )
         samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
-        run_with(untouched_kernels, f"import slippulse as sp; sp.simulate(sp.Scene({scene}), {samples})")
+        run_with(
+            untouched_kernels, f"import slippulse as sp; sp.simulate(sp.Scene({scene}), {samples})"
+        )
     assert {path.name for path in untouched_kernels.rglob("*.nbc")} == compiled
 
 

@@ -27,7 +27,13 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
     h = float(random.uniform(0.01, 2.0))
     inside = float(random.uniform(0.02, 0.98)) * h
     pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
-    roots = [inside, -random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0), pair, pair.conjugate()]
+    roots = [
+        inside,
+        -random.uniform(0.5, 2.0),
+        h + random.uniform(0.5, 2.0),
+        pair,
+        pair.conjugate(),
+    ]
     coefficients = sign * np.real(polyfromroots(roots))
     found = from_python(foresight.crossing)(coefficients, 5, lower * h, h)
     assert found == pytest.approx(inside, abs=tol.ROOT)
@@ -36,7 +42,9 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
 def test_crossing_finds_a_root_of_zero_slope_and_one_at_the_end():
     hard = ([-0.125, 0.75, -1.5, 1.0], 0.5, tol.ROOT ** (1.0 / 3.0)), ([-1.0, 1.0], 1.0, tol.ROOT)
     for coefficients, root, accuracy in hard:
-        found = from_python(foresight.crossing)(np.array(coefficients), len(coefficients) - 1, 0.0, 1.0)
+        found = from_python(foresight.crossing)(
+            np.array(coefficients), len(coefficients) - 1, 0.0, 1.0
+        )
         assert found == pytest.approx(root, abs=accuracy)
 
 
@@ -51,7 +59,9 @@ def stop(coefficients, h: float, now: float = 0.0):
 
 
 # Real parts of a product with a positive polynomial; a dip is below 0 for a hundredth of the time only.
-DIP, NO_DIP = (polyfromroots([a, b, 1j, -1j]).real for a, b in ((0.3, 0.31), (0.3 + 0.01j, 0.3 - 0.01j)))
+DIP, NO_DIP = (
+    polyfromroots([a, b, 1j, -1j]).real for a, b in ((0.3, 0.31), (0.3 + 0.01j, 0.3 - 0.01j))
+)
 
 
 STOPS = {
@@ -82,7 +92,9 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
     """The two evaluations of the velocity, nested differently, need not agree on the sign of a rounding error."""
     random = np.random.default_rng(0)
     for _ in range(2000):
-        coefficients = np.array([random.uniform(0.1, 1), random.uniform(-3, -1), *random.uniform(-1, 1, 3)])
+        coefficients = np.array(
+            [random.uniform(0.1, 1), random.uniform(-3, -1), *random.uniform(-1, 1, 3)]
+        )
         if from_python(foresight.polynomial)(coefficients, 4, 1.0) < 0.0:
             root = from_python(foresight.crossing)(coefficients, 4, 0.0, 1.0)
             for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
@@ -103,7 +115,9 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
         (0.9, 1.0, 0.0, 0.5, 0.2, 0.2),
     ],
 )
-def test_a_block_is_released_when_its_stress_passes_the_threshold(height, speed, slowing, h, now, release):
+def test_a_block_is_released_when_its_stress_passes_the_threshold(
+    height, speed, slowing, h, now, release
+):
     """A neighbour moves with ``speed`` and ``slowing``."""
     motion, forecast = arrays.make_motion(6, 5), arrays.make_forecast(5, 4)
     motion.w[1, 1], motion.w[2, 1], motion.tau[2] = speed, -slowing, height
@@ -141,6 +155,8 @@ def test_segments_after_random_events_agree_with_a_mask(seed):
         assert np.array_equal(np.column_stack([kept.starts[:n], kept.ends[:n]]).ravel(), edges)
         assert segments.holds(kept, inside) == mask[inside]
         left, right = segments.sliding_beside(kept, inside)
-        assert mask[inside - left : inside].all() and (left == inside or not mask[inside - left - 1])
+        assert mask[inside - left : inside].all() and (
+            left == inside or not mask[inside - left - 1]
+        )
         after = mask[inside + 1 :]
         assert after[:right].all() and not after[right : right + 1].any()

@@ -62,7 +62,12 @@ CASES = {
 
 @pytest.mark.parametrize(
     ("rule", "arguments", "verdict"),
-    [(rule, case, verdict) for rule in CASES for verdict, cases in CASES[rule].items() for case in cases],
+    [
+        (rule, case, verdict)
+        for rule in CASES
+        for verdict, cases in CASES[rule].items()
+        for case in cases
+    ],
 )
 def test_the_verdict_of_each_rule(rule, arguments, verdict):
     assert rule(*arguments) == verdict
@@ -93,7 +98,12 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
     assert (claim["verdict"], claim["choice"]) == (DEPENDS, "damping_ratio")
     assert (claim["holds_at"], claim["combinations"]) == (2, 4)
     assert claim["why"].startswith("It holds at 2 of 4 combinations.")
-    sides = "holds at 0 (13.6 %)", "fails at 0.058 (20.4 %)", "holds at elastic (15.6 %)", "total (23.5 %)"
+    sides = (
+        "holds at 0 (13.6 %)",
+        "fails at 0.058 (20.4 %)",
+        "holds at elastic (15.6 %)",
+        "total (23.5 %)",
+    )
     assert all(side in claim["why"] for side in sides)
     found = rules.flips(claim["at"], 0.2)
     assert [(flip["below"], flip["above"]) for flip in found] == [
@@ -104,7 +114,9 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
 
 def test_one_verdict_at_every_choice_is_the_verdict():
     assert sorted(WORST_FIRST) == sorted(VERDICTS)
-    assert over_choices(LENGTHS[1::2])["verdict"] == "reproduced" and "why" not in over_choices(LENGTHS[1::2])
+    assert over_choices(LENGTHS[1::2])["verdict"] == "reproduced" and "why" not in over_choices(
+        LENGTHS[1::2]
+    )
     assert over_choices(LENGTHS[0::2])["verdict"] == "not reproduced"
     unsure = over_choices([(at("total", 0.0), judged(0.19, 0.05)), *LENGTHS[3:]])
     assert unsure["verdict"] == "reproduced with caveat" and "0" in unsure["why"]
@@ -113,7 +125,9 @@ def test_one_verdict_at_every_choice_is_the_verdict():
 
 def test_no_claim_compares_a_function_with_itself(project):
     """Each is judged by measured numbers of lattices, by the solved model, or is algebra."""
-    claims = yaml.safe_load((project / "manuscript/claims.yaml").read_text(encoding="utf-8"))["claims"]
+    claims = yaml.safe_load((project / "manuscript/claims.yaml").read_text(encoding="utf-8"))[
+        "claims"
+    ]
     others = ("studies.", "predictions:", "algebra", "a run")
     for id, entry in claims.items():
         parts = [part.strip() for part in entry["source"].split(";")]
@@ -144,13 +158,19 @@ LEVELS = [0.2, 0.4, 0.6, 0.8]
 def evidence(measure=lambda level, factor: level, flagged: int | None = None) -> Evidence:
     """One sweep over four levels, measured as a function of both, on spacings 1, 2 and 4, predicted."""
     numbers = ([measure(level, factor) for level in LEVELS] for factor in (1.0, 2.0, 4.0))
-    tables = [pd.DataFrame({"left": LEVELS, "run_flags": "", "number": number}) for number in numbers]
+    tables = [
+        pd.DataFrame({"left": LEVELS, "run_flags": "", "number": number}) for number in numbers
+    ]
     if flagged is not None:
         tables[0].loc[flagged, "run_flags"] = "unresolved"
-    coarser = [table.assign(factor=factor) for table, factor in zip(tables[1:], (2.0, 4.0), strict=True)]
+    coarser = [
+        table.assign(factor=factor) for table, factor in zip(tables[1:], (2.0, 4.0), strict=True)
+    ]
     ends = ["other", "arrested", "arrested", "undecided"]
     found = {
-        "sweep": tables[0].assign(paper=LEVELS, exact_number=np.array(LEVELS) / 1.1, exact_regime=ends),
+        "sweep": tables[0].assign(
+            paper=LEVELS, exact_number=np.array(LEVELS) / 1.1, exact_regime=ends
+        ),
         "coarser/sweep": pd.concat(coarser, ignore_index=True),
         "uncertainties/sweep": grid_tables(tuple(tables), (2.0, 4.0), ("left", "run_flags")),
     }
@@ -164,7 +184,9 @@ def exact(found: Evidence):
 def test_an_equation_is_judged_at_spacing_zero_and_one_run_that_is_off_fails_it_unless_it_is_flagged():
     claim = exact(evidence(lambda level, factor: level * (1.0 + 0.002 * factor)))
     assert claim == claim | {"verdict": YES, "runs": 4, "left_out": 0}
-    assert claim["deviation"] < 1e-9 and claim["uncertainty"] / claim["predicted"] == pytest.approx(0.002)
+    assert claim["deviation"] < 1e-9 and claim["uncertainty"] / claim["predicted"] == pytest.approx(
+        0.002
+    )
     off = lambda level, factor: level * (1.0 + 1e-4 * factor + 0.05 * (level == 0.6))
     claim = exact(evidence(off))
     assert claim["verdict"] == NO and claim["predicted"] == 0.6
@@ -193,8 +215,16 @@ def test_an_estimate_is_judged_by_its_median_and_its_exponent_not_by_the_worst_r
 def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     found = evidence(lambda level, factor: level if factor == 1.0 or level != 0.6 else 0.0)
     assert found.agreed("sweep", "left > 0.3", "number > 0.5") == [False, None, True]
-    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["arrested"]) == [False, True, True]
-    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["other"]) == [False, False, True]
+    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["arrested"]) == [
+        False,
+        True,
+        True,
+    ]
+    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["other"]) == [
+        False,
+        False,
+        True,
+    ]
     # Where a lattice has not run long enough it is not asked.
     assert found.agreed("sweep", "left > 0.3", "number > 0.5", "left < 0.7") == [False, None, None]
     assert found.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
@@ -212,16 +242,22 @@ def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
     assert found["exact_median"] == found["exact_largest"] == pytest.approx(0.1)
     expected = {"id": "equation", "counted": True, "follows_from": [], "tolerance": 0.01}
     assert found == found | expected | {"figure_or_section": "III A", "why": ""}
-    nothing = evidence().approximate("estimate", [pd.DataFrame({"a": [np.nan], "b": 1.0})], "a", "b")
+    nothing = evidence().approximate(
+        "estimate", [pd.DataFrame({"a": [np.nan], "b": 1.0})], "a", "b"
+    )
     found = written("estimate", nothing, ENTRIES["estimate"], "")
     assert found["verdict"] == NONE and found["measured"] is None and not found["counted"]
     json.dumps(found, allow_nan=False)
 
 
 def test_what_is_missing_is_named(tmp_path):
-    texts = {"none": {"numbers": [{"table": "sweep", "where": "left > 1", "take": {"a": "left.max()"}}]}}
+    texts = {
+        "none": {"numbers": [{"table": "sweep", "where": "left > 1", "take": {"a": "left.max()"}}]}
+    }
     texts = {"some": {"numbers": [{"table": "sweep", "take": {"a": "left.max()"}}]}} | texts
-    written = findings(evidence(), 0.1, {id: entry | {"text": "{{ n.a }}"} for id, entry in texts.items()})
+    written = findings(
+        evidence(), 0.1, {id: entry | {"text": "{{ n.a }}"} for id, entry in texts.items()}
+    )
     assert [finding["text"] for finding in written] == ["0.800", "not measured"]
     path, other = tmp_path / "claims.yaml", {"tolerance": 0.2}
     path.write_text("claims: {one: {tolerance: 0.1}}\n", encoding="utf-8")
@@ -237,7 +273,13 @@ CLAIM = {
 }  # fmt: skip
 ESTIMATE = {"kind": "approximate", "exponent": None, "exact_largest": None, "largest": None}
 ALWAYS = {"kind": "qualitative", "held": 4, "failed": 0, "undecided": 0, "runs": 5}
-READING = {"kind": "reading", "predicted": 7.0, "measured": 1.62, "deviation": 0.98, "tolerance": 0.05}
+READING = {
+    "kind": "reading",
+    "predicted": 7.0,
+    "measured": 1.62,
+    "deviation": 0.98,
+    "tolerance": 0.05,
+}
 
 
 def claim(**fields) -> SimpleNamespace:
@@ -283,13 +325,18 @@ def test_a_verdict_that_hangs_on_the_tolerance_says_so():
     sides = {"below": "inconclusive", "above": "reproduced"}
     flips = [sides | {"tolerance": tolerance} for tolerance in (0.1, 0.15, 0.29)]
     found = reading.evidence_text(claim(**ALWAYS, flips_at=flips))
-    assert found == "with a tolerance below 0.150: inconclusive; with a tolerance above 0.290: reproduced"
+    assert (
+        found
+        == "with a tolerance below 0.150: inconclusive; with a tolerance above 0.290: reproduced"
+    )
 
 
 def test_what_follows_is_not_counted_again_and_findings_and_further_numbers_are_asked_for_by_name():
     reproduced = {"verdict": "reproduced"}
     follows = reproduced | {"id": "b", "counted": False, "follows_from": ["a"]}
-    ledger = reading.Ledger([CLAIM | fields for fields in (reproduced | {"id": "a"}, follows, {"id": "c"})])
+    ledger = reading.Ledger(
+        [CLAIM | fields for fields in (reproduced | {"id": "a"}, follows, {"id": "c"})]
+    )
     assert ledger.count() == 2 and ledger.count("reproduced") == 1 and ledger.following() == 1
     assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced. 1 more follow from these."
     found = [{"id": "ours", "numbers": {"gap": 0.5}}, {"id": "no", "numbers": {}}]

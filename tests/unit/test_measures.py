@@ -102,7 +102,10 @@ def test_thresholds_are_arguments():
 )  # fmt: skip
 def test_simulated_ruptures(expected, gamma, levels, step):
     # With fewer than ten blocks in the Gaussian, damping alone makes a steady pulse decay.
-    boundary, duration = "displacement" if gamma else "stress", 20.0 if gamma else 80.0 if step else 40.0
+    boundary, duration = (
+        "displacement" if gamma else "stress",
+        20.0 if gamma else 80.0 if step else 40.0,
+    )
     values = {"dx": 0.1, "gamma": gamma, "beta": 0.01, "max_step": 0.5}
     scene = Scene(boundary, Prestress(*levels, steps=step), duration, **values)
     reach = 1.5 * duration + 10.0
@@ -133,7 +136,9 @@ def test_waves_of_the_lattice_count_and_an_even_pulse_has_none():
     for period, gain in ((2, 1.0), (4, 1.0 / 16.0)):
         wave = np.where(even > 0.0, 1e-2 * np.cos(2.0 * np.pi * np.arange(X.size) / period), 0.0)
         expected = gain * np.sum(wave**2) / np.sum(even**2)
-        assert lattice_noise(fields(even + (even > 0.05) * wave)) == pytest.approx(expected, rel=0.1)
+        assert lattice_noise(fields(even + (even > 0.05) * wave)) == pytest.approx(
+            expected, rel=0.1
+        )
     assert np.isnan(lattice_noise(fields(np.zeros(100))))
 
 
@@ -152,7 +157,9 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
     size = 1.0 + growth * times[:, None]
     velocity = size * np.exp(-0.5 * ((x - centre) / 0.8) ** 2)
     velocity[velocity < 1e-5] = 0.0
-    slip = np.cumsum(velocity[:, ::-1], axis=1)[:, ::-1] * (x[1] - x[0]) - left * np.minimum(x, centre)
+    slip = np.cumsum(velocity[:, ::-1], axis=1)[:, ::-1] * (x[1] - x[0]) - left * np.minimum(
+        x, centre
+    )
     axes = ("sample_time", "sample_position")
     scene = Scene("stress", Prestress(-0.5, 0.0), duration=30.0, dx=0.01).attributes()
     sampled = {"sample_velocity": (axes, velocity), "sample_slip": (axes, slip)}
@@ -199,7 +206,9 @@ def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, sta
     found = transition_stress(run, 0.95)
     assert found["transition_state"] == state
     late = found["transition_time"] / exact - 1.0
-    assert state == "not reached" or (abs(late) < 1.5 * STALL if state == "resolved" else late > STALL)
+    assert state == "not reached" or (
+        abs(late) < 1.5 * STALL if state == "resolved" else late > STALL
+    )
 
 
 @pytest.mark.parametrize(
@@ -218,7 +227,13 @@ def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, sta
     ],
 )
 def test_what_a_pulse_is_called(level, duration, values, expected):
-    values = {"boundary": "displacement", "gamma": 0.65, "dx": 0.05, "beta": 0.005, "max_step": 0.5} | values
+    values = {
+        "boundary": "displacement",
+        "gamma": 0.65,
+        "dx": 0.05,
+        "beta": 0.005,
+        "max_step": 0.5,
+    } | values
     run = simulate(Scene(prestress=Prestress(level, level), duration=duration, **values))
     assert pulse_state(run, leading_pulse(run, 0.3)) == expected
     # The formula without leaf springs has a faster front under the elastic rule.

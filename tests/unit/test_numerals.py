@@ -17,7 +17,18 @@ UNCERTAIN = [
     (0.123456789, 0.0, "0.12346"), (0.123456789, math.nan, "0.12346"), (None, None, NOT),
 ]  # fmt: skip
 WRITTEN = [
-    (number, {0.0: "0", 2: "2", -0.5: "−0.500", 1e-7: "1.00×10⁻⁷", math.inf: "∞", math.nan: NOT, None: NOT}),
+    (
+        number,
+        {
+            0.0: "0",
+            2: "2",
+            -0.5: "−0.500",
+            1e-7: "1.00×10⁻⁷",
+            math.inf: "∞",
+            math.nan: NOT,
+            None: NOT,
+        },
+    ),
     (lambda value: number(value, 9), {math.pi: "3.1416"}),
     # Digits are counted in what is written: 0.9996 with three digits is 1.00.
     (number, {0.9996: "1.00", 0.9994: "0.999", 9.996: "10.0", 0.09996: "0.100"}),
@@ -40,7 +51,9 @@ def test_numbers_as_they_are_written(write, texts):
 
 def test_prose_says_what_is_missing_and_refuses_what_is_unknown():
     names = {"pulse": None, "speed": 1.25, "estimate": None}
-    text = "{{ pulse.width | number(4) }}, {{ estimate[0] | percent }}, {{ speed }} of $\\frac{1}{2}$"
+    text = (
+        "{{ pulse.width | number(4) }}, {{ estimate[0] | percent }}, {{ speed }} of $\\frac{1}{2}$"
+    )
     assert fill(text, names) == "not measured, not measured, 1.25 of $\\frac{1}{2}$"
     with pytest.raises(ValueError, match=r"^It is \{\{ speeed \}\}\.: UndefinedError: 'speeed'"):
         fill("First.\nIt is {{ speeed }}.", names)

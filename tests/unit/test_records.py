@@ -15,7 +15,15 @@ from slippulse.data import records
 from slippulse.data.alterations import changes
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
-from slippulse.data.records import Digests, Origin, Tree, digest_of, read_record, read_records, write_record
+from slippulse.data.records import (
+    Digests,
+    Origin,
+    Tree,
+    digest_of,
+    read_record,
+    read_records,
+    write_record,
+)
 from slippulse.steps.reach import Job, jobs_of, origins_of
 from slippulse.steps.targets import Plan
 
@@ -63,7 +71,10 @@ def record_of(results: Path, name: str, **change) -> None:
 
 
 RECORD = f"records/{OTHER}.json"
-AFTER = {one: f"older than {other}, which it is made from" for one, other in ((TABLE, DATA), (PAGE, TABLE))}
+AFTER = {
+    one: f"older than {other}, which it is made from"
+    for one, other in ((TABLE, DATA), (PAGE, TABLE))
+}
 HARM = {
     "edited": (lambda folder: (folder / DATA).write_text("datA"), {DATA: "not what its job wrote"}),
     "emptied": (lambda folder: (folder / DATA).write_text(""), {DATA: "not what its job wrote"}),
@@ -95,7 +106,9 @@ def test_what_is_not_as_made_is_named_and_in_the_way_whatever_its_time(results, 
     for path in results.rglob("*"):
         os.utime(path, ns=(0, 0))
     assert found(results) == expected
-    assert found(results, "problems")[0] == [f"{results / name}: {why}" for name, why in expected.items()]
+    assert found(results, "problems")[0] == [
+        f"{results / name}: {why}" for name, why in expected.items()
+    ]
     in_the_way = {name: reason for name, reason in expected.items() if reason != "missing"}
     assert found(results, "to_remove") == in_the_way
 
@@ -134,12 +147,15 @@ def test_a_file_that_no_rule_makes_is_not_known(results):
     (results / "logs/a.log").write_text("")
     write_text("{}", results / "records/gone.csv.json")
     unknown = [
-        f"{results / name}: not known; no rule makes it" for name in ("data/mine.nc", "records/gone.csv.json")
+        f"{results / name}: not known; no rule makes it"
+        for name in ("data/mine.nc", "records/gone.csv.json")
     ]
     assert found(results, "problems")[0] == unknown
 
 
-def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_same(tmp_path, monkeypatch):
+def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_same(
+    tmp_path, monkeypatch
+):
     path, cache = tmp_path / "a", tmp_path / "cache"
     path.write_text("one")
     # One that was just written is read again.
@@ -168,12 +184,18 @@ def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_
 def plan(results, monkeypatch) -> Plan:
     """In the folder of the project."""
     monkeypatch.chdir(results.parent)
-    return Plan(JOBS, {"all": [f"results/{PAGE}"], "everything": [f"results/{PAGE}", f"results/{OTHER}"]})
+    return Plan(
+        JOBS, {"all": [f"results/{PAGE}"], "everything": [f"results/{PAGE}", f"results/{OTHER}"]}
+    )
 
 
 def test_a_target_is_known_or_guessed(plan):
-    assert plan.wanted(["all"]) == [DATA, TABLE, PAGE] and plan.wanted([f"results/{OTHER}"]) == [OTHER]
-    with pytest.raises(ConfigError, match=r"target: 'al' \(did you mean 'all'\?\); allowed: a rule"):
+    assert plan.wanted(["all"]) == [DATA, TABLE, PAGE] and plan.wanted([f"results/{OTHER}"]) == [
+        OTHER
+    ]
+    with pytest.raises(
+        ConfigError, match=r"target: 'al' \(did you mean 'all'\?\); allowed: a rule"
+    ):
         plan.wanted(["al"])
 
 
@@ -194,7 +216,10 @@ def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
 def test_verification_compares_what_is_asked_for(plan, results, capsys):
     (results / OTHER).unlink()
     assert plan.verify(plan.wanted(["all"])) == 0
-    assert "3 files are as made" in (said := capsys.readouterr().out) and "Not looked at: 1 files" in said
+    assert (
+        "3 files are as made" in (said := capsys.readouterr().out)
+        and "Not looked at: 1 files" in said
+    )
     assert plan.verify(plan.wanted(["everything"])) == 1
     assert capsys.readouterr().out == f"results/{OTHER}: missing\n"
 
@@ -205,11 +230,20 @@ def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
     for name, job in zip(
         "ab", jobs_of("run", inputs, ["results/{name}.csv"], of, {"name": "ab"}), strict=True
     ):
-        assert job == ("study", ("texts", f"results/{name}"), (f"results/{name}.csv",), {"level": name * 2})
+        assert job == (
+            "study",
+            ("texts", f"results/{name}"),
+            (f"results/{name}.csv",),
+            {"level": name * 2},
+        )
 
 
 def test_an_overlay_is_marked_value_by_value_and_digests_do_not_depend_on_the_order_of_keys():
-    assert digest_of({"a": 1, "b": [2]}) == digest_of({"b": [2], "a": 1}) != digest_of({"a": 1, "b": [3]})
+    assert (
+        digest_of({"a": 1, "b": [2]})
+        == digest_of({"b": [2], "a": 1})
+        != digest_of({"a": 1, "b": [3]})
+    )
     shipped = {"model": {"release": "total", "friction_ratio": 5.0}, "list": [1, 2], "gone": 1}
     config = {"model": {"release": "elastic", "friction_ratio": 5.0}, "list": [1], "new": {"a": 1}}
     assert changes(shipped, config) == [
@@ -229,7 +263,9 @@ def test_sources_are_the_library_and_the_workflow(project):
 
 def test_it_holds_everything_and_names_nobody(project, config, results):
     facts = provenance(project, "", config | {"preset": "draft"}, config, results)
-    assert facts["config"]["preset"] == "draft" and [entry["key"] for entry in facts["overlay"]] == ["preset"]
+    assert facts["config"]["preset"] == "draft" and [
+        entry["key"] for entry in facts["overlay"]
+    ] == ["preset"]
     assert set(facts) == {
         "paper", "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine",
         "times",

@@ -36,7 +36,9 @@ OTHERS = {
 
 
 @pytest.mark.parametrize("boundary", OTHERS)
-def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(boundary, config, tmp_path):
+def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(
+    boundary, config, tmp_path
+):
     scene = OTHERS[boundary]
     assert sp.Scene.from_attributes(scene.attributes()) == scene
     save_dataset(sp.run_sweep([scene], record=("fronts",)), tmp_path / "data.nc")
@@ -53,7 +55,9 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
     del attributes["rate_strengthening"]
     assert sp.Scene.from_attributes(attributes).rate_strengthening == 0.0
     del attributes["steps_and_bumps"]
-    with pytest.raises(ValueError, match="steps_and_bumps: missing; allowed: every attribute of a run"):
+    with pytest.raises(
+        ValueError, match="steps_and_bumps: missing; allowed: every attribute of a run"
+    ):
         sp.Scene.from_attributes(attributes)
 
 
@@ -61,7 +65,9 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
 def test_parameters_are_computed_with_in_double_precision(kind):
     """Whatever their type: a float32 spacing squared in float32 would change the answer in the seventh digit."""
     values = {"duration": kind(7), "dx": kind(1), "gamma": kind(1), "beta": kind(0)}
-    scene = sp.Scene("displacement", **values, prestress=sp.Prestress(kind(0), kind(0), kind(2), kind(1)))
+    scene = sp.Scene(
+        "displacement", **values, prestress=sp.Prestress(kind(0), kind(0), kind(2), kind(1))
+    )
     of_scene = [getattr(scene, name) for name in (*values, "max_step", "friction_ratio")]
     profile = [getattr(scene.prestress, name) for name in ("left", "right", "width", "peak")]
     assert {type(value) for value in of_scene + profile} == {float}
@@ -91,7 +97,9 @@ def test_the_profile_is_a_gaussian_on_its_side_levels_and_bumps_are_added():
     expected = level + (1.0 - level) * np.exp(-(x**2) / 50.0)
     assert sp.Prestress(-0.75, 0.25, width=5.0)(x) == pytest.approx(expected, abs=tol.STENCIL)
     assert sp.Prestress(-0.75, 0.25, width=5.0)(np.array([-300.0, 300.0])).tolist() == [-0.75, 0.25]
-    added = -0.4 * np.exp(-0.5 * ((x - 6.0) / 0.5) ** 2) + 0.2 * np.exp(-0.5 * ((x + 3.0) / 1.5) ** 2)
+    added = -0.4 * np.exp(-0.5 * ((x - 6.0) / 0.5) ** 2) + 0.2 * np.exp(
+        -0.5 * ((x + 3.0) / 1.5) ** 2
+    )
     assert PROFILES["bumps"](x) - sp.Prestress(0.3, 0.5)(x) == pytest.approx(added, abs=tol.STENCIL)
 
 

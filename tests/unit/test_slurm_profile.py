@@ -17,14 +17,20 @@ def rules(project) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def profile(project) -> dict:
-    return yaml.safe_load((project / "workflow/profiles/slurm/config.yaml").read_text(encoding="utf-8"))
+    return yaml.safe_load(
+        (project / "workflow/profiles/slurm/config.yaml").read_text(encoding="utf-8")
+    )
 
 
-def test_it_names_rules_that_exist_and_every_job_asks_for_time_memory_and_cores(project, profile, rules):
+def test_it_names_rules_that_exist_and_every_job_asks_for_time_memory_and_cores(
+    project, profile, rules
+):
     # Rules made in a loop: one a figure.
     figures = project / "src/slippulse/figures"
     drawn = {path.stem for pattern in ("fig*.py", "study_*.py") for path in figures.glob(pattern)}
-    assert {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"} <= set(rules)
+    assert {"all", "compile_kernels", "simulate", "measure", "study_grid", "write_report"} <= set(
+        rules
+    )
     assert {"fig01_system_sketch", "study_barriers"} <= drawn
     defaults, own = profile["default-resources"], profile["set-resources"]
     assert {*own, *profile["groups"]} <= set(rules) | drawn
@@ -45,14 +51,20 @@ def test_a_sweep_or_chunk_is_one_job_the_joining_another_and_costs_are_asked_for
     # What grows with the configuration asks by its cost.
     for name in ("simulate", "study_grid"):
         assert "**BOUNDS" in rules[name], name
-        assert name not in profile["set-resources"], f"{name}: the profile would hide what the rule asks for"
+        assert name not in profile["set-resources"], (
+            f"{name}: the profile would hide what the rule asks for"
+        )
 
 
 def test_the_plugin_is_in_its_own_lock_alone(project):
     def packages(name: str) -> dict[str, str]:
-        return dict(re.findall(r"^([\w.-]+)==([\w.]+)", (project / name).read_text(encoding="utf-8"), re.M))
+        return dict(
+            re.findall(r"^([\w.-]+)==([\w.]+)", (project / name).read_text(encoding="utf-8"), re.M)
+        )
 
     everybody, cluster = packages("requirements.lock"), packages("requirements-slurm.lock")
-    groups = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))["dependency-groups"]
+    groups = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))[
+        "dependency-groups"
+    ]
     assert set(groups["slurm"]) <= set(cluster)
     assert not set(cluster) & set(everybody)

@@ -60,7 +60,9 @@ AMPLIFICATIONS = [
 # Those of the shipped scenes, and beyond.
 @pytest.mark.parametrize("ratio", [0.0, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0])
 @pytest.mark.parametrize(("scheme", "order", "leaf", "amplification"), AMPLIFICATIONS)
-def test_no_mode_grows_below_the_bound_and_one_grows_above(scheme, order, leaf, amplification, ratio):
+def test_no_mode_grows_below_the_bound_and_one_grows_above(
+    scheme, order, leaf, amplification, ratio
+):
     bound = largest_step(scheme, order, ratio, leaf)
     weak = scheme == "localised" and order in (5, 6)
     allowed = 1.0 + (tol.AMPLIFICATION_WEAK if weak else tol.AMPLIFICATION)
@@ -86,7 +88,9 @@ def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps
     assert "energy" in judge(broken, run)["run_flags"].split(",")
 
 
-@pytest.mark.parametrize(("scheme", "ratio"), [("localised", 10.0), ("fixed_step", 0.0), ("fixed_step", 1.0)])
+@pytest.mark.parametrize(
+    ("scheme", "ratio"), [("localised", 10.0), ("fixed_step", 0.0), ("fixed_step", 1.0)]
+)
 def test_a_run_that_blows_up_names_the_step(scheme, ratio):
     above = tol.WELL_ABOVE_BOUND if scheme == "localised" else tol.ABOVE_BOUND
     sound = run_by_scheme(beyond_the_bound(scheme, tol.BELOW_BOUND, **STRONG, beta=0.1 * ratio))
@@ -98,7 +102,13 @@ def test_a_run_that_blows_up_names_the_step(scheme, ratio):
 @pytest.mark.parametrize("scheme", LATTICES)
 def test_a_scene_beyond_the_bound_is_refused_with_the_bound(scheme):
     bound = largest_step(scheme, 4, 0.5, 0.0)
-    values = {"prestress": sp.Prestress(0.5, 0.5), "duration": 1.0, "dx": 0.1, "beta": 0.05, "scheme": scheme}
+    values = {
+        "prestress": sp.Prestress(0.5, 0.5),
+        "duration": 1.0,
+        "dx": 0.1,
+        "beta": 0.05,
+        "scheme": scheme,
+    }
     sp.Scene("stress", **values, max_step=tol.BELOW_BOUND * bound)
     with pytest.raises(ValueError, match=rf"max_step: .*allowed: <= {bound:.4g}"):
         sp.Scene("stress", **values, max_step=tol.ABOVE_BOUND * bound)
@@ -107,7 +117,10 @@ def test_a_scene_beyond_the_bound_is_refused_with_the_bound(scheme):
 def test_no_scheme_blows_up_below_its_bound_and_the_chain_at_it(study):
     """Where damping makes the growth beyond it fast enough to be seen, at every order and under both schemes."""
     rows = study("stability")
-    assert rows[["measured_ratio", "measured_rupture_ratio"]].min(axis=None) >= 1.0 - tol.BOUNDARY_BELOW
+    assert (
+        rows[["measured_ratio", "measured_rupture_ratio"]].min(axis=None)
+        >= 1.0 - tol.BOUNDARY_BELOW
+    )
     damped = rows[rows["damping_ratio"] >= 0.1]
     assert len(damped) == 28
     assert damped["measured_ratio"].max() <= 1.0 + tol.BOUNDARY_ABOVE
@@ -118,6 +131,8 @@ def test_no_scheme_blows_up_below_its_bound_and_the_chain_at_it(study):
     assert (weak["measured_ratio"] > 1.0).all()
 
 
-@pytest.mark.parametrize(("between", "found"), [((0.2, 0.4), 0.4), ((3.0, 4.0), 3.0), ((0.5, 2.0), 1.0)])
+@pytest.mark.parametrize(
+    ("between", "found"), [((0.2, 0.4), 0.4), ((3.0, 4.0), 3.0), ((0.5, 2.0), 1.0)]
+)
 def test_the_bisection_reports_the_end_beyond_which_it_does_not_look(between, found):
     assert boundary(lambda step: step <= 1.0, *between) == pytest.approx(found, abs=0.01)

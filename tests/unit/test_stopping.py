@@ -50,8 +50,12 @@ def test_a_bar_shows_the_share_and_the_time_left_and_a_short_run_draws_none(caps
     draw(0.5)
     time.sleep(0.25)
     draw(1.0)
-    assert " 50%" in out.getvalue() and " left" in out.getvalue() and out.getvalue().count("\n") == 1
-    sp.simulate(sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.1, gamma=0.65), progress=True)
+    assert (
+        " 50%" in out.getvalue() and " left" in out.getvalue() and out.getvalue().count("\n") == 1
+    )
+    sp.simulate(
+        sp.Scene("displacement", sp.Prestress(0.5, 0.5), 1.0, 0.1, gamma=0.65), progress=True
+    )
     assert capsys.readouterr().err == ""
 
 

@@ -29,7 +29,9 @@ FREE_FRONTS = [(1e-2, 0.1, 0.0), (1e-2, 0.3, 1.0), (3e-3, 0.6, 0.1), (1e-3, 0.9,
 
 
 def scene_of(accuracy, ratio, duration, **plain) -> sp.Scene:
-    return sp.Scene(**plain, duration=duration, **sp.settings_for(accuracy, damping_ratio=ratio, **plain))
+    return sp.Scene(
+        **plain, duration=duration, **sp.settings_for(accuracy, damping_ratio=ratio, **plain)
+    )
 
 
 def pulse(accuracy, level, gamma, ratio, width, release):
@@ -65,14 +67,18 @@ def free_front(accuracy, level, ratio):
     return scene, {"front_speed_left": speed, "front_speed_right": speed}
 
 
-def test_every_covered_number_is_as_near_to_theory_as_promised_and_the_worst_not_nearer_than_needed(shipped):
+def test_every_covered_number_is_as_near_to_theory_as_promised_and_the_worst_not_nearer_than_needed(
+    shipped,
+):
     kinds = ((pulse, PULSES), (crack, CRACKS), (free_front, FREE_FRONTS))
     cases = [(make, case, *make(*case)) for make, cases in kinds for case in cases]
     sweep = run_sweep([scene for _, _, scene, _ in cases], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for (make, case, _, exact), run in zip(cases, runs, strict=True):
         covered = [name for name in exact if covers(run, name, SHARE)]
-        assert len(covered) == {pulse: 9, crack: 3 if case[2] > 0.0 else 1, free_front: 2}[make], case
+        assert len(covered) == {pulse: 9, crack: 3 if case[2] > 0.0 else 1, free_front: 2}[make], (
+            case
+        )
         # Error against theory over the promise.
         used = {name: abs(run[name] / exact[name] - 1.0) / case[0] for name in covered}
         assert all(fraction <= 1.0 for fraction in used.values()), (make.__name__, case, used)

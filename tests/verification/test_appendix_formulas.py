@@ -26,12 +26,16 @@ def test_the_factors_at_damping_ratio_one(v):
         return 1.0 - sign / v * (np.exp(sign * 1j * k) - 1.0) / (sign * 1j * k)
 
     for k in (0.3, 2.0, -7.5, 0.4 + 0.0j):
-        assert factor(k, 1) * factor(k, -1) == pytest.approx(symbol(k, v, 1.0), rel=tolerances.PULSE_THEORY)
+        assert factor(k, 1) * factor(k, -1) == pytest.approx(
+            symbol(k, v, 1.0), rel=tolerances.PULSE_THEORY
+        )
     # No zero in its own half plane: on a large half circle and the axis the factor stays near 1.
     half_plane = [x + 1j * y for x in np.linspace(-30, 30, 61) for y in (1e-9, 0.1, 1.0, 10.0)]
     assert max(abs(factor(k, 1) - 1.0) for k in half_plane if k != 0) <= 1.0 / v + 1e-12
     closed = (1.0 - 1.0 / v) * np.exp(1.0 / v)
-    assert theory.prestress_for_speed(v, 1.0, "elastic") == pytest.approx(closed, rel=tolerances.QUADRATURE)
+    assert theory.prestress_for_speed(v, 1.0, "elastic") == pytest.approx(
+        closed, rel=tolerances.QUADRATURE
+    )
 
 
 @pytest.mark.parametrize("v", [1.02, 1.3, 3.0])
@@ -57,7 +61,9 @@ def test_the_factor_by_cauchys_integral(v):
 @pytest.mark.parametrize("v", [1.2, 2.0, 3.0])
 def test_strong_damping(v):
     """tau tends to 1 - 1/v^2 as 1/b under the elastic rule, b tau to v - 1/v as 1/sqrt(b) under the total rule."""
-    elastic = [theory.prestress_for_speed(v, b, "elastic") - (1.0 - v**-2) for b in (4.0, 20.0, 100.0)]
+    elastic = [
+        theory.prestress_for_speed(v, b, "elastic") - (1.0 - v**-2) for b in (4.0, 20.0, 100.0)
+    ]
     assert abs(elastic[1]) < 0.3 * abs(elastic[0]) and abs(elastic[2]) < 0.3 * abs(elastic[1])
     products = [theory.prestress_for_speed(v, b) * b for b in (100.0, 400.0, 1600.0)]
     first, second = np.diff(products)
@@ -93,7 +99,9 @@ def test_the_left_front_takes_for_ever():
     assert np.all(np.diff(times) > 0.0)
     assert np.all(times > entries - shares * crack.balance_position)
     for share, entry in zip(shares, entries, strict=True):
-        assert crack.prestress.integral(share * crack.balance_position, entry) == pytest.approx(0.0, abs=1e-9)
+        assert crack.prestress.integral(share * crack.balance_position, entry) == pytest.approx(
+            0.0, abs=1e-9
+        )
 
 
 # The algebra of the paper: each formula over the one derived from its equations, at random layers of rock.
@@ -138,7 +146,9 @@ def layer_average(layer, tau, random):
     strain, mean = poly.polyder(in_x[0]), poly.polyval(1.0, poly.polyint(in_x[1]))
     nodes, weights = np.polynomial.legendre.leggauss(DEGREE)
     y = 0.5 * (nodes + 1.0)
-    inside = moduli[0] * poly.polyval(y, in_x[1]) + moduli[1] * poly.polyval(y, poly.polyder(strain))
+    inside = moduli[0] * poly.polyval(y, in_x[1]) + moduli[1] * poly.polyval(
+        y, poly.polyder(strain)
+    )
     faces = moduli[1] * (poly.polyval(1.0, strain) - poly.polyval(0.0, strain))
     averaged = 0.5 * float(weights @ inside)
     return [1.0 + (averaged - (moduli[0] * mean + faces)) / (abs(moduli[0] * mean) + abs(faces))]
@@ -154,9 +164,13 @@ def displacement_reduction(layer, tau, random):
     curvature = 0.5 * float(weights @ (curvatures[0] * (1.0 - y) + curvatures[1] * y))
     stiffness = layer.modulus * height * curvature
     shear = layer.shear_modulus * (held - slip) / height
-    printed = 0.5 * layer.density * height * acceleration - 0.5 * layer.modulus * height * sum(curvatures)
+    printed = 0.5 * layer.density * height * acceleration - 0.5 * layer.modulus * height * sum(
+        curvatures
+    )
     printed += rigidity * slip - rigidity * held
-    return [1.0 + (inertia - stiffness - shear - printed) / max(map(abs, (stiffness, shear, inertia)))]
+    return [
+        1.0 + (inertia - stiffness - shear - printed) / max(map(abs, (stiffness, shear, inertia)))
+    ]
 
 
 def prestress_is_initial_displacement(layer, tau, random):
@@ -188,7 +202,9 @@ def units_wave_speed(layer, tau, random):
     """Phase speed, from rho w^2 = (lambda + 2G) k^2 + 2G/H^2, against the root of 1 + gamma/k^2: 1 as gamma -> 0."""
     k = random.uniform(0.1, 10.0)
     metres = k / layer.thickness
-    square = (layer.modulus * metres**2 + 2.0 * layer.shear_modulus / layer.thickness**2) / layer.density
+    square = (
+        layer.modulus * metres**2 + 2.0 * layer.shear_modulus / layer.thickness**2
+    ) / layer.density
     return [float(np.sqrt(square) / metres / layer.wave_speed / np.sqrt(1.0 + layer.gamma / k**2))]
 
 
@@ -216,9 +232,17 @@ def transition_estimate_algebra(layer, tau, random):
 
 def dimensional_lengths(layer, tau, times=1.0) -> np.ndarray:
     """Transition length and width at some times the thickness, over those of the scaled model at the thickness."""
-    v, thick = front_speed_undamped(tau), dataclasses.replace(layer, thickness=times * layer.thickness)
-    scaled = 2.0 * np.pi / np.sqrt(layer.gamma * (1.0 - tau**2)), paper_pulse(tau, layer.gamma).width
-    return np.array([thick.transition_length(v), thick.pulse_width(tau, v)]) / scaled / layer.thickness
+    v, thick = (
+        front_speed_undamped(tau),
+        dataclasses.replace(layer, thickness=times * layer.thickness),
+    )
+    scaled = (
+        2.0 * np.pi / np.sqrt(layer.gamma * (1.0 - tau**2)),
+        paper_pulse(tau, layer.gamma).width,
+    )
+    return (
+        np.array([thick.transition_length(v), thick.pulse_width(tau, v)]) / scaled / layer.thickness
+    )
 
 
 def damage_zone_in_series(layer, tau, random):
@@ -247,10 +271,14 @@ FORMULAS = (
 )  # fmt: skip
 ALGEBRA = {formula.__name__: formula for formula in FORMULAS} | {
     # Equation (7) at the static strength, forwards.
-    "static_threshold": lambda layer, *_: [layer.prestress(layer.static_friction * layer.normal_stress)],
+    "static_threshold": lambda layer, *_: [
+        layer.prestress(layer.static_friction * layer.normal_stress)
+    ],
     "dimensional_transition_length": lambda layer, tau, _: dimensional_lengths(layer, tau)[:1],
     "dimensional_width": lambda layer, tau, _: dimensional_lengths(layer, tau)[1:],
-    "transition_length_scales_with_H": lambda layer, tau, _: dimensional_lengths(layer, tau, 2.0) / 2.0,
+    "transition_length_scales_with_H": lambda layer, tau, _: (
+        dimensional_lengths(layer, tau, 2.0) / 2.0
+    ),
     "damage_zone_stress_drop": damage_zone_in_series,
     # A zone of 1e-9 of the stiffness of rock ten times as thick.
     "damage_zone_limit": lambda *_: [damage_zone_stress_drop(1.0, 1.0, 1e9, 1.0, 10.0)],
@@ -259,7 +287,9 @@ ALGEBRA = {formula.__name__: formula for formula in FORMULAS} | {
 
 @pytest.mark.parametrize("id", ALGEBRA)
 def test_algebra(id):
-    ratios = np.array([ratio for layer in random_layers() for ratio in ALGEBRA[id](*layer)], dtype=float)
+    ratios = np.array(
+        [ratio for layer in random_layers() for ratio in ALGEBRA[id](*layer)], dtype=float
+    )
     allowed = tolerances.SOFT_DAMAGE_ZONE if id == "damage_zone_limit" else tolerances.ALGEBRA
     assert np.max(np.abs(ratios - 1.0)) <= allowed
 
@@ -267,6 +297,8 @@ def test_algebra(id):
 def test_the_manuscript_lists_the_algebra_and_the_ledger_the_formula_that_is_wrong(project):
     texts = yaml.safe_load((project / "manuscript/claims.yaml").read_text(encoding="utf-8"))
     assert {*texts["algebra"]} == {*ALGEBRA}
-    missing = [layer.printed_peak_velocity() / layer.peak_velocity() for layer, *_ in random_layers()]
+    missing = [
+        layer.printed_peak_velocity() / layer.peak_velocity() for layer, *_ in random_layers()
+    ]
     assert missing == pytest.approx([0.5] * LAYERS, rel=tolerances.ALGEBRA)
     assert texts["claims"]["dimensional_peak_velocity"]["tolerance"] <= tolerances.ALGEBRA

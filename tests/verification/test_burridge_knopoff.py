@@ -12,9 +12,17 @@ DURATION = 16.0
 REACH = 40
 PROFILES = {
     "displacement, even": ("displacement", 0.3, sp.Prestress(0.3, 0.3)),
-    "displacement, uneven": ("displacement", 0.5, sp.Prestress(0.2, 0.6, bumps=((5.0, -0.7, 1.0),))),
+    "displacement, uneven": (
+        "displacement",
+        0.5,
+        sp.Prestress(0.2, 0.6, bumps=((5.0, -0.7, 1.0),)),
+    ),
     "stress, one-way": ("stress", 0.0, sp.Prestress(-0.5, 0.0)),
-    "stress, two points": ("stress", 0.0, sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0)))),
+    "stress, two points": (
+        "stress",
+        0.0,
+        sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0))),
+    ),
 }
 RULES = ((0.0, "total"), (0.3, "total"), (0.3, "elastic"))
 CASES = [(name, *rule) for name in PROFILES for rule in RULES]
@@ -41,7 +49,10 @@ def differences(run, chain: Chain) -> dict[str, float]:
 
 @pytest.mark.parametrize("case", CASES, ids=str)
 def test_every_event_and_every_slip_agrees(case):
-    run, (_, gamma, profile) = run_of(*case, max_step=0.05, order=8, half_lattice=False), PROFILES[case[0]]
+    run, (_, gamma, profile) = (
+        run_of(*case, max_step=0.05, order=8, half_lattice=False),
+        PROFILES[case[0]],
+    )
     chain = Chain(profile(np.arange(-REACH, REACH + 1.0)), gamma, *case[1:]).run(DURATION)
     releases, sticks, again = (run.attrs[name] for name in ("releases", "sticks", "re_releases"))
     assert (releases, sticks) == (chain.releases, chain.sticks)
@@ -69,6 +80,13 @@ def test_no_event_is_stepped_over(step):
     """Events that come and go within a long step: the same numbers of releases and sticks as with a short one."""
     random, names = np.random.default_rng(1), ("releases", "sticks", "re_releases")
     for number in range(200):
-        scene = random_scene(random) | {"duration": 25.0, "dx": 1.0, "order": 8, "resolved_blocks": 1}
-        long, short = (sp.simulate(sp.Scene(**scene, max_step=max_step)).attrs for max_step in (step, 0.02))
+        scene = random_scene(random) | {
+            "duration": 25.0,
+            "dx": 1.0,
+            "order": 8,
+            "resolved_blocks": 1,
+        }
+        long, short = (
+            sp.simulate(sp.Scene(**scene, max_step=max_step)).attrs for max_step in (step, 0.02)
+        )
         assert [long[name] for name in names] == [short[name] for name in names], (number, scene)

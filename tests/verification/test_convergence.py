@@ -24,7 +24,9 @@ STEPS = (0.2, 0.1, 0.05)
 def run(base: str, **accuracy):
     """Blocks that every run has released by the end."""
     boundary, gamma, beta, profile = BASES[base]
-    scene = sp.Scene(boundary, profile, 10.0, 0.1, gamma=gamma, beta=beta, resolved_blocks=1, **accuracy)
+    scene = sp.Scene(
+        boundary, profile, 10.0, 0.1, gamma=gamma, beta=beta, resolved_blocks=1, **accuracy
+    )
     return sp.simulate(scene).sel(x=slice(-8.0, 8.0))
 
 
@@ -68,7 +70,9 @@ def test_the_textbook_scheme_is_of_first_order_on_one_free_block_and_in_its_ener
     off = []
     for halving in range(5):
         accuracy = {"scheme": "fixed_step", "max_step": 0.1 / 2**halving, "resolved_blocks": 1}
-        scene = sp.Scene("displacement", sp.Prestress(-3.0, -3.0), time, 1.0, gamma=0.65, **accuracy)
+        scene = sp.Scene(
+            "displacement", sp.Prestress(-3.0, -3.0), time, 1.0, gamma=0.65, **accuracy
+        )
         off.append(abs(float(sp.simulate(scene)["slip"].sel(x=0.0)) - exact))
     energy = residuals("stress, damped", (0.1, 0.05, 0.025, 0.0125), scheme="fixed_step")
     for found in (off, energy):
@@ -79,14 +83,18 @@ def test_the_textbook_scheme_is_of_first_order_on_one_free_block_and_in_its_ener
 def test_release_times_of_the_textbook_scheme_converge_at_first_order(base):
     """Root mean square over the blocks, slope over eight halvings: single releases jump by whole steps."""
     steps, (low, high) = 0.2 / 2.0 ** np.arange(9), tol.FIRST_ORDER
-    off = errors(base, "release_time", steps, lambda e: np.sqrt(np.nanmean(e**2)), scheme="fixed_step")
+    off = errors(
+        base, "release_time", steps, lambda e: np.sqrt(np.nanmean(e**2)), scheme="fixed_step"
+    )
     assert low < slope(steps, off) < high
     assert off[-1] < tol.FIXED_AGAINST_LOCALISED
 
 
 @pytest.mark.parametrize("order", [4, 6])
 def test_the_energy_balance_closes_at_the_order_of_the_step_without_damping(order):
-    assert abs(orders(residuals("displacement, undamped", order=order))[-1] - order) < tol.ENERGY_ORDER
+    assert (
+        abs(orders(residuals("displacement, undamped", order=order))[-1] - order) < tol.ENERGY_ORDER
+    )
 
 
 @pytest.mark.parametrize("base", DAMPED)
@@ -101,8 +109,12 @@ def test_the_energy_balance_closes_at_third_order_with_damping(base, order, leas
     assert least - tol.ENERGY_ORDER < observed < most + tol.ENERGY_ORDER
 
 
-@pytest.mark.parametrize("rates", [(0.0, 0.0), (0.1, 0.0), (1.0, 0.0), (0.0, 0.6), (0.1, 0.6), (0.0, -0.3)])
-@pytest.mark.parametrize("case", [(0.65, 0.5, 0.5), (0.1, 0.3, 0.8), (0.0, -0.5, 0.0), (0.0, 0.4, -0.2)])
+@pytest.mark.parametrize(
+    "rates", [(0.0, 0.0), (0.1, 0.0), (1.0, 0.0), (0.0, 0.6), (0.1, 0.6), (0.0, -0.3)]
+)
+@pytest.mark.parametrize(
+    "case", [(0.65, 0.5, 0.5), (0.1, 0.3, 0.8), (0.0, -0.5, 0.0), (0.0, 0.4, -0.2)]
+)
 def test_the_energy_balance_closes(paper_accuracy, case, rates):
     """Work of the pre-stress = kinetic + elastic + leaf springs + loss, at the step of the paper preset.
 
@@ -116,7 +128,9 @@ def test_the_energy_balance_closes(paper_accuracy, case, rates):
     numbers = sp.simulate(sp.Scene(*of, rate_strengthening=alpha, **paper_accuracy)).attrs
     assert numbers["energy_residual"] < tol.ENERGY
     stored = ("kinetic_energy", "elastic_energy", "leaf_spring_energy", "viscous_loss")
-    assert numbers["work_of_prestress"] == pytest.approx(sum(map(numbers.get, stored)), rel=tol.ENERGY)
+    assert numbers["work_of_prestress"] == pytest.approx(
+        sum(map(numbers.get, stored)), rel=tol.ENERGY
+    )
     assert np.sign(numbers["viscous_loss"]) == np.sign(ratio + alpha)
     finer = {"max_step": 0.1 * paper_accuracy["max_step"], "order": 8, "rate_strengthening": alpha}
     assert sp.simulate(sp.Scene(*of, **finer)).attrs["energy_residual"] < tol.ENERGY_FINE

@@ -25,7 +25,9 @@ def run_of(left, right=None, width=1.0, *, gamma=0.0, **values):
 @pytest.mark.parametrize("tau0", [0.23, 0.37, 0.5, 0.71, 0.9])
 def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     run = run_of(tau0, gamma=0.65, dx=0.02, duration=120.0, **paper_accuracy)
-    assert front_speed(run, 0.3)[0] == pytest.approx(1.0 / np.sqrt(1.0 - tau0**2), rel=tol.FRONT_SPEED)
+    assert front_speed(run, 0.3)[0] == pytest.approx(
+        1.0 / np.sqrt(1.0 - tau0**2), rel=tol.FRONT_SPEED
+    )
     assert leading_pulse(run, 0.3).slip == pytest.approx(2.0 * tau0 / 0.65, rel=tol.PULSE_SLIP)
     assert run.attrs["run_flags"] == ""
 
@@ -38,10 +40,14 @@ def test_damped_front_speed_as_tabulated():
     assert np.array(found) == pytest.approx(np.array(speeds), rel=tol.TABLE_DIGITS)
 
 
-@pytest.mark.parametrize(("tau0", "ratio"), [(0.3, 0.02), (0.45, 0.05), (0.6, 0.1), (0.7, 0.15), (0.85, 0.2)])
+@pytest.mark.parametrize(
+    ("tau0", "ratio"), [(0.3, 0.02), (0.45, 0.05), (0.6, 0.1), (0.7, 0.15), (0.85, 0.2)]
+)
 def test_steady_pulse(tau0, ratio):
     dx, gamma = 0.01, 0.65
-    pulse = leading_pulse(run_of(tau0, gamma=gamma, dx=dx, beta=ratio * dx, duration=60.0, max_step=0.2), 0.3)
+    pulse = leading_pulse(
+        run_of(tau0, gamma=gamma, dx=dx, beta=ratio * dx, duration=60.0, max_step=0.2), 0.3
+    )
     theory = sp.theory.steady_pulse(tau0, gamma, ratio * dx, sp.theory.front_speed(tau0, ratio))
     assert pulse.slip == pytest.approx(theory.slip, rel=tol.PULSE_SLIP_THEORY)
     assert pulse.peak_velocity == pytest.approx(theory.peak_velocity, rel=tol.PULSE_PEAK_THEORY)
@@ -67,7 +73,9 @@ TRANSITIONS = [
 
 
 @pytest.mark.parametrize(("tau0", "gamma", "table", "known"), TRANSITIONS)
-def test_transitions_as_tabulated_to_which_lattices_converge(paper_accuracy, tau0, gamma, table, known):
+def test_transitions_as_tabulated_to_which_lattices_converge(
+    paper_accuracy, tau0, gamma, table, known
+):
     profile = sp.Prestress(tau0, tau0)
     exact = sp.theory.exact_transition_displacement(profile, gamma)
     fronts = sp.theory.Fronts(profile, 0.0, "total", 1.1 * exact.time)
@@ -82,7 +90,9 @@ def test_transitions_as_tabulated_to_which_lattices_converge(paper_accuracy, tau
         time = run.attrs["first_stick_time"]
         found.append((time, 2.0 * float(position_at(run, time))))
     _, coarse, middle, fine = np.array(found) - truth
-    assert [time for time, _ in found[: len(known)]] == pytest.approx(known, rel=tol.TRANSITION_TABLE)
+    assert [time for time, _ in found[: len(known)]] == pytest.approx(
+        known, rel=tol.TRANSITION_TABLE
+    )
     # L_trans can be converged to the error of the step already, and then has no order.
     low, high = tol.TRANSITION_HALVING
     for ratio in (coarse / middle, middle / fine):
@@ -103,12 +113,20 @@ def test_share_times_and_peak_under_stress_as_tabulated_to_first_order(left, wid
     profile = sp.Prestress(left, 0.0, width)
     crack, undamped = (sp.theory.ArrestingCrack(profile, b) for b in (ratio, 0.0))
     distance, shares = abs(crack.balance_position), np.array([0.5, 0.6, 0.7, 0.8, 0.9])
-    assert profile.integral(crack.balance_position, 40.0 * width) == pytest.approx(0.0, abs=tol.QUADRATURE)
+    assert profile.integral(crack.balance_position, 40.0 * width) == pytest.approx(
+        0.0, abs=tol.QUADRATURE
+    )
     for share, known in zip((0.9, 0.95, 0.99), table, strict=False):
         assert undamped.share_time(share) / distance == pytest.approx(known, rel=tol.SHARE_TABLE)
     exact, errors = np.array([crack.share_time(share) for share in shares]), []
     for dx in np.array([4.0, 2.0, 1.0]) * min(0.01, 0.005 * width):
-        values = {"dx": dx, "beta": ratio * dx, "duration": 1.6 * distance, "max_step": 0.3, "order": 6}
+        values = {
+            "dx": dx,
+            "beta": ratio * dx,
+            "duration": 1.6 * distance,
+            "max_step": 0.3,
+            "order": 6,
+        }
         run = run_of(left, 0.0, width, **values)
         errors.append([arrival(run, share * distance, "left")[0] for share in shares] / exact - 1.0)
     low, high = tol.TRANSITION_HALVING
@@ -116,7 +134,9 @@ def test_share_times_and_peak_under_stress_as_tabulated_to_first_order(left, wid
         assert low < coarse[-1] / fine[-1] < high, errors
     assert abs(2.0 * errors[2][-1] - errors[1][-1]) < tol.SHARE_EXTRAPOLATED
     assert np.max(np.abs(errors[2])) < tol.SHARE_TIME
-    assert leading_pulse(run, 0.3).peak_velocity == pytest.approx(crack.peak_velocity, rel=tol.STRESS_PEAK)
+    assert leading_pulse(run, 0.3).peak_velocity == pytest.approx(
+        crack.peak_velocity, rel=tol.STRESS_PEAK
+    )
 
 
 @pytest.mark.parametrize(
@@ -161,16 +181,22 @@ class EndingTail(sp.Prestress):
 
     def __call__(self, x):
         x = np.asarray(x, dtype=float)
-        return np.where(x < 0.0, TAIL_LEVEL, np.where(x < TAIL_LENGTH, 1.0 - 0.5 * x / TAIL_LENGTH, 0.0))
+        return np.where(
+            x < 0.0, TAIL_LEVEL, np.where(x < TAIL_LENGTH, 1.0 - 0.5 * x / TAIL_LENGTH, 0.0)
+        )
 
 
 def test_the_arrest_of_a_tail_that_ends():
     """t = T(3) + 3 - x_minus, the last characteristic entering where the tail ends."""
     slowness = lambda x: 1.0 / sp.theory.front_speed(1.0 - 0.5 * x / TAIL_LENGTH, TAIL_RATIO)
-    assert quad(slowness, 0.0, TAIL_LENGTH)[0] + TAIL_LENGTH - X_MINUS == pytest.approx(ARREST, abs=1e-4)
+    assert quad(slowness, 0.0, TAIL_LENGTH)[0] + TAIL_LENGTH - X_MINUS == pytest.approx(
+        ARREST, abs=1e-4
+    )
     gaps, tail = [], EndingTail(TAIL_LEVEL, 0.0)
     for dx in (0.04, 0.02):
-        run = sp.simulate(sp.Scene("stress", tail, 1.5 * ARREST, dx, beta=TAIL_RATIO * dx, max_step=1.0))
+        run = sp.simulate(
+            sp.Scene("stress", tail, 1.5 * ARREST, dx, beta=TAIL_RATIO * dx, max_step=1.0)
+        )
         left = run["release_time"].where(run["x"] < 0.0)
         assert float(left.max()) == pytest.approx(ARREST, rel=0.01)
         gaps.append(float(run["x"].where(left.notnull()).min()) - X_MINUS)

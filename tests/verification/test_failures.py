@@ -8,7 +8,9 @@ from slippulse.solver.fixed_step import LATTICES
 from slippulse.solver.run import run_scene
 
 
-def displacement(left: float, duration: float, dx: float, right: float | None = None, **values) -> sp.Scene:
+def displacement(
+    left: float, duration: float, dx: float, right: float | None = None, **values
+) -> sp.Scene:
     prestress = sp.Prestress(left, left if right is None else right)
     return sp.Scene("displacement", prestress, duration, dx, **{"gamma": 0.65} | values)
 

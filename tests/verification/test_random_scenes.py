@@ -18,7 +18,11 @@ from slippulse.solver.fixed_step import LATTICES
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 SETTINGS = settings(
-    max_examples=600, derandomize=True, deadline=None, database=None, suppress_health_check=list(HealthCheck)
+    max_examples=600,
+    derandomize=True,
+    deadline=None,
+    database=None,
+    suppress_health_check=list(HealthCheck),
 )
 # Each takes some tenths of a second, too long to look for the simplest failure.
 FEWER = settings(SETTINGS, max_examples=200, phases=[Phase.generate])
@@ -49,11 +53,20 @@ def random_scenes(draw) -> sp.Scene:
     peak = draw(st.sampled_from([1.0, 1.5, 1.0, 0.99]))
     steps = tuple(draw(st.lists(STEP, max_size=2, unique_by=lambda step: step[0])))
     profile = sp.Prestress(left, right, width, peak, steps, tuple(draw(st.lists(BUMP, max_size=2))))
-    ratio, order, scheme = draw(RATIOS), draw(st.sampled_from(ORDERS)), draw(st.sampled_from([*LATTICES]))
+    ratio, order, scheme = (
+        draw(RATIOS),
+        draw(st.sampled_from(ORDERS)),
+        draw(st.sampled_from([*LATTICES])),
+    )
     bound = largest_step(scheme, order, ratio, gamma * dx**2)
-    duration, release = draw(st.one_of(real(0.5, 3.0), real(5.0, 10.0))), draw(st.sampled_from(RELEASES))
+    duration, release = (
+        draw(st.one_of(real(0.5, 3.0), real(5.0, 10.0))),
+        draw(st.sampled_from(RELEASES)),
+    )
     max_step = min(0.5, 0.9 * bound) * draw(st.sampled_from([0.25, 0.5, 1.0]))
-    return sp.Scene(boundary, profile, duration, dx, gamma, ratio * dx, release, scheme, max_step, order)
+    return sp.Scene(
+        boundary, profile, duration, dx, gamma, ratio * dx, release, scheme, max_step, order
+    )
 
 
 # A front of the textbook scheme that moves by a block a step, near the end of its lattice.
@@ -103,12 +116,18 @@ def check_invariants(scene):
         force = np.where(moving, total, 0.0)
         assert np.max(np.abs(run["slip_acceleration"].values[1:-1] - force)) < tol.STRESS_AT_END
         # Flagged only where the run is coarse or strongly damped.
-        assert not flagged or run.attrs["steps"] < 20 or scene.order == 3 or scene.damping_ratio >= 1.0
+        assert (
+            not flagged or run.attrs["steps"] < 20 or scene.order == 3 or scene.damping_ratio >= 1.0
+        )
         seen["flagged for energy"] += flagged
 
     profile = scene.prestress
-    steps, bumps = (tuple((-x, *rest) for x, *rest in parts) for parts in (profile.steps, profile.bumps))
-    turned = dataclasses.replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)
+    steps, bumps = (
+        tuple((-x, *rest) for x, *rest in parts) for parts in (profile.steps, profile.bumps)
+    )
+    turned = dataclasses.replace(
+        profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps
+    )
     other = sp.simulate(dataclasses.replace(scene, prestress=turned))
     assert other.sizes == {"x": run.sizes["x"]}
     for name in FIELDS:
@@ -129,7 +148,11 @@ def check_exact_solution(scene):
     slip, velocity = run["slip"].values, run["slip_velocity"].values
     assert np.min(velocity, where=np.isfinite(velocity), initial=0.0) >= -tol.QUADRATURE
     # Beyond where the construction ends nothing is told, before it everything.
-    assert np.isfinite(slip).all() == np.isfinite(velocity).all() == ("construction_ended" not in flags)
+    assert (
+        np.isfinite(slip).all()
+        == np.isfinite(velocity).all()
+        == ("construction_ended" not in flags)
+    )
 
 
 def test_invariants_hold_over_varied_scenes():

@@ -34,7 +34,9 @@ def test_the_steady_pulse_and_its_end_are_those_derived_independently():
     velocity = pulse.profile([-pulse.width, 0.5 * -pulse.width, 0.0])[1]
     np.testing.assert_allclose(velocity[[0, 2]], 0.0, atol=tol.ALGEBRA)
     for alpha in (CRITICAL, -CRITICAL):
-        with pytest.raises(ValueError, match=r"rate_strengthening: .*; allowed: less than 0.947322"):
+        with pytest.raises(
+            ValueError, match=r"rate_strengthening: .*; allowed: less than 0.947322"
+        ):
             theory.steady_pulse(LEVEL, GAMMA, 0.0, SPEED, rate_strengthening=1.01 * alpha)
 
 
@@ -51,7 +53,9 @@ def test_beyond_the_critical_rate_strengthening_the_nucleation_alone_may_stick(a
         assert np.isnan(run(alpha, 0.04, 24.0).attrs["first_stick_time"])
 
 
-@pytest.mark.parametrize("options", [{}, {"order": 8, "half_lattice": False}, {"scheme": "fixed_step"}])
+@pytest.mark.parametrize(
+    "options", [{}, {"order": 8, "half_lattice": False}, {"scheme": "fixed_step"}]
+)
 def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
     plain, least = run(0.0, duration=9.0, **options), run(1e-300, duration=9.0, **options)
     for name in ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration"):
@@ -61,7 +65,13 @@ def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
 @pytest.mark.parametrize("scheme", ["localised", "fixed_step"])
 def test_a_step_just_below_the_bound_is_stable_with_strong_strengthening(scheme):
     """Drag alone sets it at alpha dx = 8."""
-    values = {"dx": 0.5, "beta": 0.0, "rate_strengthening": 16.0, "scheme": scheme, "duration": 200.0}
+    values = {
+        "dx": 0.5,
+        "beta": 0.0,
+        "rate_strengthening": 16.0,
+        "scheme": scheme,
+        "duration": 200.0,
+    }
     bound = run(1.0, **values | {"max_step": 1e-3, "duration": 0.1}).attrs
     scene = sp.Scene.from_attributes(bound)
     assert scene.largest_stable_step < 0.4

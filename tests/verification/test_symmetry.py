@@ -19,9 +19,17 @@ MIRRORED = sp.Prestress(0.6, 0.25, peak=1.05, steps=((-4.0, 0.4),), bumps=((3.0,
 EVEN = sp.Prestress(0.4, 0.4, peak=1.05, bumps=((5.0, -0.5, 0.7), (-5.0, -0.5, 0.7)))
 
 
-def simulated(profile, boundary="displacement", scheme="localised", ratio=0.1, progress=None, **changes):
+def simulated(
+    profile, boundary="displacement", scheme="localised", ratio=0.1, progress=None, **changes
+):
     gamma = 0.65 if boundary == "displacement" else 0.0
-    values = {"duration": 8.0, "gamma": gamma, "beta": ratio * 0.05, "scheme": scheme, "max_step": 0.3}
+    values = {
+        "duration": 8.0,
+        "gamma": gamma,
+        "beta": ratio * 0.05,
+        "scheme": scheme,
+        "max_step": 0.3,
+    }
     return sp.simulate(sp.Scene(boundary, profile, dx=0.05, **values | changes), progress=progress)
 
 
@@ -29,9 +37,13 @@ def assert_equal_but_for_rounding(one, two) -> None:
     assert one.attrs["releases"] > 100
     for name in ("x", *FIELDS):
         tolerance = 0.0 if name == "x" else tol.MIRROR
-        assert one[name].values == pytest.approx(two[name].values, rel=0, abs=tolerance, nan_ok=True), name
+        assert one[name].values == pytest.approx(
+            two[name].values, rel=0, abs=tolerance, nan_ok=True
+        ), name
     for name in NUMBERS:
-        assert one.attrs[name] == pytest.approx(two.attrs[name], rel=1e3 * tol.MIRROR, nan_ok=True), name
+        assert one.attrs[name] == pytest.approx(
+            two.attrs[name], rel=1e3 * tol.MIRROR, nan_ok=True
+        ), name
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1])

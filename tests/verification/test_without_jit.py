@@ -28,12 +28,20 @@ SAVE = "import runpy, sys; runpy.run_path(sys.argv[1])['save'](sys.argv[2])"
 def run(**changes) -> np.ndarray:
     values = {"boundary": "displacement", "gamma": 0.65, "beta": 0.05, "dx": 0.25, "duration": 4.0}
     values |= {"prestress": sp.Prestress(0.4, 0.6), "max_step": 0.3}
-    data = sp.simulate(sp.Scene(**values | changes), sp.Samples(np.linspace(0, 4, 9), np.linspace(-1, 1, 5)))
-    return np.concatenate([[data.attrs[name] for name in NUMBERS], *map(np.ravel, data.variables.values())])
+    data = sp.simulate(
+        sp.Scene(**values | changes), sp.Samples(np.linspace(0, 4, 9), np.linspace(-1, 1, 5))
+    )
+    return np.concatenate(
+        [[data.attrs[name] for name in NUMBERS], *map(np.ravel, data.variables.values())]
+    )
 
 
 def save(path: str) -> None:
-    np.savez(path, jit=not numba.config.DISABLE_JIT, **{name: run(**case) for name, case in CASES.items()})
+    np.savez(
+        path,
+        jit=not numba.config.DISABLE_JIT,
+        **{name: run(**case) for name, case in CASES.items()},
+    )
 
 
 def test_compiled_and_interpreted_agree(tmp_path):
@@ -43,4 +51,6 @@ def test_compiled_and_interpreted_agree(tmp_path):
     interpreted = np.load(path)
     assert not interpreted["jit"] and not numba.config.DISABLE_JIT
     for name, case in CASES.items():
-        assert run(**case) == pytest.approx(interpreted[name], rel=tol.JIT, abs=tol.JIT, nan_ok=True), name
+        assert run(**case) == pytest.approx(
+            interpreted[name], rel=tol.JIT, abs=tol.JIT, nan_ok=True
+        ), name

@@ -11,8 +11,12 @@ from slippulse.model.scene import Scene
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.run import run_scene
 
-PULSE = Scene("displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, beta=0.1 * 0.04, max_step=0.5)
-CRACK = Scene("stress", Prestress(0.5, 0.5), 50.0, 0.04, beta=0.1 * 0.04, max_step=0.5, half_lattice=False)
+PULSE = Scene(
+    "displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, beta=0.1 * 0.04, max_step=0.5
+)
+CRACK = Scene(
+    "stress", Prestress(0.5, 0.5), 50.0, 0.04, beta=0.1 * 0.04, max_step=0.5, half_lattice=False
+)
 # Scene, expected block updates a step over the mean number of sliding blocks (1: nothing else is touched, 1/2: half of
 # a symmetric scene), most blocks changed by events over block updates, least blocks of the whole lattice over the
 # sliding ones.
@@ -48,7 +52,9 @@ def test_only_sliding_blocks_are_updated_and_events_change_few(name):
 def test_a_pulse_costs_linearly_in_time_and_quadratically_in_spacing(changes, exponent):
     work = [run_scene(replace(PULSE, **change)).numbers["block_updates"] for change in changes]
     values = [next(iter(change.values())) for change in changes]
-    assert np.polyfit(np.log(values), np.log(work), 1)[0] == pytest.approx(exponent, abs=tol.EXPONENT)
+    assert np.polyfit(np.log(values), np.log(work), 1)[0] == pytest.approx(
+        exponent, abs=tol.EXPONENT
+    )
 
 
 def bytes_in(value, size: int) -> int:
@@ -71,10 +77,14 @@ def test_a_block_takes_few_bytes_and_an_order_eight_more():
 @pytest.mark.parametrize("right", [0.5, 0.4], ids=["half lattice", "whole lattice"])
 def test_rows_begin_at_different_places_of_their_pages(right):
     """In a page of 4096 bytes the beginnings of any two are three lines of the cache apart, or more."""
-    lattice = Lattice(Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8), None, 0.0)
+    lattice = Lattice(
+        Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8), None, 0.0
+    )
     for _ in range(6):
         size = lattice.size
-        places = np.sort([row.ctypes.data % 4096 for row in (*lattice.motion.w, *lattice.motion[1:])])
+        places = np.sort(
+            [row.ctypes.data % 4096 for row in (*lattice.motion.w, *lattice.motion[1:])]
+        )
         assert np.diff(places, append=places[0] + 4096).min() >= 3 * 64
         assert np.abs(lattice.motion.tau[-lattice.first_block] - 1.0) < 1e-12
         lattice._grow()

@@ -16,7 +16,9 @@ def imitated(project, tmp_path_factory) -> Path:
     folder = copy_project(project, tmp_path_factory.mktemp("imitated") / "copy")
     imitate_steps(folder)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
-    made = snakemake(folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2, timeout=1200)
+    made = snakemake(
+        folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2, timeout=1200
+    )
     assert made.returncode == 0, made.stderr
     assert planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")) == {}
     return folder

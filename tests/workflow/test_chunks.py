@@ -13,15 +13,24 @@ pytestmark = pytest.mark.slow
 
 LEVELS = [0.3, -0.2, 0.5, 0.4, 0.0, 0.6, 0.7]
 CHUNKS = {"in_none": None, "in_one": 1, "in_two": 2, "in_three": 3}
-FILES = ("data/{}.nc", "measurements/{}.csv", "uncertainties/{}.csv", "uncertainties/coarser/{}.csv")
+FILES = (
+    "data/{}.nc",
+    "measurements/{}.csv",
+    "uncertainties/{}.csv",
+    "uncertainties/coarser/{}.csv",
+)
 
 
 def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **changes) -> str:
     """Sweeps of some levels in some numbers of chunks, or without."""
     sweep = {key: value for key, value in SWEEP.items() if key != "chunks"}
     sweep |= {"left": LEVELS, "resolved_blocks": 4} | changes
-    found = {name: sweep | ({"chunks": chunks} if chunks else {}) for name, chunks in sweeps.items()}
-    (folder / name).write_text(json.dumps({"preset": "draft", "simulations": found}), encoding="utf-8")
+    found = {
+        name: sweep | ({"chunks": chunks} if chunks else {}) for name, chunks in sweeps.items()
+    }
+    (folder / name).write_text(
+        json.dumps({"preset": "draft", "simulations": found}), encoding="utf-8"
+    )
     return name
 
 
@@ -79,7 +88,9 @@ def test_what_runs(folder, case):
     options = [] if lost else options
     try:
         overlay = write_overlay(folder, "other.yaml", sweeps, **changes)
-        result = snakemake(folder, "--dry-run", *options, "--", *targets(name, files=files), overlay=overlay)
+        result = snakemake(
+            folder, "--dry-run", *options, "--", *targets(name, files=files), overlay=overlay
+        )
     finally:
         for path in kept:
             path.rename(path.with_suffix(""))
@@ -93,25 +104,38 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     for target in lost:
         (folder / target).unlink()
     # What the joined files were made from is not missed.
-    assert planned(snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay="overlay.yaml")) == {}
+    assert (
+        planned(snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay="overlay.yaml"))
+        == {}
+    )
     result = snakemake(folder, "--", *lost, *targets("in_two"), overlay="overlay.yaml", cores=2)
     assert result.returncode == 0, result.stderr
     assert "Simulating in_two/1-of-2" in result.stderr and "2-of-2\n" not in result.stderr
     assert [path.read_bytes() for path in joined] == before
 
 
-@pytest.mark.parametrize("chunk", ["two/1-of-3", "two/3-of-2", "two/0-of-2", "none/1-of-1", "one/1-of-1"])
+@pytest.mark.parametrize(
+    "chunk", ["two/1-of-3", "two/3-of-2", "two/0-of-2", "none/1-of-1", "one/1-of-1"]
+)
 def test_a_chunk_that_there_is_not_is_refused(folder, chunk):
     result = snakemake(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "Traceback" not in said
-    assert f"target: 'results/data/in_{chunk}.nc'" in said and "allowed: a rule of a single job" in said
+    assert (
+        f"target: 'results/data/in_{chunk}.nc'" in said
+        and "allowed: a rule of a single job" in said
+    )
 
 
 def test_a_job_elsewhere_does_not_check_every_run_again(folder):
-    (folder / "wrong.yaml").write_text("simulations: {space_time_stress: {left: [1.0]}}", encoding="utf-8")
+    (folder / "wrong.yaml").write_text(
+        "simulations: {space_time_stress: {left: [1.0]}}", encoding="utf-8"
+    )
     arguments = ("--dry-run", "--", "results/figures/fig07_damage_zone.png")
     here = snakemake(folder, *arguments, overlay="wrong.yaml")
-    assert here.returncode != 0 and "space_time_stress.prestress.left: 1.0" in here.stdout + here.stderr
+    assert (
+        here.returncode != 0
+        and "space_time_stress.prestress.left: 1.0" in here.stdout + here.stderr
+    )
     elsewhere = snakemake(folder, "--mode", "remote", *arguments, overlay="wrong.yaml")
     assert elsewhere.returncode == 0, elsewhere.stderr

@@ -22,14 +22,27 @@ from slippulse.steps.reach import declared, sources
 PROJECT = Path(__file__).resolve().parents[2]
 PACKAGE, TEXTS = PROJECT / "src/slippulse", PROJECT / "manuscript"
 # Rules whose step takes a module by name: one a figure, one a study of the solver.
-DRAWN = {path.stem for pattern in ("fig*.py", "study_*.py") for path in (PACKAGE / "figures").glob(pattern)}
+DRAWN = {
+    path.stem
+    for pattern in ("fig*.py", "study_*.py")
+    for path in (PACKAGE / "figures").glob(pattern)
+}
 STUDIED = {
     f"study_of_{path.stem}": path.stem
     for path in (PACKAGE / "studies").glob("*.py")
     if re.search(r"^NEEDS = ", path.read_text(encoding="utf-8"), re.M)
 }
 # Every other step has a rule, but what the steps share; two schemes take other steps of the same rules.
-NO_RULES = {"__init__", "inputs", "job", "libraries", "reach", "targets", "draw_figure", "run_study"}
+NO_RULES = {
+    "__init__",
+    "inputs",
+    "job",
+    "libraries",
+    "reach",
+    "targets",
+    "draw_figure",
+    "run_study",
+}
 STEPS = {path.stem for path in (PACKAGE / "steps").glob("*.py")} - NO_RULES
 STEPS = {step for step in STEPS if not step.endswith(("_continuum", "_fixed_step"))}
 # Modules that a rule runs.
@@ -88,16 +101,22 @@ def templates_of(page: str) -> set[str]:
     """A template and those that it is made with."""
     path = f"src/slippulse/report/templates/{page}"
     text = (PROJECT / path).read_text(encoding="utf-8")
-    return {path}.union(*map(templates_of, re.findall(r'{% (?:extends|include|import) "(.+?)"', text)))
+    return {path}.union(
+        *map(templates_of, re.findall(r'{% (?:extends|include|import) "(.+?)"', text))
+    )
 
 
 @cache
 def expected(rule: str) -> set[str]:
     """Files of the package and texts that a rule depends on."""
     modules = {f"slippulse.{name}" for name in MODULES[rule]}
-    found = {module_file(name) for name in modules.union(*map(imports().find_upstream_modules, modules))}
+    found = {
+        module_file(name) for name in modules.union(*map(imports().find_upstream_modules, modules))
+    }
     found.update(*map(templates_of, PAGES_OF.get(rule, ())))
-    texts = {path.name for path in TEXTS.iterdir() if rule in READ_BY.get(path.name, {"write_report"})}
+    texts = {
+        path.name for path in TEXTS.iterdir() if rule in READ_BY.get(path.name, {"write_report"})
+    }
     return found | {f"manuscript/{name}" for name in texts}
 
 
@@ -133,7 +152,8 @@ def inputs(linked) -> dict[str, set[str]]:
 def seen(inputs) -> dict[str, set[str]]:
     """Sources that each rule depends on: what its modules reach, and the texts that it takes."""
     return {
-        name: {file for file in files if not file.startswith(("results/", "<"))} | {*sources(*MODULES[name])}
+        name: {file for file in files if not file.startswith(("results/", "<"))}
+        | {*sources(*MODULES[name])}
         for name, files in inputs.items()
         if name not in NAMES
     }
@@ -144,14 +164,18 @@ def test_every_file_marks_the_rules_whose_step_reaches_it(seen):
     assert set(seen) == RULES
     marked = {file: {rule for rule, inputs in seen.items() if file in inputs} for file in FILES}
     # The rules that are too many or missing.
-    wrong = {file: rules ^ rules_of(file) for file, rules in marked.items() if rules != rules_of(file)}
+    wrong = {
+        file: rules ^ rules_of(file) for file, rules in marked.items() if rules != rules_of(file)
+    }
     # Predictions that two figures share do not stand in the module of one of them.
     for name in DRAWN:
         assert marked[f"src/slippulse/figures/{name}.py"] == {name} | EVERY_SOURCE
     assert len(FILES) > 150
     assert wrong == {}
     # And no other file of the sources.
-    others = {rule: inputs - set(FILES) for rule, inputs in seen.items() if not inputs <= set(FILES)}
+    others = {
+        rule: inputs - set(FILES) for rule, inputs in seen.items() if not inputs <= set(FILES)
+    }
     assert {"Snakefile", "workflow/rules/common.smk"} <= others.pop("write_provenance")
     # The report says what differs from the shipped configuration, and its version.
     assert others == {"write_report": {"CITATION.cff", "config/config.yaml"}}
@@ -176,7 +200,9 @@ def test_checksums_and_manifest_cover_what_everything_makes_and_what_is_ones_own
     assert inputs["everything"] == listed | about_itself
     for name in ("mine", "one", "barrier"):
         assert f"results/data/{name}.nc" in listed
-        assert {f"results/{kind}/{name}.csv" for kind in ("measurements", "uncertainties")} <= listed
+        assert {
+            f"results/{kind}/{name}.csv" for kind in ("measurements", "uncertainties")
+        } <= listed
     assert {f"results/scenes/one.{ending}" for ending in ("html", "png", "pdf", "csv")} <= listed
     # Data of a figure and of a claim.
     assert {"results/data/steady_stress.nc", "results/measurements/scaling_stress.csv"} <= listed
@@ -185,7 +211,9 @@ def test_checksums_and_manifest_cover_what_everything_makes_and_what_is_ones_own
 @pytest.fixture(scope="module")
 def downstream(imitated):
     """A function of some rules: these and all that takes what they make, directly or not."""
-    drawn = snakemake(imitated, "--rulegraph", "mermaid-js", "--", *TARGETS, overlay="overlay.yaml").stdout
+    drawn = snakemake(
+        imitated, "--rulegraph", "mermaid-js", "--", *TARGETS, overlay="overlay.yaml"
+    ).stdout
 
     def find(rules: Iterable[str]) -> set[str]:
         found = {*rules}
@@ -258,10 +286,18 @@ ALWAYS, CHAIN, PUBLISHED = (dict.fromkeys(names.split(), 1) for names in (
 # What is laid over the configuration, and what then runs besides.
 CONFIGURATIONS = {
     "simulations: {space_time_displacement: {left: [0.3]}}": CHAIN | PUBLISHED,
-    "simulations: {mine: {left: [0.5, 0.3]}}": dict.fromkeys(CHAIN, 2) | {"join": 4, "sweep_mine": 1},
+    "simulations: {mine: {left: [0.5, 0.3]}}": dict.fromkeys(CHAIN, 2)
+    | {"join": 4, "sweep_mine": 1},
     "simulations: {mine: {chunks: 1}}": CHAIN | {"sweep_mine": 1},
-    f"figures: {{{FIGURE}: {{thickness_ratios: [0.3, 1.0]}}}}": {"study_of_damage_zone": 1, FIGURE: 1},
-    "scenes: {barrier: {title: Uno}}": {"draw_scene": 1, "animate_scene": 1, "write_scenes_page": 1},
+    f"figures: {{{FIGURE}: {{thickness_ratios: [0.3, 1.0]}}}}": {
+        "study_of_damage_zone": 1,
+        FIGURE: 1,
+    },
+    "scenes: {barrier: {title: Uno}}": {
+        "draw_scene": 1,
+        "animate_scene": 1,
+        "write_scenes_page": 1,
+    },
     "claims: {front_speed: {tolerance: 0.5}}": {},
     "allow_large: true": {},
 }
@@ -277,7 +313,9 @@ def studies_without(*read: str) -> set[str]:
     """Studies that read no tables, and neither some other kinds of files nor parts of the configuration."""
     read += ("data", "measured", "predicted", "uncertainties", "coarser", "studies")
     needs = {rule: declared(f"studies.{study}", "NEEDS") for rule, study in STUDIED.items()}
-    keys = {rule: {*found, *found.get("settings", ())} - {"settings"} for rule, found in needs.items()}
+    keys = {
+        rule: {*found, *found.get("settings", ())} - {"settings"} for rule, found in needs.items()
+    }
     return {rule for rule, found in keys.items() if not any(key.startswith(read) for key in found)}
 
 
@@ -317,7 +355,9 @@ def test_what_is_shared_runs_what_reads_it_and_no_more(imitated, change):
 def test_the_default_is_the_whole_paper_and_one_figure_needs_only_its_own_simulations(linked):
     jobs = planned(snakemake(linked, "--dry-run"))
     assert DRAWN | set(STUDIED) <= set(jobs)
-    assert {"write_claims", "write_report", "write_provenance", "write_index", "draw_scene"} <= set(jobs)
+    assert {"write_claims", "write_report", "write_provenance", "write_index", "draw_scene"} <= set(
+        jobs
+    )
     jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
     own = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)
     assert jobs == own | {"simulate": 2, "measure": 2}
@@ -328,7 +368,8 @@ def test_a_draft_is_the_figures_and_what_is_ones_own(linked):
     result = snakemake(linked, "--dry-run", overlay="overlay.yaml")
     jobs = planned(result)
     assert (
-        sum(name.startswith("fig") for name in jobs) == 11 and jobs["draw_scene"] == jobs["study_grid"] == 1
+        sum(name.startswith("fig") for name in jobs) == 11
+        and jobs["draw_scene"] == jobs["study_grid"] == 1
     )
     drawn = {"damage_zone", "exact_space_time", "pulse_profiles", "regime_plane"}
     made = {name for name in jobs if name.startswith(("study_of", "write_"))}
@@ -341,12 +382,16 @@ def test_the_graph_in_the_readme_is_the_pipelines(linked, project):
     targets = ("results/figures/fig05_scaling.png", "results/claims.json")
     drawn = snakemake(linked, "--rulegraph", "mermaid-js", "--", *targets)
     assert drawn.returncode == 0, drawn.stderr
-    shown = (project / "README.md").read_text(encoding="utf-8").split("```mermaid\n")[1].split("```")[0]
+    shown = (
+        (project / "README.md").read_text(encoding="utf-8").split("```mermaid\n")[1].split("```")[0]
+    )
     assert edges(shown) == edges(drawn.stdout) and ("simulate", "measure") in edges(shown)
 
 
 @pytest.mark.slow
-def test_a_run_shows_what_it_does_by_the_profile_and_snakemakes_report_is_one_file_that_loads_nothing(linked):
+def test_a_run_shows_what_it_does_by_the_profile_and_snakemakes_report_is_one_file_that_loads_nothing(
+    linked,
+):
     """Without a terminal: one short line a job, and no pages of files and reasons."""
     result = snakemake(linked, "--force", "--", FIGURE, command=BY_PROFILE)
     said = result.stdout + result.stderr

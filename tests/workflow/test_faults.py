@@ -51,14 +51,24 @@ def test_surroundings_do_not_change_a_byte(finished, tmp_path):
         "TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "PYTHONHASHSEED": "1", "DISPLAY": "",
         "MPLBACKEND": "TkAgg", "FONTCONFIG_FILE": str(tmp_path / "no fonts"), "OMP_NUM_THREADS": "3",
     }  # fmt: skip
-    result = snakemake(elsewhere, "--", SCENE, FIGURE, overlay="overlay.yaml", cores=1, environment=strange)
+    result = snakemake(
+        elsewhere, "--", SCENE, FIGURE, overlay="overlay.yaml", cores=1, environment=strange
+    )
     assert result.returncode == 0, result.stderr
     assert digests(elsewhere) == digests(finished)
 
 
 @pytest.mark.slow
 def test_it_can_be_started_from_anywhere(finished, tmp_path):
-    what = ["--dry-run", "--directory", finished, "--snakefile", finished / "Snakefile", "--", SCENE]
+    what = [
+        "--dry-run",
+        "--directory",
+        finished,
+        "--snakefile",
+        finished / "Snakefile",
+        "--",
+        SCENE,
+    ]
     how = {"overlay": finished / "overlay.yaml", "command": BY_PROFILE, "cwd": tmp_path}
     assert planned(snakemake(finished, *what, **how)) == {}
 
@@ -70,11 +80,16 @@ def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
     (copy / SCENE).unlink()
     (copy / DATA).write_bytes(b"no data")
     outputs = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
-    (copy / RECORD).write_text(json.dumps(json.loads((copy / RECORD).read_text()) | {"outputs": outputs}))
+    (copy / RECORD).write_text(
+        json.dumps(json.loads((copy / RECORD).read_text()) | {"outputs": outputs})
+    )
     result = snakemake(copy, "--", SCENE, overlay="overlay.yaml", command=BY_PROFILE)
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "one.nc: cannot be read" in said
-    assert "delete it and run again" in said and "(details: results/logs/measure/one.traceback)" in said
+    assert (
+        "delete it and run again" in said
+        and "(details: results/logs/measure/one.traceback)" in said
+    )
     assert "Traceback" not in said and not (copy / SCENE).exists()
     assert "Traceback" in (copy / "results/logs/measure/one.traceback").read_text()
 
@@ -82,7 +97,9 @@ def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
 def test_an_unreadable_table_is_named(tmp_path):
     path = tmp_path / "edited.csv"
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
-    with pytest.raises(UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run again"):
+    with pytest.raises(
+        UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run again"
+    ):
         load_table(path)
 
 
@@ -146,7 +163,14 @@ def test_a_job_that_fails_has_said_why(tmp_path, capfd):
 def test_jobs_run_one_after_another_in_a_process_until_it_ends(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", frozenset())
-    job = (origin, "a job", {}, {"html": "results/scenes.html"}, {"scenes": {}}, "results/logs/one.log")
+    job = (
+        origin,
+        "a job",
+        {},
+        {"html": "results/scenes.html"},
+        {"scenes": {}},
+        "results/logs/one.log",
+    )
     before = set(multiprocessing.active_children())
     for _ in range(3):
         jobs.run(*job)
@@ -187,9 +211,14 @@ def test_of_two_first_runs_in_a_fresh_clone_one_sets_up_and_one_runs(project, tm
     options = {"cwd": folder, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     runs = [subprocess.Popen(run, **options) for _ in range(2)]
     said = [each.communicate(timeout=500)[0] for each in runs]
-    assert sum("Setting up" in text for text in said) == 1 and "Traceback" not in "".join(said), said
+    assert sum("Setting up" in text for text in said) == 1 and "Traceback" not in "".join(said), (
+        said
+    )
     # The second may begin when the first has ended.
     refused = [text for each, text in zip(runs, said, strict=True) if each.returncode]
-    assert all("Another run is at work in this folder" in text for text in refused) and len(refused) <= 1
+    assert (
+        all("Another run is at work in this folder" in text for text in refused)
+        and len(refused) <= 1
+    )
     assert (folder / FIGURE).exists()
     assert subprocess.run(run, cwd=folder, check=False, timeout=100).returncode == 0

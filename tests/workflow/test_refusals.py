@@ -22,7 +22,9 @@ KEPT = (
 )  # fmt: skip
 # What the key of a row may begin with: a shipped simulation, or one that is there before the row is laid over.
 SHORT = {"steady": "simulations.steady_displacement", "stress": "simulations.space_time_stress"}
-SPRINGS = "boundary: displacement, duration: {time: 10.0}, record: [fronts], left: [0.5], right: same"
+SPRINGS = (
+    "boundary: displacement, duration: {time: 10.0}, record: [fronts], left: [0.5], right: same"
+)
 ADDED = {
     "springs": SPRINGS,
     "level": f"{SPRINGS}, gamma: [0.5]",
@@ -204,8 +206,12 @@ def rows(table: str) -> list[list[str]]:
     """The cells of each line that is not empty, the first with the whole key, and what is in angles written out."""
     for name, text in {"\\\n": "", "<scene>": SCENE, "<many>": MANY, "<long>": "a" * 900}.items():
         table = table.replace(name, text)
-    cells = [[cell.strip() for cell in f" {line}".split(" | ")] for line in table.splitlines() if line]
-    return [[re.sub(r"^\w+", lambda key: SHORT.get(key[0], key[0]), row[0]), *row[1:]] for row in cells]
+    cells = [
+        [cell.strip() for cell in f" {line}".split(" | ")] for line in table.splitlines() if line
+    ]
+    return [
+        [re.sub(r"^\w+", lambda key: SHORT.get(key[0], key[0]), row[0]), *row[1:]] for row in cells
+    ]
 
 
 def of_rows(table: str):
@@ -226,7 +232,11 @@ def overlaid(tmp_path, text: str) -> dict:
 
 def read_row(shipped, tmp_path, key: str, value: str):
     """The configuration with a value at a key."""
-    added = [f"simulations: {{{name}: {{{ADDED[name]}}}}}" for name in ADDED if f"simulations.{name}" in key]
+    added = [
+        f"simulations: {{{name}: {{{ADDED[name]}}}}}"
+        for name in ADDED
+        if f"simulations.{name}" in key
+    ]
     text = ": {".join(key.split(".")) + f": {value}" + "}" * key.count(".") if key else value
     return read_config(shipped, [overlaid(tmp_path, overlay) for overlay in (*added, text)])
 
@@ -251,7 +261,9 @@ def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, row):
 
 def bound_and_chunks(config, name: str):
     sweep = all_simulations(config)[name]
-    return bound_of_sweep(resolve(sweep, config.model, accuracy_of(config)), sweep.chunks), sweep.chunks
+    return bound_of_sweep(
+        resolve(sweep, config.model, accuracy_of(config)), sweep.chunks
+    ), sweep.chunks
 
 
 @of_rows(EXPENSIVE)
@@ -291,7 +303,9 @@ def test_scalars_are_what_yaml_and_json_say(tmp_path):
         read = overlaid(tmp_path, f"key: {text}\n")["key"]
         assert read == value and type(read) is type(value)
     # JSON is YAML.
-    assert overlaid(tmp_path, '{"presets": {"paper": {"dx": 1e-2}}}') == {"presets": {"paper": {"dx": 0.01}}}
+    assert overlaid(tmp_path, '{"presets": {"paper": {"dx": 1e-2}}}') == {
+        "presets": {"paper": {"dx": 0.01}}
+    }
 
 
 def test_the_command_line_sets_nested_values_and_says_a_switch_in_words(shipped):
@@ -330,4 +344,8 @@ def test_scenes_are_simulations_once_read(project):
         (run,), (samples,) = expand(resolve(simulations[name], config.model, accuracy_of(config)))
         expected = (scene.boundary, scene.duration, scene.left)
         assert (run.boundary, run.duration, run.prestress.left) == expected
-        assert samples is not None and {*simulations[name].record} == {"fronts", "fields", "samples"}
+        assert samples is not None and {*simulations[name].record} == {
+            "fronts",
+            "fields",
+            "samples",
+        }

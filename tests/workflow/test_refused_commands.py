@@ -56,7 +56,9 @@ SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--
 def test_the_command_refuses_before_any_job(folder, case):
     overlay, arguments, named = COMMANDS[case]
     (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
-    text = said([*SNAKEMAKE, *(() if arguments[:1] == ["--config"] else ["--"]), *arguments], folder, 1)
+    text = said(
+        [*SNAKEMAKE, *(() if arguments[:1] == ["--config"] else ["--"]), *arguments], folder, 1
+    )
     assert not any(part in text for part in ("Traceback", "localrule", "Select jobs"))
     assert all(part in text for part in named)
     assert not (folder / "results").exists() and not (folder / "written").exists()
@@ -86,7 +88,9 @@ def make(project, folder):
     (folder / ".venv/bin").mkdir(parents=True)
     (folder / ".venv/bin/python").symlink_to(sys.executable)
     (folder / ".venv/.ready").touch()
-    paths = os.environ | {"PYTHONPATH": os.pathsep.join([str(project / "src"), *site.getsitepackages()])}
+    paths = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(project / "src"), *site.getsitepackages()])
+    }
     return lambda *arguments: said(["make", *arguments], folder, 2, paths)
 
 
@@ -152,5 +156,10 @@ def test_a_command_says_in_one_line_how_it_is_used(project, tmp_path, monkeypatc
 def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
     monkeypatch.chdir(project)
     path = "results/figures/fig07_damage_zone.png"
-    short = {"fig7": "fig07_damage_zone", "figure_07.png": path, path: path, "fig07_x.png": "fig07_x.png"}
+    short = {
+        "fig7": "fig07_damage_zone",
+        "figure_07.png": path,
+        path: path,
+        "fig07_x.png": "fig07_x.png",
+    }
     assert [*map(runpy.run_path("workflow/run.py")["meant"], short)] == [*short.values()]

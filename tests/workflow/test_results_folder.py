@@ -22,7 +22,11 @@ pytestmark = pytest.mark.slow
 OVERLAYS = {
     "overlay": OVERLAY, "other": OVERLAY | {"model": {"release": "elastic"}}, "paper": OVERLAY | {"preset": "paper"},
 }  # fmt: skip
-PART = ("results/scenes/one.html", "results/measurements/arrest.csv", "results/figures/sweep_mine.png")
+PART = (
+    "results/scenes/one.html",
+    "results/measurements/arrest.csv",
+    "results/figures/sweep_mine.png",
+)
 FIGURE = "figures/fig07_damage_zone"
 
 
@@ -37,7 +41,9 @@ def verify(folder: Path, overlay: str = "overlay.yaml") -> dict[str, str]:
     """As `make verify`: the reason by file."""
     result = snakemake(folder, "--quiet", "--", "verify", "everything", overlay=overlay)
     assert "Traceback" not in result.stdout + result.stderr
-    found = [line.partition(": ") for line in result.stdout.splitlines() if line.startswith("results/")]
+    found = [
+        line.partition(": ") for line in result.stdout.splitlines() if line.startswith("results/")
+    ]
     assert result.returncode == bool(found), result.stderr
     return {name.removeprefix("results/"): reason for name, _, reason in found}
 
@@ -45,7 +51,9 @@ def verify(folder: Path, overlay: str = "overlay.yaml") -> dict[str, str]:
 @pytest.fixture(scope="module")
 def finished(imitated, tmp_path_factory) -> Path:
     """The imitated tree; and in folders beside results/, what each overlay makes."""
-    folder = Path(shutil.copytree(imitated, tmp_path_factory.mktemp("results") / "first", symlinks=True))
+    folder = Path(
+        shutil.copytree(imitated, tmp_path_factory.mktemp("results") / "first", symlinks=True)
+    )
     for name, overlay in OVERLAYS.items():
         (folder / f"{name}.yaml").write_text(yaml.safe_dump(overlay), encoding="utf-8")
         if overlay is not OVERLAY:
@@ -219,7 +227,10 @@ def test_short_names_are_targets(folder):
         run(folder, name)
         assert (folder / f"results/{FIGURE}.png").exists(), name
     result = snakemake(folder, "--", "fig077", overlay="overlay.yaml")
-    assert result.returncode and "target: 'fig077' (did you mean 'fig07'?)" in result.stdout + result.stderr
+    assert (
+        result.returncode
+        and "target: 'fig077' (did you mean 'fig07'?)" in result.stdout + result.stderr
+    )
 
 
 def test_a_draft_is_verified_as_a_draft(folder):
@@ -239,5 +250,7 @@ def test_a_run_is_not_begun_beside_another(folder):
     held.close()
     # What a killed run has left of Snakemake's own lock is in nobody's way.
     (folder / ".snakemake/locks").mkdir(exist_ok=True)
-    (folder / ".snakemake/locks/0.input.lock").write_text(json.dumps(["results/kernels/localised.txt"]))
+    (folder / ".snakemake/locks/0.input.lock").write_text(
+        json.dumps(["results/kernels/localised.txt"])
+    )
     assert "The last run was killed" in run(folder, "everything")

@@ -39,11 +39,15 @@ try:
     SHIPPED = read_overlay(f"{workflow.basedir}/config/config.yaml")
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
     # A job on another node starts Snakemake anew, with scenes that were checked here.
-    CONFIG = read_config(SHIPPED, OVERLAYS, workflow.config_settings.config, workflow.is_main_process)
+    CONFIG = read_config(
+        SHIPPED, OVERLAYS, workflow.config_settings.config, workflow.is_main_process
+    )
     if CONFIG.claims:
         read_entries("manuscript/claims.yaml", CONFIG.given()["claims"])
     if unknown := {*(CONFIG.studies or ())} - {*STUDY_NEEDS}:
-        raise ConfigError(f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(STUDY_NEEDS)}")
+        raise ConfigError(
+            f"studies: {', '.join(sorted(unknown))}; allowed: {', '.join(STUDY_NEEDS)}"
+        )
 except ValueError as error:
     sys.exit(f"The configuration is refused:\n{error}")
 
@@ -66,10 +70,16 @@ def run_step(rule, wildcards, input, output, params, threads):
     JOBS.run(origin, name, plain(input), plain(output), settings, log)
 
 
-FIGURES, TOPICS = [name for name in NEEDS if name.startswith("fig")], declared("steps.predict", "TOPICS")
-SWEEPS = {f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS}
+FIGURES, TOPICS = [name for name in NEEDS if name.startswith("fig")], declared(
+    "steps.predict", "TOPICS"
+)
+SWEEPS = {
+    f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS
+}
 # What is read of predictions: topics by simulation.
-CLAIM_PREDICTED, REPORT_NEEDS = declared("claims.paper", "PREDICTED"), declared("steps.write_report", "NEEDS")
+CLAIM_PREDICTED, REPORT_NEEDS = declared("claims.paper", "PREDICTED"), declared(
+    "steps.write_report", "NEEDS"
+)
 READ = [CLAIM_PREDICTED, *(needs.get("predicted", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
 # Files by kind, of a name; those of lists are named by their whole path.
 FILES = {
@@ -86,7 +96,10 @@ FILES = {
     "kernels": "results/kernels/{name}.txt",
 }
 # The schemes that have kernels, and where: only what reaches them waits for them.
-KERNELS = {"localised": "src/slippulse/solver/taylor.py", "fixed_step": "src/slippulse/solver/fixed_step.py"}
+KERNELS = {
+    "localised": "src/slippulse/solver/taylor.py",
+    "fixed_step": "src/slippulse/solver/fixed_step.py",
+}
 
 
 def made(kind, names):
@@ -117,7 +130,9 @@ def settings_of(job):
         # With the spacing of each run where an accuracy is asked for.
         "sweep": promised(sweep),
         # On the coarser lattices of the preset, by factor of the spacing.
-        "sweeps": {float(by): promised({**sweep, "coarser": float(by)}) for by in ACCURACY["coarser"]},
+        "sweeps": {
+            float(by): promised({**sweep, "coarser": float(by)}) for by in ACCURACY["coarser"]
+        },
         "measure": {**config["measure"], "share": share},
         # What is predicted: as far as it is read; all of what an overlay adds.
         "topics": sorted({topic for read in READ for topic in read.get(name, ())} or TOPICS),
@@ -126,7 +141,9 @@ def settings_of(job):
         "study_grid": f"study_grid{by_scheme}",
         "kernels": made("kernels", {scheme} & {*KERNELS}),
         "bound": bound,
-        "cost": lambda: [f"{kind}.{name}.{cost}" for cost in [bound().exceeded(simulation.chunks)] if cost],
+        "cost": lambda: [
+            f"{kind}.{name}.{cost}" for cost in [bound().exceeded(simulation.chunks)] if cost
+        ],
         "runs": run_count(whole),
     }
 

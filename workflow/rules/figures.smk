@@ -9,7 +9,9 @@ for study, needs in STUDY_NEEDS.items():
             f"study_of_{study}"
         input:
             **inputs_of(needs),
-            kernels=made("kernels", [of for of in KERNELS if KERNELS[of] in sources(f"studies.{study}")]),
+            kernels=made(
+                "kernels", [of for of in KERNELS if KERNELS[of] in sources(f"studies.{study}")]
+            ),
         output:
             table=f"results/studies/{study}.csv",
         priority: 2
@@ -35,7 +37,9 @@ for figure, needs in (NEEDS | SWEEPS).items():
         input:
             **inputs_of(needs),
         output:
-            png=report(f"results/figures/{figure}.png", category=category, labels={"figure": figure}),
+            png=report(
+                f"results/figures/{figure}.png", category=category, labels={"figure": figure}
+            ),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
         # Before scenes and the explorer, which run beside the report: that waits for the figures alone.

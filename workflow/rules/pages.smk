@@ -8,7 +8,9 @@ CLAIM_STUDIES = "derivations open_choices published_figure published_scheme rate
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [
     # The claims first, so that they come first in Snakemake's own report too.
-    *expand("results/{name}", name=("claims.html", "claims.json", "findings.json", "explorer.html")),
+    *expand(
+        "results/{name}", name=("claims.html", "claims.json", "findings.json", "explorer.html")
+    ),
     *made("figures", [*NEEDS, *SWEEPS]),
     *made("data", SIMULATIONS),
     *made("measured", SIMULATIONS),
@@ -19,7 +21,11 @@ RESULTS = [
 ]
 EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
 # Without a name a draft makes the figures of the paper and what an overlay adds.
-DRAFT = made("figures", [*FIGURES, *SWEEPS]) + made("measured", OWN_SIMULATIONS) + made("scenes", OWN_SCENES)
+DRAFT = (
+    made("figures", [*FIGURES, *SWEEPS])
+    + made("measured", OWN_SIMULATIONS)
+    + made("scenes", OWN_SCENES)
+)
 TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statements", "summary")
 
 

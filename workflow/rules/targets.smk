@@ -9,13 +9,21 @@ from slippulse.data.records import Tree
 from slippulse.steps.reach import jobs_of
 from slippulse.steps.targets import Plan, say_faulty
 
-OPTIONS = ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []
+OPTIONS = (
+    ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []
+)
 OPTIONS += ["--config", *CALLED.config] if CALLED.config else []
 RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
 # What may be asked for by name: rules without wildcards, and to `verify` what a run without a name makes.
-NAMED = {name: rule.output or rule.input for name, rule in RULES.items() if "{" not in "".join(rule.output)}
+NAMED = {
+    name: rule.output or rule.input
+    for name, rule in RULES.items()
+    if "{" not in "".join(rule.output)
+}
 NAMED |= dict.fromkeys(("all", "verify"), EVERYTHING if ACCURACY.get("whole", True) else DRAFT)
-MAKING = [(name, rule.input, rule.output, rule.params) for name, rule in RULES.items() if rule.output]
+MAKING = [
+    (name, rule.input, rule.output, rule.params) for name, rule in RULES.items() if rule.output
+]
 PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
 
 
@@ -26,7 +34,9 @@ def begin():
     if "verify" in targets:
         sys.exit(PLAN.verify(wanted))
     PLAN.check_places(".snakemake", "results/logs")
-    simulated = {Path(name).parts[1].removesuffix(".nc") for name in wanted if name.startswith("data/")}
+    simulated = {
+        Path(name).parts[1].removesuffix(".nc") for name in wanted if name.startswith("data/")
+    }
     costs = [line for name in sorted(simulated) for line in settings_of(name)["cost"]()]
     if costs and not CONFIG.allow_large:
         raise ConfigError(format_problems(costs))
@@ -52,7 +62,11 @@ def look(faulty):
 
 def end():
     """One line on results that this run has left behind, with the command that renews them."""
-    given = [f"{name}={os.environ[name]}" for name in ("PRESET", "OVERLAY", "ALLOW_LARGE") if os.getenv(name)]
+    given = [
+        f"{name}={os.environ[name]}"
+        for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")
+        if os.getenv(name)
+    ]
     how = ["--profile", *CALLED.profile] if CALLED.profile else ["--cores", str(CALLED.cores or 1)]
     renewal = ["snakemake", *how, *OPTIONS, "--", "everything"]
     if "MAKELEVEL" in os.environ:

@@ -25,7 +25,14 @@ NAN = float("nan")
 # further: other numbers, by what they are; why: one sentence, where the numbers do not say it; note.
 Claim = dict[str, Any]
 # Of an approximate claim: quantile and largest deviation of the runs, exponent, distance from the exact theory.
-ESTIMATE = ("ninety", "largest", "exponent", "exponent_uncertainty", "exact_median", "exact_largest")
+ESTIMATE = (
+    "ninety",
+    "largest",
+    "exponent",
+    "exponent_uncertainty",
+    "exact_median",
+    "exact_largest",
+)
 
 
 class NoRuns(Exception):
@@ -70,7 +77,9 @@ class Evidence:
         self, tables: Mapping[str, pd.DataFrame], entries: Mapping[str, Mapping], steady: float
     ) -> None:
         self.tables, self.entries, self.steady = tables, entries, steady
-        self.swept = [path.removeprefix("coarser/") for path in tables if path.startswith("coarser/")]
+        self.swept = [
+            path.removeprefix("coarser/") for path in tables if path.startswith("coarser/")
+        ]
         self._lattices = {}
         for name in self.swept:
             finest, coarser = tables[name], tables[f"coarser/{name}"]
@@ -84,13 +93,20 @@ class Evidence:
             kept = finest["run_flags"].isna() | (finest["run_flags"] == "")
             self._lattices[name] = [level[kept] for level in levels]
 
-    def assign(self, simulation: str, more: Callable[[pd.DataFrame], Mapping[str, pd.Series]]) -> None:
+    def assign(
+        self, simulation: str, more: Callable[[pd.DataFrame], Mapping[str, pd.Series]]
+    ) -> None:
         """Add columns that are computed from the others on each lattice."""
-        self._lattices[simulation] = [level.assign(**more(level)) for level in self._lattices[simulation]]
+        self._lattices[simulation] = [
+            level.assign(**more(level)) for level in self._lattices[simulation]
+        ]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
         """Runs on three lattices, the finest with uncertainty_QUANTITY and extrapolated_QUANTITY, at spacing 0."""
-        chosen = [(self._lattices[name], evaluated(self._lattices[name][0], where)) for name in simulations]
+        chosen = [
+            (self._lattices[name], evaluated(self._lattices[name][0], where))
+            for name in simulations
+        ]
         return [pd.concat([levels[i][kept] for levels, kept in chosen]) for i in range(3)]
 
     def tolerance(self, id: str) -> float:
@@ -122,21 +138,27 @@ class Evidence:
         self, id: str, tables: Sequence[pd.DataFrame], measured: str, predicted: str, *levels: str
     ) -> Claim:
         """An estimate, by median deviation and exponent, which leaves out one of the ``levels`` at a time too."""
-        numbers = [np.array([evaluated(t, name) for name in (predicted, measured)], float) for t in tables]
+        numbers = [
+            np.array([evaluated(t, name) for name in (predicted, measured)], float) for t in tables
+        ]
         ratio = [pd.Series(found / expected) for expected, found in numbers]
         off = [(each - 1.0).abs() for each in ratio]
         each = off[0][np.isfinite(off[0])]
         claim: Claim = {"runs": each.size, "left_out": len(off[0]) - each.size}
         if not each.size:
             return claim | {"verdict": "not testable"}
-        median, shown = (self.studied(tables, [each.median() for each in of]) for of in (off, ratio))
+        median, shown = (
+            self.studied(tables, [each.median() for each in of]) for of in (off, ratio)
+        )
         middle = median.value, median.uncertainty
         slope, allowed = None, self.entries[id].get("tolerance_exponent")
         if allowed is not None:
             logs = [np.log(each) for each in numbers]
             found = self.studied(tables, [exponent(each) for each in logs])
             columns = [tables[0][name].to_numpy() for name in levels]
-            without = [exponent(logs[0][:, of != level]) for of in columns for level in np.unique(of)]
+            without = [
+                exponent(logs[0][:, of != level]) for of in columns for level in np.unique(of)
+            ]
             moved = max((abs(other - found.value) for other in without), default=0.0)
             slope = found.value, max(found.uncertainty, moved)
             claim |= {"exponent": slope[0], "exponent_uncertainty": slope[1]}
@@ -179,4 +201,8 @@ class Evidence:
         table = self.lattices(simulation)[0]
         off = (ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}") - 1.0).abs()
         off = off[np.isfinite(off)]
-        return {"exact_median": float(off.median()), "exact_largest": float(off.max())} if off.size else {}
+        return (
+            {"exact_median": float(off.median()), "exact_largest": float(off.max())}
+            if off.size
+            else {}
+        )

@@ -18,7 +18,9 @@ def curve(profile: pd.DataFrame) -> pd.DataFrame:
     With dx, tau0, gamma, their errors, chi2, and of each reading the pull, (predicted - drawn)/reading_error.
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
-    numbers = profile.groupby("damping_ratio")[["dx", "tau0", "gamma", "tau0_error", "gamma_error"]].first()
+    numbers = profile.groupby("damping_ratio")[
+        ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
+    ].first()
     nodes = pd.concat([pulls, numbers], axis=1)
     at = np.log(nodes.index.to_numpy())
     fine = np.linspace(at[0], at[-1], FINE)
@@ -50,7 +52,9 @@ def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
         }
         one |= {"release": release, "dof": dof, "p_value": float(chdtrc(dof, best["chi2"]))}
         one["regions"] = {level: _regions(line, level) for level in CONFIDENCE}
-        found[str(release)] = one | {"pulls": {name: float(best[name]) for name in rows["reading"].unique()}}
+        found[str(release)] = one | {
+            "pulls": {name: float(best[name]) for name in rows["reading"].unique()}
+        }
     order = sorted(found.values(), key=lambda entry: entry["chi2"])
     return found | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
 

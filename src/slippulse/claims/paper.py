@@ -43,12 +43,18 @@ def all_claims(evidence: Evidence, readings: Mapping, sentences: Sequence[Mappin
     """The ledger as in claims.json, by readings of the figure; a ValueError names claims of texts or code alone."""
     evidence.assign("regimes_beyond", pulses.meet)
     # Claims that are rows of a table; any other is judged by the function of its name.
-    judges = dict.fromkeys(pulses.EQUATIONS, pulses.equation) | dict.fromkeys(pulses.ALWAYS, pulses.always)
+    judges = dict.fromkeys(pulses.EQUATIONS, pulses.equation) | dict.fromkeys(
+        pulses.ALWAYS, pulses.always
+    )
     for module in (pulses, transition):
         judges |= {id: getattr(module, id) for id in evidence.entries if hasattr(module, id)}
-    found = {id: judge(evidence, id) for id, judge in judges.items()} | published_figure(evidence, readings)
+    found = {id: judge(evidence, id) for id, judge in judges.items()} | published_figure(
+        evidence, readings
+    )
     if odd := sorted({*evidence.entries} ^ {*found}):
-        raise ValueError(f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code")
+        raise ValueError(
+            f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code"
+        )
     where = positions(evidence.entries, sentences)
     return [written(id, found[id], entry, where[id]) for id, entry in evidence.entries.items()]
 
@@ -64,7 +70,9 @@ def published_figure(evidence: Evidence, readings: Mapping) -> dict[str, Claim]:
         for name, text in arrows.items():
             further[f"pull of the {text} at the fit {fit} the arrows"] = found["pulls"][name]
         pulls = " and ".join(number(found["pulls"][name], 2) for name in arrows)
-        why.append(f"{fit} its arrows p is {number(found['p_value'], 2)} and they are off by {pulls}")
+        why.append(
+            f"{fit} its arrows p is {number(found['p_value'], 2)} and they are off by {pulls}"
+        )
     fit = ", ".join(f"{tex} = {rounded(left[name], 3)}" for name, tex in FITTED.items())
     panels = (
         (LEFT, "space_time_displacement", left, "all readings of the panel, its arrows among them, at their best fit, "
@@ -108,7 +116,9 @@ def finite(value):
     return json.loads(text, parse_constant=lambda _: None)
 
 
-def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]) -> list[dict]:
+def findings(
+    evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]
+) -> list[dict]:
     """Each finding: id, its numbers by name (none where an altered configuration left no runs), text and tables."""
     out = []
     for id, entry in entries.items():
@@ -124,13 +134,17 @@ def findings(evidence: Evidence, damping_ratio: float, entries: Mapping[str, Map
     return out
 
 
-def numbers(evidence: Evidence, ratio: float, table: str, take: Mapping, where: str = "") -> dict[str, float]:
+def numbers(
+    evidence: Evidence, ratio: float, table: str, take: Mapping, where: str = ""
+) -> dict[str, float]:
     """Expressions over columns of the chosen rows of one table; `NoRuns` without rows."""
     rows = evidence.lattices(table)[0] if table in evidence.swept else evidence.tables[table]
     rows = rows.assign(figures=ratio)
     if (rows := rows[evaluated(rows, where)]).empty:
         raise NoRuns(table)
-    return {name: float(rows.eval(expression, engine="python")) for name, expression in take.items()}
+    return {
+        name: float(rows.eval(expression, engine="python")) for name, expression in take.items()
+    }
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
@@ -138,7 +152,9 @@ def collapse(evidence: Evidence) -> dict[str, float]:
     out: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
         table = evidence.lattices(f"damping_{boundary}")[0].fillna({"gamma": 0.0})
-        lengths = table.set_index(["left", "width", "gamma", "damping_ratio"])["transition_length"].unstack()
+        lengths = table.set_index(["left", "width", "gamma", "damping_ratio"])[
+            "transition_length"
+        ].unstack()
         if lengths.empty:
             raise NoRuns(boundary)
         change = lengths.iloc[:, -1] / lengths.iloc[:, 0]

@@ -102,7 +102,9 @@ def always(evidence: Evidence, id: str) -> Claim:
     holds = holds or f"regime in {[*row.ends]}"
     decided = (evidence.agreed(sweep, row.where, holds, row.told, row.ends) for sweep in sweeps)
     counted = {} if row.counted is None else {"at the end": row.where, **row.counted}
-    further = {words: float(evidence.tables[sweeps[0]].eval(each)) for words, each in row.numbers.items()}
+    further = {
+        words: float(evidence.tables[sweeps[0]].eval(each)) for words, each in row.numbers.items()
+    }
     for words, where in counted.items():
         ends = evidence.lattices(*sweeps, where=where)[0]["regime"].value_counts()
         further |= {f"{words}: {regime}": float(count) for regime, count in ends.items()}
@@ -117,28 +119,44 @@ def meet(table: pd.DataFrame) -> dict[str, pd.Series]:
     began = table[table["beyond"] == 0.0].set_index("left")
     change, still = table[CHANGE], table["left"].map(began[CHANGE])
     wider = table[HALF_WIDTH] - table["left"].map(began[HALF_WIDTH])
-    signs = {"changed": np.sign(change).where(change.abs() > still.abs(), 0.0), "widened": np.sign(wider)}
-    return {name: sign.mask(table["regime"] == "arrested", -1.0).fillna(0.0) for name, sign in signs.items()}
+    signs = {
+        "changed": np.sign(change).where(change.abs() > still.abs(), 0.0),
+        "widened": np.sign(wider),
+    }
+    return {
+        name: sign.mask(table["regime"] == "arrested", -1.0).fillna(0.0)
+        for name, sign in signs.items()
+    }
 
 
 def shown(evidence: Evidence, held: dict[str, int], **further: float) -> Claim:
     """A claim that there are runs of each case: one of each suffices."""
     numbers = {name: float(value) for name, value in (held | further).items()}
     verdict = "reproduced" if all(held.values()) else "inconclusive"
-    return evidence.qualitative([True] * sum(held.values())) | {"verdict": verdict, "further": numbers}
+    return evidence.qualitative([True] * sum(held.values())) | {
+        "verdict": verdict,
+        "further": numbers,
+    }
 
 
 def no_weakening_needed(evidence: Evidence, id: str) -> Claim:
     """There are steady pulses under both boundary conditions, and friction is one constant while sliding."""
     cases = {"displacement": ("any_prestress", TWO_WAY), "stress": ("stress_pulses", STEADY)}
-    decided = {on: evidence.agreed(name, "", f"regime == {end!r}") for on, (name, end) in cases.items()}
-    return shown(evidence, {f"with the {on} held": each.count(True) for on, each in decided.items()})
+    decided = {
+        on: evidence.agreed(name, "", f"regime == {end!r}") for on, (name, end) in cases.items()
+    }
+    return shown(
+        evidence, {f"with the {on} held": each.count(True) for on, each in decided.items()}
+    )
 
 
 def only_positive_velocities(evidence: Evidence, id: str) -> Claim:
     """No run of any simulation has a negative slip velocity; what friction must be for that."""
     finest = pd.concat([evidence.tables[name] for name in evidence.swept], ignore_index=True)
-    needed, smallest = float(finest["friction_ratio_needed"].max()), float(finest["min_velocity"].min())
+    needed, smallest = (
+        float(finest["friction_ratio_needed"].max()),
+        float(finest["min_velocity"].min()),
+    )
     decided = finest["min_velocity"] >= -evidence.tolerance(id)
     back = int((finest["min_stuck_stress"] <= -1.0).sum())
     why = f"Blocks here cannot slide back; at the printed threshold, which has two sides, some would in {back} of"
@@ -151,7 +169,9 @@ def only_positive_velocities(evidence: Evidence, id: str) -> Claim:
 
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Claim:
     """There are pulses both ways with leaf springs, and a pulse one way without; and how many blocks wide they are."""
-    chain, spike = (evidence.lattices(f"burridge_knopoff_{name}")[0] for name in ("chain", "stress"))
+    chain, spike = (
+        evidence.lattices(f"burridge_knopoff_{name}")[0] for name in ("chain", "stress")
+    )
     one_way = spike[spike["regime"].str.startswith("pulse, one-way")]["sliding_at_once"]
     two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
     fewest, most = two_way.min(), two_way.max()
@@ -195,11 +215,17 @@ def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Claim:
 
 def displacement_pulse_unique(evidence: Evidence, id: str) -> Claim:
     """Pulses of one pre-stress from different beginnings are the same pulse."""
-    table = evidence.lattices("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)[0]
+    table = evidence.lattices("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)[
+        0
+    ]
     sizes = ["pulse_peak_velocity", "pulse_width", "pulse_slip"]
     groups = table.groupby(["beyond", "gamma", "damping_ratio"])
-    found = [pair for _, rows in groups for pair in apart(rows, sizes, evidence.tolerance(id), False)]
-    return evidence.qualitative([None if different is None else not different for different in found])
+    found = [
+        pair for _, rows in groups for pair in apart(rows, sizes, evidence.tolerance(id), False)
+    ]
+    return evidence.qualitative(
+        [None if different is None else not different for different in found]
+    )
 
 
 def apart(table: pd.DataFrame, sizes: list[str], allowed: float, sure: bool) -> list[bool | None]:
@@ -209,7 +235,9 @@ def apart(table: pd.DataFrame, sizes: list[str], allowed: float, sure: bool) -> 
     """
     blurs = table[[f"uncertainty_{size}" for size in sizes]].to_numpy()
     out: list[bool | None] = []
-    for (one, blur), (other, more) in combinations(zip(table[sizes].to_numpy(), blurs, strict=True), 2):
+    for (one, blur), (other, more) in combinations(
+        zip(table[sizes].to_numpy(), blurs, strict=True), 2
+    ):
         off, unsure = np.abs(one / other - 1.0), (blur + more) / np.abs(other)
         equal = False if np.all(off + sure * unsure <= allowed) else None
         out.append(True if np.any(off - unsure > allowed) else equal)
@@ -224,7 +252,9 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Claim:
         "slip off the exact slip by at most": "exact_pulse_slip",
         "slip off that without damping by at most": "paper_pulse_slip",
     }
-    for table, own in zip(evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED), strict=True):
+    for table, own in zip(
+        evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED), strict=True
+    ):
         steady = own.drop_duplicates(keys).set_index(keys)[[*slips.values()]]
         there = steady.reindex(pd.MultiIndex.from_frame(table[["beyond", *keys[1:]]]))
         offs.append((table[["pulse_slip"]].to_numpy() / there - 1.0).abs())
@@ -238,7 +268,9 @@ def damping_reduces_oscillations(evidence: Evidence, id: str) -> Claim:
     falls = []
     for table in evidence.lattices("steady_displacement")[:2]:
         by_level = table.sort_values("damping_ratio").groupby(["left", "gamma"])["lattice_noise"]
-        falls.append([after < before for _, noise in by_level for before, after in combinations(noise, 2)])
+        falls.append(
+            [after < before for _, noise in by_level for before, after in combinations(noise, 2)]
+        )
     decided = agreeing(*falls)
     why = "It needs the sign opposite to the printed one." if all(decided) else ""
     return evidence.qualitative(decided, condition=True) | {"why": why}
@@ -251,7 +283,9 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Claim:
     """No strain is left behind a pulse that keeps its shape; where some is left, the pulse changes."""
     where = f"beyond != 0 and strain_left > {evidence.tolerance(id)}"
     change = evidence.qualitative(evidence.agreed("regimes_beyond", where, "changed != 0"))
-    claim = evidence.exact(id, evidence.lattices("stress_pulses", where=UNDAMPED)[0], "strain_left", "0")
+    claim = evidence.exact(
+        id, evidence.lattices("stress_pulses", where=UNDAMPED)[0], "strain_left", "0"
+    )
     return change | claim | {"verdict": rules.worst([claim["verdict"], change["verdict"]])}
 
 
@@ -266,13 +300,19 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Claim:
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Claim:
     """Peak and half-width on the damped lattices are the functionals of the pre-stress that the exact solution has."""
-    table, allowed = evidence.lattices("stress_pulses", where="damping_ratio > 0")[0], evidence.tolerance(id)
+    table, allowed = (
+        evidence.lattices("stress_pulses", where="damping_ratio > 0")[0],
+        evidence.tolerance(id),
+    )
     exact = table[["exact_largest_velocity", "exact_half_width"]].to_numpy()
     off = (table[["pulse_peak_velocity", HALF_WIDTH]] / exact - 1.0).abs()
     sure = off - table[[f"uncertainty_{name}" for name in off]].to_numpy() / exact
     decided = agreeing((off <= allowed).all(axis=1), ~(sure > allowed).any(axis=1))
     most = "{} on the lattice, with damping, off by at most".format
-    further = {most(name): float(size) for name, size in zip(("peak", "half-width"), off.max(), strict=True)}
+    further = {
+        most(name): float(size)
+        for name, size in zip(("peak", "half-width"), off.max(), strict=True)
+    }
     return evidence.qualitative(decided) | {"further": further}
 
 
@@ -288,7 +328,11 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Claim:
     """At each pre-stress there are pulses with friction that weakens, and that strengthens, with slip rate."""
     runs = lattices_with_rate(evidence)
     depends = runs[runs["over_critical"] != 0.0]
-    pulses = (depends["regime"] == "pulse").groupby([depends["level"], depends["over_critical"] > 0.0]).any()
+    pulses = (
+        (depends["regime"] == "pulse")
+        .groupby([depends["level"], depends["over_critical"] > 0.0])
+        .any()
+    )
     limit = runs["rate_strengthening"] / runs["over_critical"] / runs["gamma"] ** 0.5
     where = "where they end, over the square root of gamma, at the {} pre-stress".format
     further = {where("lowest"): float(limit.min()), where("highest"): float(limit.max())}
@@ -311,9 +355,13 @@ def pulses_whatever_friction(evidence: Evidence, id: str) -> Claim:
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Claim:
     """Width and slip at the strongest dependences that still have pulses are not those without one."""
-    runs = lattices_with_rate(evidence).set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
+    runs = lattices_with_rate(evidence).set_index(["level", "over_critical"])[
+        ["pulse_width", "pulse_slip"]
+    ]
     of = {factor: runs.xs(factor, level=1) for factor in (-0.9, 0.0, 0.9)}
     change = pd.concat([(of[factor] / of[0.0] - 1.0).abs() for factor in (-0.9, 0.9)])
     held = (change > evidence.tolerance(id)).to_numpy().ravel()
-    further = {f"smallest change of the {name[6:]}": float(least) for name, least in change.min().items()}
+    further = {
+        f"smallest change of the {name[6:]}": float(least) for name, least in change.min().items()
+    }
     return evidence.qualitative(held, condition=True) | {"further": further}

@@ -33,7 +33,9 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
     claims = texts["claims"]
     for id, other in tolerances.items():
         if id not in claims:
-            raise ValueError(f"claims.{id}: unknown claim{nearest(id, claims)}; allowed: those in {path}")
+            raise ValueError(
+                f"claims.{id}: unknown claim{nearest(id, claims)}; allowed: those in {path}"
+            )
         claims[id] |= other
     return texts
 
@@ -89,8 +91,14 @@ class Ledger:
 
     def listed(self, id: str, words: str) -> str:
         """The further numbers of a claim whose name has these words before its colon, each with what is behind it."""
-        found = [(*name.split(": ", 1), value) for name, value in self(id).further.items() if ": " in name]
-        return "; ".join(f"{number(value)} {name}" for before, name, value in found if words in before)
+        found = [
+            (*name.split(": ", 1), value)
+            for name, value in self(id).further.items()
+            if ": " in name
+        ]
+        return "; ".join(
+            f"{number(value)} {name}" for before, name, value in found if words in before
+        )
 
     def count(self, *verdicts: str) -> int:
         """How many counted claims have one of these verdicts; all of them if none is named."""
@@ -103,7 +111,10 @@ class Ledger:
     def summary(self) -> str:
         """How many claims there are of each verdict, in words."""
         counts = {name: count for name in VERDICTS if (count := self.count(name))}
-        listed = [f"{n} {name.replace('depends', 'depend') if n > 1 else name}" for name, n in counts.items()]
+        listed = [
+            f"{n} {name.replace('depends', 'depend') if n > 1 else name}"
+            for name, n in counts.items()
+        ]
         rest = f" {self.following()} more follow from these." if self.following() else ""
         return f"{self.count()} claims: {', '.join(listed)}.{rest}"
 
@@ -143,7 +154,11 @@ def compared_text(claim: SimpleNamespace) -> str:
     if claim.deviation is None:
         return number(None)
     if claim.kind == "qualitative":
-        equal = f" (equal within {setting(100.0 * claim.tolerance)} %)" if claim.tolerance > SLIGHT else ""
+        equal = (
+            f" (equal within {setting(100.0 * claim.tolerance)} %)"
+            if claim.tolerance > SLIGHT
+            else ""
+        )
         return f"no run may contradict{equal}"
     if claim.kind == "reading":
         return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"

@@ -45,15 +45,21 @@ def worst_tested(verdicts: Iterable[str]) -> str:
     return worst(verdict for verdict in verdicts if verdict != "not testable")
 
 
-def exact(deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float) -> tuple[str, int | None]:
+def exact(
+    deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float
+) -> tuple[str, int | None]:
     """Verdict on an equation, the worst of the runs that have numbers, and of the runs with it the farthest off."""
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
     if (found := worst_tested(verdicts)) == "not testable":
         return found, None
-    return found, max((i for i in range(len(verdicts)) if verdicts[i] == found), key=deviations.__getitem__)
+    return found, max(
+        (i for i in range(len(verdicts)) if verdicts[i] == found), key=deviations.__getitem__
+    )
 
 
-def approximate(median: Known, tolerance: float, exponent: Known | None = None, allowed: float = 0.0) -> str:
+def approximate(
+    median: Known, tolerance: float, exponent: Known | None = None, allowed: float = 0.0
+) -> str:
     """Verdict on an estimate: the worse of those on its median deviation and, if one is claimed, on its exponent."""
     found = within(*median, tolerance)
     if exponent is None:

@@ -36,7 +36,11 @@ ESTIMATES = {"T": ("time", "distance"), "L": ("length", "2 * distance")}
 SHOWN = 0.95
 
 # What is compared of the exact solution, and of lattices.
-SOLVED = {"paper_transition_time": "distance", "transition_time": "time", "transition_length": "length"}
+SOLVED = {
+    "paper_transition_time": "distance",
+    "transition_time": "time",
+    "transition_length": "length",
+}
 SIMULATED = {"balance_distance": "distance", "last_release_distance": "covered"}
 SIMULATED |= {f"last_release_{name}": name for name in ("time", "length")}
 # One table, or one a lattice, by combination of choices.
@@ -47,7 +51,9 @@ def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = No
     """One claim from those at all combinations of choices, with the numbers of the first one, or of ``shown``."""
     claims = [claim for _, claim in pairs]
     rows: list[dict[str, Any]] = [
-        choice | {name: claim.get(name) for name in FOUND} | {"holds": rules.HOLDS.get(claim["verdict"])}
+        choice
+        | {name: claim.get(name) for name in FOUND}
+        | {"holds": rules.HOLDS.get(claim["verdict"])}
         for choice, claim in pairs
     ]
     verdict, decided = rules.over_choices([row["verdict"] for row in rows]), decisive(rows)
@@ -56,7 +62,9 @@ def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = No
         "combinations": len(rows), "holds_at": sum(row["holds"] is True for row in rows),
     }  # fmt: skip
     if all("at" in claim for claim in claims):
-        found["at"] = lambda tolerance: rules.over_choices([claim["at"](tolerance) for claim in claims])
+        found["at"] = lambda tolerance: rules.over_choices(
+            [claim["at"](tolerance) for claim in claims]
+        )
     if verdict == rules.DEPENDS:
         pairs_of = [sides(name, pair, "held" in found) for name, pair in decided.items()]
         found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations."
@@ -75,7 +83,9 @@ def sides(name: str, pair: Iterable[Mapping], counted: bool) -> str:
     parts = []
     for row in pair:
         size = percent(row["deviation"], 3) + (" of the runs against" if counted else "")
-        size += ", at the last release" if name != "fraction" and row.get("fraction") == LAST else ""
+        size += (
+            ", at the last release" if name != "fraction" and row.get("fraction") == LAST else ""
+        )
         parts.append(f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({size})")
     return f"{NAMES[name]}: {' and '.join(parts)}"
 
@@ -93,14 +103,20 @@ def decisive(choices: Sequence[Mapping]) -> dict[str, Sequence[Mapping]]:
     moves: dict[str, list[tuple[tuple[bool, float], Mapping, Mapping]]] = {}
     for one, other in permutations(choices, 2):
         apart = [name for name in {*one, *other} - {*FOUND} if one.get(name) != other.get(name)]
-        if len(apart) == 1 and apart[0] in NAMES and None not in (one["deviation"], other["deviation"]):
+        if (
+            len(apart) == 1
+            and apart[0] in NAMES
+            and None not in (one["deviation"], other["deviation"])
+        ):
             # A lattice is a corner; the exact solution has every combination.
             move = one.get("solution") == "exact", abs(one["deviation"] - other["deviation"])
             moves.setdefault(apart[0], []).append((move, one, other))
     order = sorted(moves, key=lambda name: max(move for move, *_ in moves[name]))
     closest: dict[str, Sequence[Mapping]] = {}
     for name in reversed(order):
-        if pairs := [each for each in moves[name] if each[1]["holds"] and each[2]["holds"] is False]:
+        if pairs := [
+            each for each in moves[name] if each[1]["holds"] and each[2]["holds"] is False
+        ]:
             closest[name] = min(pairs, key=lambda each: each[0][1])[1:]
     return closest or dict.fromkeys(order[-1:], ())
 
@@ -123,7 +139,11 @@ def simulated(evidence: Evidence, boundary: str, where: str = "") -> Tables:
 
 def solved(evidence: Evidence, boundary: str) -> Tables:
     """The exact solution at each combination; ours first, by the damping of figure 5."""
-    names = ["release", "damping_ratio", *(["nucleation", "fraction"] if boundary == "stress" else [])]
+    names = [
+        "release",
+        "damping_ratio",
+        *(["nucleation", "fraction"] if boundary == "stress" else []),
+    ]
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
     # Under a stress boundary the estimate of the time is the whole way.
     table = table.assign(covered=table["fraction"] * table["paper_transition_time"])
@@ -131,7 +151,9 @@ def solved(evidence: Evidence, boundary: str) -> Tables:
     for values, rows in table.groupby(names):
         found.append((dict(zip(names, values, strict=True)) | {"solution": "exact"}, [rows]))
     ours = chosen(evidence.lattices(f"scaling_{boundary}"), fraction=SHOWN)
-    return sorted(found, key=lambda pair: any(pair[0].get(name, ours[name]) != ours[name] for name in ours))
+    return sorted(
+        found, key=lambda pair: any(pair[0].get(name, ours[name]) != ours[name] for name in ours)
+    )
 
 
 @cache
@@ -142,8 +164,11 @@ def arrests(evidence: Evidence) -> Tables:
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
     exact, lattices = solved(evidence, "stress"), simulated(evidence, "stress", INSIDE)
-    return [(choice, [rows.rename(columns=SOLVED) for rows in tables]) for choice, tables in exact] + [
-        (choice | last, [rows.rename(columns=SIMULATED) for rows in tables]) for choice, tables in lattices
+    return [
+        (choice, [rows.rename(columns=SOLVED) for rows in tables]) for choice, tables in exact
+    ] + [
+        (choice | last, [rows.rename(columns=SIMULATED) for rows in tables])
+        for choice, tables in lattices
     ]
 
 
@@ -176,7 +201,8 @@ def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim
     """A claim judged at each combination; beside its numbers the medians at each fraction, the rest being ours."""
     pairs = [(choice, judge(found)) for choice, found in arrests(evidence)]
     ours = {
-        f"median ratio: at {named(choice['fraction'])}": found["measured"] for choice, found in at_ours(pairs)
+        f"median ratio: at {named(choice['fraction'])}": found["measured"]
+        for choice, found in at_ours(pairs)
     }
     return over_choices(pairs) | {"further": dict(sorted(ours.items()))}
 
@@ -184,12 +210,16 @@ def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim
 def T_trans_stress(evidence: Evidence, id: str) -> Claim:
     """An estimate under a stress boundary, at each fraction and at the last release."""
     estimate = ESTIMATES[id[0]]
-    claim = at_fractions(evidence, lambda found: evidence.approximate(id, found, *estimate, "left", "width"))
+    claim = at_fractions(
+        evidence, lambda found: evidence.approximate(id, found, *estimate, "left", "width")
+    )
     claim |= evidence.compared("scaling_stress", f"transition_{estimate[0]}")
     fractions, ratio = zip(*sorted(medians(evidence, *estimate).items()), strict=True)
     over = np.array(ratio) - 1.0
     left = np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN)
-    claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(left)
+    claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(
+        left
+    )
     return claim
 
 
@@ -198,7 +228,10 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> Claim:
     ways = {"left": "covered", "right": "(length - covered)"}
 
     def judge(tables: list[pd.DataFrame]) -> Claim:
-        fronts = {side: evidence.approximate(id, tables, f"{way} / time", "1") for side, way in ways.items()}
+        fronts = {
+            side: evidence.approximate(id, tables, f"{way} / time", "1")
+            for side, way in ways.items()
+        }
         side = max(fronts, key=lambda name: fronts[name].get("deviation", NAN))
         return fronts[side] | {"note": f"mean speed of the {side} front, which is the farther off"}
 
@@ -230,7 +263,9 @@ def front_arrest_position(evidence: Evidence, id: str) -> Claim:
     shown, ratio = judge(whole), ratios(whole[0], *what)
     shown["further"] |= {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
     pairs = []
-    for damping in sorted({*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}):
+    for damping in sorted(
+        {*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}
+    ):
         tables = evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {damping}")
         pairs.append((chosen(tables, solution="lattice"), judge(tables)))
     return over_choices(pairs, shown)
@@ -243,7 +278,9 @@ def transition_diverges(evidence: Evidence, id: str) -> Claim:
         found: list[bool | None] = []
         for _, rows in table.sort_values("gamma").groupby("left"):
             smallest = np.log(rows[["gamma", *quantities]].head(3))
-            lines = [straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
+            lines = [
+                straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities
+            ]
             falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
             grows = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
             found.append(grows if len(rows) >= 3 else None)
@@ -261,16 +298,22 @@ def rises(evidence: Evidence, table: pd.DataFrame, quantity: str) -> Claim:
     """Whether each step up in the pre-stress, at each gamma, makes a number larger; undecided within uncertainties."""
     decided: list[bool | None] = []
     unsure = f"uncertainty_{quantity}"
-    for _, rows in table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left").groupby("gamma"):
+    for _, rows in (
+        table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left").groupby("gamma")
+    ):
         change, blur = rows[quantity].diff()[1:], rows[unsure].rolling(2).sum()[1:]
-        decided += [bool(c > 0.0) if abs(c) > b else None for c, b in zip(change, blur, strict=True)]
+        decided += [
+            bool(c > 0.0) if abs(c) > b else None for c, b in zip(change, blur, strict=True)
+        ]
     return evidence.qualitative(decided)
 
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
     """The transition gets longer with the pre-stress."""
     both = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices([(each, rises(evidence, found[0], "transition_length")) for each, found in both])
+    return over_choices(
+        [(each, rises(evidence, found[0], "transition_length")) for each, found in both]
+    )
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:

@@ -81,9 +81,21 @@ def settings_for(
     spacings = _spacings(FRACTION * accuracy, prestress, gamma, damping_ratio, release, fields)
     dx = float(f"{min(1.0, *spacings):.3g}")
     step = min(STEP, MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2))
-    settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step, "order": ORDER}
+    settings: dict[str, Any] = {
+        "dx": dx,
+        "beta": damping_ratio * dx,
+        "max_step": step,
+        "order": ORDER,
+    }
     # Refuses what is left to refuse.
-    Scene(boundary=boundary, prestress=prestress, gamma=gamma, release=release, duration=1.0, **settings)
+    Scene(
+        boundary=boundary,
+        prestress=prestress,
+        gamma=gamma,
+        release=release,
+        duration=1.0,
+        **settings,
+    )
     return settings
 
 
@@ -92,7 +104,9 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
     promise = promise_of(simulation)
     if promise is not None and simulation["scheme"] != "localised":
         # The error of another scheme's step is not seen by a grid study.
-        raise ConfigError(f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given")
+        raise ConfigError(
+            f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given"
+        )
     if promise is None or math.isnan(promise):
         return simulation
     if any(alphas := simulation.get("rate_strengthening", [])):
@@ -101,7 +115,9 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
         raise ConfigError(f"rate_strengthening: {short_repr(alphas)}; allowed: {allowed}")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     settings = [
-        settings_for(promise, prestress=profile, gamma=gamma, damping_ratio=ratio, release=release, **common)
+        settings_for(
+            promise, prestress=profile, gamma=gamma, damping_ratio=ratio, release=release, **common
+        )
         for release, profile, gamma, _, ratio, _ in runs(simulation)
     ]
     return {**simulation, "spacings": [found["dx"] for found in settings]}
@@ -125,10 +141,14 @@ def _spacings(
             of_speed = math.sqrt(error / (SPEED + SPEED_LAYER * layer * speed))
             spacings += [width / BLOCKS, width * of_speed, error / (start + SLOW_FRONT / width)]
             if fields:
-                spacings.append(error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer))
+                spacings.append(
+                    error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer)
+                )
         return spacings
     negative = [level for level in levels if level < 0.0 < prestress.peak]
-    reaches = [prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level)) for level in negative]
+    reaches = [
+        prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level)) for level in negative
+    ]
     spacings = [length / BLOCKS for length in (peak, *reaches)]
     if max(levels) > 0.0:
         spacings.append(error * peak / FREE_SPEED)

@@ -47,9 +47,19 @@ def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
         if "fixed" in simulation["spacing"]:
             step *= simulation["coarser"]
         time = _duration(simulation["duration"], run.profile, run.gamma)
-        own = {key: simulation[key] for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")}
-        own |= {"order": order, "max_step": step, "release": run.release, "rate_strengthening": run.alpha}
-        scenes.append(Scene(prestress=run.profile, duration=time, dx=dx, gamma=run.gamma, beta=beta, **own))
+        own = {
+            key: simulation[key]
+            for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")
+        }
+        own |= {
+            "order": order,
+            "max_step": step,
+            "release": run.release,
+            "rate_strengthening": run.alpha,
+        }
+        scenes.append(
+            Scene(prestress=run.profile, duration=time, dx=dx, gamma=run.gamma, beta=beta, **own)
+        )
     return scenes, [_samples(simulation.get("samples"), scene.duration) for scene in scenes]
 
 
@@ -57,7 +67,9 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     """The runs of a resolved simulation or of a chunk of it, one after the other."""
     chunk = simulation.get("chunk")
     wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
-    for number, (release, *shape, gamma, dx, damping, alpha) in enumerate(product(*_axes(simulation))):
+    for number, (release, *shape, gamma, dx, damping, alpha) in enumerate(
+        product(*_axes(simulation))
+    ):
         if wanted is None or number in wanted:
             yield Run(release, _profile(*shape), gamma, dx, damping, alpha)
 
@@ -75,7 +87,12 @@ def _axes(simulation: Mapping) -> list[Sequence]:
     else:
         # One step a level, at the position from which the level holds.
         steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
-        shapes = [simulation["left"], [None] if right == "same" else right, simulation["width"], steps]
+        shapes = [
+            simulation["left"],
+            [None] if right == "same" else right,
+            simulation["width"],
+            steps,
+        ]
     defaults = {
         "gamma": [0.0],
         "dx": [None],
@@ -114,7 +131,9 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
         except ValueError as error:
             # In the words of the configuration, whose keys are levels or profiles.
             reason = str(error).removeprefix("prestress.")
-            raise ValueError(f"duration.balance_distances: {value} times |x_minus|, but {reason}") from None
+            raise ValueError(
+                f"duration.balance_distances: {value} times |x_minus|, but {reason}"
+            ) from None
     return float(value)
 
 

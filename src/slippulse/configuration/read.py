@@ -36,7 +36,10 @@ SIGNS = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "max
 
 
 def read_config(
-    shipped: Mapping, overlays: Sequence[Mapping] = (), said: Mapping | None = None, every_run: bool = True
+    shipped: Mapping,
+    overlays: Sequence[Mapping] = (),
+    said: Mapping | None = None,
+    every_run: bool = True,
 ) -> Configuration:
     """The configuration, checked; ConfigError has one line a problem, with the key, the value, what is allowed.
 
@@ -71,11 +74,15 @@ def _merge(base: Mapping, overlay: Mapping, place: tuple[str, ...] = ()) -> dict
     for key, value in overlay.items():
         if isinstance(value, Mapping):
             inside = merged.get(key)
-            merged[key] = _merge(inside if isinstance(inside, Mapping) else {}, value, (*place, key))
+            merged[key] = _merge(
+                inside if isinstance(inside, Mapping) else {}, value, (*place, key)
+            )
         elif value is not None:
             merged[key] = value
         elif key not in merged and (hint := nearest(key, merged)):
-            raise ConfigError(f"{_dotted((*place, key))}: null{hint}; allowed: null for a key that there is")
+            raise ConfigError(
+                f"{_dotted((*place, key))}: null{hint}; allowed: null for a key that there is"
+            )
         else:
             merged.pop(key, None)
     return merged
@@ -164,7 +171,9 @@ def format_problems(problems: Sequence[str]) -> str:
 def _line(problem: Mapping, config: Mapping) -> str:
     kind, place = problem["type"], problem["loc"]
     if kind == "value_error":
-        return ".".join(filter(None, [_dotted(place) if place else "", str(problem["ctx"]["error"])]))
+        return ".".join(
+            filter(None, [_dotted(place) if place else "", str(problem["ctx"]["error"])])
+        )
     depth, node, value = _walk(place, config)
     if kind == "missing":
         # An incomplete new entry may be a misspelt one.
@@ -175,7 +184,9 @@ def _line(problem: Mapping, config: Mapping) -> str:
         return f"{_dotted(place)}: missing; it is required (null removes a key){hint}{names}"
     if kind == "extra_forbidden":
         known = [*node["properties"]]
-        return f"{_dotted(place)}: unknown key{nearest(place[-1], known)}; allowed: {', '.join(known)}"
+        return (
+            f"{_dotted(place)}: unknown key{nearest(place[-1], known)}; allowed: {', '.join(known)}"
+        )
     if place[-1] == "[key]":
         return f"{_dotted(place[:-2])}: {short_repr(place[-2])}; allowed: {NAME_WORDS}"
     allowed = "a finite number" if kind == "finite_number" else words(node)
@@ -202,7 +213,11 @@ def resolved(node: dict[str, Any]) -> dict[str, Any]:
     inside = options[0] if len(options) == 1 else {}
     if "$ref" in node:
         inside = json_schema()["$defs"][node["$ref"].rpartition("/")[2]]
-    return resolved(inside) | {key: node[key] for key in ("allowed",) if key in node} if inside else node
+    return (
+        resolved(inside) | {key: node[key] for key in ("allowed",) if key in node}
+        if inside
+        else node
+    )
 
 
 def words(node: dict[str, Any]) -> str:
@@ -211,7 +226,9 @@ def words(node: dict[str, Any]) -> str:
     if "allowed" in node:
         return node["allowed"]
     if "anyOf" in node:
-        return ", or ".join(words(option) for option in node["anyOf"] if option.get("type") != "null")
+        return ", or ".join(
+            words(option) for option in node["anyOf"] if option.get("type") != "null"
+        )
     if "const" in node or "enum" in node:
         return ", ".join(map(repr, node.get("enum", [node.get("const")]))).replace("'", "")
     kind = node.get("type")
@@ -220,7 +237,9 @@ def words(node: dict[str, Any]) -> str:
         different = "different " if node.get("uniqueItems") else ""
         return f"a list of {different}{item}" + (", at least one" if node.get("minItems") else "")
     if kind in ("number", "integer"):
-        limits = {key: re.sub(r"e\+?(-?)0", r"e\1", f"{node[key]:g}") for key in SIGNS if key in node}
+        limits = {
+            key: re.sub(r"e\+?(-?)0", r"e\1", f"{node[key]:g}") for key in SIGNS if key in node
+        }
         text = " and ".join(f"{SIGNS[key]} {limit}" for key, limit in limits.items())
         if {*limits} == {"minimum", "maximum"}:
             text = f"from {limits['minimum']} to {limits['maximum']}"
@@ -240,7 +259,11 @@ def _remedy(value: object) -> str:
     text = value.strip() if isinstance(value, str) else ""
     if re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text, re.ASCII):
         return " (text: write the number without quotes)"
-    return f" (write {text.replace(',', '.')}, with a point)" if re.fullmatch(r"[-+]?\d+,\d+", text) else ""
+    return (
+        f" (write {text.replace(',', '.')}, with a point)"
+        if re.fullmatch(r"[-+]?\d+,\d+", text)
+        else ""
+    )
 
 
 def main(paths: Sequence[str]) -> int:

@@ -48,7 +48,10 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 
 
 def resolve(
-    simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping, coarser: float = 1.0
+    simulation: Simulation | Mapping,
+    model: Model | Mapping,
+    accuracy: Mapping,
+    coarser: float = 1.0,
 ) -> dict[str, Any]:
     """A simulation with everything that its data depend on, as builtins, without the number of its chunks.
 
@@ -72,11 +75,15 @@ def all_simulations(config: Configuration) -> dict[str, Simulation]:
 def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     """A scene as a simulation of one run that records everything, where the fronts may go."""
     level = min(max(scene.left, scene.right, *(level for _, level in scene.steps)), 1.0 - 1e-6)
-    ratio = min(model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio, LARGEST_RATIO)
+    ratio = min(
+        model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio, LARGEST_RATIO
+    )
     speed = 1.0
     if level > 0.0:
         # 1/(1 - tau) is the speed of the rule "total" at beta/dx = 1.
-        speed = float(front_speed(level, ratio, "total")) if scene.beta is None else 1.0 / (1.0 - level)
+        speed = (
+            float(front_speed(level, ratio, "total")) if scene.beta is None else 1.0 / (1.0 - level)
+        )
     far = max((abs(centre) + 4.0 * width for centre, _, width in scene.bumps), default=0.0)
     extent = float(f"{far + speed * scene.duration + 3.0 * scene.width:.4g}")
     given = scene.plain()
@@ -100,12 +107,16 @@ def simulation_problems(config: Configuration) -> list[str]:
         try:
             sweep = resolve(simulation, config.model, accuracy)
             if simulation.chunks > (count := run_count(sweep)):
-                raise ValueError(f"chunks: {simulation.chunks}; allowed: up to the number of runs, {count}")
+                raise ValueError(
+                    f"chunks: {simulation.chunks}; allowed: up to the number of runs, {count}"
+                )
             _check_runs(expand(promised(corners(sweep)))[0])
             where = f" (on the lattice {coarsest:g} times coarser of the grid study)"
             expand(promised(corners(sweep | {"coarser": coarsest})))
         except ArithmeticError:
-            problems.append(f"{key}: a number too large or small to compute with; allowed: numbers near 1")
+            problems.append(
+                f"{key}: a number too large or small to compute with; allowed: numbers near 1"
+            )
         except ValueError as error:
             problems.append(f"{key}.{error}{where}")
     return problems

@@ -59,7 +59,9 @@ def _all_different(values: list[T]) -> list[T]:
 
 # A list of different entries, at least one.
 Distinct = Annotated[
-    list[T], Field(min_length=1, json_schema_extra={"uniqueItems": True}), AfterValidator(_all_different)
+    list[T],
+    Field(min_length=1, json_schema_extra={"uniqueItems": True}),
+    AfterValidator(_all_different),
 ]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
@@ -78,7 +80,10 @@ PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f
 TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width]"
 STUDIES = "a list of different names, at least one"
-UNITS, RULE = "one of time, half_periods, balance_distances", "fixed, or scale, width_power and gamma_power"
+UNITS, RULE = (
+    "one of time, half_periods, balance_distances",
+    "fixed, or scale, width_power and gamma_power",
+)
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
 
@@ -87,9 +92,13 @@ class Profile(Block):
 
     left: float = key("level of the pre-stress far to the left [S]")
     right: float = key("level far to the right [S]")
-    width: Positive = key("standard deviation W of the Gaussian at nucleation, >= dx [H] (paper)", 1.0)
+    width: Positive = key(
+        "standard deviation W of the Gaussian at nucleation, >= dx [H] (paper)", 1.0
+    )
     peak: float = key("value at x = 0; the pre-stress must reach 1 somewhere [S] (paper)", 1.0)
-    steps: list[Step] = key("beyond each position, away from x = 0, its level holds [H, S]", [], STEPS)
+    steps: list[Step] = key(
+        "beyond each position, away from x = 0, its level holds [H, S]", [], STEPS
+    )
     bumps: list[Bump] = key("Gaussians that are added [H, S, H]", [], BUMPS)
 
 
@@ -133,13 +142,19 @@ class Physics(Block):
         """Refuse a key that is given with another."""
         given = ", ".join(other for other in others if other in self.model_fields_set)
         allowed = "one or the other (null removes a key)"
-        require(key not in self.model_fields_set or not given, f"{key}: given with {given}", allowed)
+        require(
+            key not in self.model_fields_set or not given, f"{key}: given with {given}", allowed
+        )
 
     @model_validator(mode="after")
     def _physics(self) -> Self:
         gamma, springs = getattr(self, "gamma", None), self.boundary == "displacement"
-        require(not springs or gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
-        none = "left out under boundary 'stress', which has no leaf springs (gamma: null removes it)"
+        require(
+            not springs or gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'"
+        )
+        none = (
+            "left out under boundary 'stress', which has no leaf springs (gamma: null removes it)"
+        )
         require(springs or gamma is None, f"gamma: {gamma!r}", none)
         self.alone("beta", "damping_ratio")
         return self
@@ -151,7 +166,9 @@ class Simulation(Physics):
     left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
     right: Literal["same"] | Distinct[float] | None = key("on the right [S]", None)
     width: Distinct[Positive] = key("widths W of the Gaussian at nucleation, >= dx [H]", [1.0])
-    profiles: Distinct[Profile] | None = key("whole profiles, below, instead of the three above", None)
+    profiles: Distinct[Profile] | None = key(
+        "whole profiles, below, instead of the three above", None
+    )
     beyond: Beyond | None = key("another level on one side, below", None)
     gamma: Distinct[Positive] | None = key(
         "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)", None
@@ -183,13 +200,18 @@ class Simulation(Physics):
         springs, recorded = self.boundary == "displacement", "samples" in self.record
         levels = self.left is not None and self.right is not None
         require(levels or self.profiles is not None, "left, right: missing", "lists, or profiles")
-        require(rule == {"fixed"} or "fixed" not in rule, "spacing.fixed: given with others", "alone")
+        require(
+            rule == {"fixed"} or "fixed" not in rule, "spacing.fixed: given with others", "alone"
+        )
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
         only = "only under boundary 'displacement'"
         require(springs or "half_periods" not in units, "duration.half_periods: given", only)
         require(springs or "gamma_power" not in rule, "spacing.gamma_power: given", only)
         require("fronts" in self.record, f"record: {self.record}", RECORDED)
-        sampled, parts = self.samples is not None, "times, positions and extent when record has 'samples'"
+        sampled, parts = (
+            self.samples is not None,
+            "times, positions and extent when record has 'samples'",
+        )
         require(sampled or not recorded, "samples: missing", parts)
         only = "with samples in record (samples: null removes it)"
         require(recorded or not sampled, "samples: given, but not recorded", only)
@@ -199,7 +221,9 @@ class Simulation(Physics):
 class NamedScene(Profile, Physics):
     """One run by name."""
 
-    title: str = key("one line above figure and page", ..., TITLE, max_length=120, pattern=PRINTABLE)
+    title: str = key(
+        "one line above figure and page", ..., TITLE, max_length=120, pattern=PRINTABLE
+    )
     gamma: Positive | None = key("as under `simulations` (paper: near 2/3)", None)
     damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
     beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
@@ -213,27 +237,42 @@ class Preset(Block):
     dx: Spacing = key("block spacing where a simulation does not scale it [H]")
     max_step: Positive = key("largest time step; strong damping may need less [dx]")
     order: int = key("order of the Taylor step", ge=3, le=8)
-    coarser: Annotated[Distinct[Annotated[float, Field(gt=1.0)]], Field(min_length=2, max_length=2)] = key(
-        "factors of the spacing in the grid study behind every uncertainty", words="two different factors > 1"
+    coarser: Annotated[
+        Distinct[Annotated[float, Field(gt=1.0)]], Field(min_length=2, max_length=2)
+    ] = key(
+        "factors of the spacing in the grid study behind every uncertainty",
+        words="two different factors > 1",
     )
     whole: bool = key("whether studies, ledger and report are made without `everything`", True)
 
 
 class Model(Block):
     damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
-    release: Release = key("`total`: the damping force counts at release (figure); `elastic`: not (printed)")
+    release: Release = key(
+        "`total`: the damping force counts at release (figure); `elastic`: not (printed)"
+    )
     scheme: Scheme = key(
         "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
         " `continuum`: the exact solution of the continuum limit, to which `max_step` and `order` mean nothing"
     )
-    friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): sliding back, beyond -(1 + 2 of it), is flagged")
-    resolved_blocks: int = key("pulses (Gaussians, under `stress`) of fewer blocks are flagged", ge=1)
+    friction_ratio: NonNegative = key(
+        "mu_k/(mu_s - mu_k): sliding back, beyond -(1 + 2 of it), is flagged"
+    )
+    resolved_blocks: int = key(
+        "pulses (Gaussians, under `stress`) of fewer blocks are flagged", ge=1
+    )
 
 
 class Measure(Block):
-    share: Fraction = key("T_trans under `stress`: the left front has covered this fraction of |x_minus|")
-    front_window: float = key("last fraction of a path whose slope is the front speed", ge=0.05, lt=1.0)
-    steady_tolerance: Fraction = key("a largest velocity changing less over the last third is steady")
+    share: Fraction = key(
+        "T_trans under `stress`: the left front has covered this fraction of |x_minus|"
+    )
+    front_window: float = key(
+        "last fraction of a path whose slope is the front speed", ge=0.05, lt=1.0
+    )
+    steady_tolerance: Fraction = key(
+        "a largest velocity changing less over the last third is steady"
+    )
     trailing_times: Distinct[Positive] = key("when the trailing edge is tabulated [H/c] (figure)")
     still: Fraction = key("slower than this fraction of the largest slip velocity is at rest")
 
@@ -266,7 +305,9 @@ class Figures(Block):
 
 class Claim(Block):
     tolerance: NonNegative | None = key("what counts as agreement, by kind", None)
-    tolerance_exponent: Positive | None = key("approximate claims: largest distance of exponent from 1", None)
+    tolerance_exponent: Positive | None = key(
+        "approximate claims: largest distance of exponent from 1", None
+    )
 
 
 class Reading(Block):
@@ -275,7 +316,9 @@ class Reading(Block):
     statement: str = key("what was read off (figure)", min_length=1)
     value: float = key("the number (figure)")
     reading_error: Positive = key("of reading by pixel")
-    arrow: bool = key("whether it is a drawn arrow, which the best fit is found with and without", False)
+    arrow: bool = key(
+        "whether it is a drawn arrow, which the best fit is found with and without", False
+    )
 
 
 class Configuration(Block):
@@ -284,7 +327,8 @@ class Configuration(Block):
     preset: str = key("which of `presets` is used", words="the name of a preset")
     presets: dict[str, Preset] = key("trades of speed for accuracy, by name", min_length=1)
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
-        "largest relative numerical error of measured numbers, instead of a preset's spacing and step", None
+        "largest relative numerical error of measured numbers, instead of a preset's spacing and step",
+        None,
     )
     # As make and the command line may say it: yes, on, 1.
     allow_large: Annotated[bool, Field(strict=False)] = key(
@@ -295,22 +339,30 @@ class Configuration(Block):
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
     measure: Measure = key("how numbers are read off a run")
     figures: Figures = key("of figures that draw no simulation")
-    claims: dict[str, Claim] = key("other tolerances than those of manuscript/claims.yaml, by claim", {})
+    claims: dict[str, Claim] = key(
+        "other tolerances than those of manuscript/claims.yaml, by claim", {}
+    )
     published: dict[str, Reading] = key("numbers read off a published figure, by name")
-    studies: Distinct[Name] | None = key("studies run for their tables; by default all", None, STUDIES)
+    studies: Distinct[Name] | None = key(
+        "studies run for their tables; by default all", None, STUDIES
+    )
 
     @model_validator(mode="after")
     def _names(self) -> Self:
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         localised, scheme = "'localised' where accuracy is given", self.model.scheme
-        require(self.accuracy is None or scheme == "localised", f"model.scheme: {scheme!r}", localised)
+        require(
+            self.accuracy is None or scheme == "localised", f"model.scheme: {scheme!r}", localised
+        )
         for name in self.scenes:
             found = f"scenes.{name}: also the name of a simulation"
             require(name not in self.simulations, found, "another name")
             taken = name == "index" or name.removesuffix("_numbers") in {*self.scenes} - {name}
             found = f"scenes.{name}: another file of that name is there"
             require(not taken, found, "neither index nor SCENE_numbers")
-        known = QUANTITIES | {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
+        known = QUANTITIES | {
+            f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times
+        }
         for entry, reading in self.published.items():
             where, quantity, sweep = f"published.{entry}", reading.quantity, reading.simulation
             check_name(f"{where}.simulation", sweep, self.simulations, "a name under simulations")

@@ -14,7 +14,9 @@ class UnreadableFile(ValueError):
 
     def __init__(self, path: str | Path, reason: object) -> None:
         text = " ".join(str(reason).split())[:120]
-        super().__init__(f"{path}: cannot be read ({text}); delete it and run again, and it is made anew")
+        super().__init__(
+            f"{path}: cannot be read ({text}); delete it and run again, and it is made anew"
+        )
 
 
 def configuration() -> str:

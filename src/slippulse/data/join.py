@@ -27,7 +27,11 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     """All runs in the order of the sweep, from the data of its chunks in the order of their numbers."""
     chunks = [load_dataset(path) for path in paths]
     of_chunks = zip(chunks, _runs(paths, [chunk.sizes["point"] for chunk in chunks]), strict=True)
-    found = {number: run for chunk, own in of_chunks for number, run in zip(own, runs_in(chunk), strict=True)}
+    found = {
+        number: run
+        for chunk, own in of_chunks
+        for number, run in zip(own, runs_in(chunk), strict=True)
+    }
     return described(combine([found[number] for number in sorted(found)], record))
 
 
@@ -45,7 +49,10 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
         chunk.index = pd.MultiIndex.from_arrays([block, np.tile(numbers, block.max() + 1)])
     ordered = sorted(zip(runs, chunks, strict=True), key=lambda pair: pair[0][0])
     table = pd.concat([chunk for _, chunk in ordered]).sort_index().fillna("")
-    columns = [*(name for name in table if name not in last), *(name for name in last if name in table)]
+    columns = [
+        *(name for name in table if name not in last),
+        *(name for name in last if name in table),
+    ]
     save_table(table[columns], joined)
 
 

@@ -56,7 +56,9 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
         return number(value, MOST) + unknown
     from uncertainties import ufloat
 
-    last = 10.0 ** (math.floor(math.log10(abs(value))) + 1 - MOST_WITH_UNCERTAINTY) if value else 0.0
+    last = (
+        10.0 ** (math.floor(math.log10(abs(value))) + 1 - MOST_WITH_UNCERTAINTY) if value else 0.0
+    )
     if abs(uncertainty) < last:
         return _minus(f"{ufloat(value, last):.1uSP}")
     return _minus(f"{ufloat(value, abs(uncertainty)):SP}")
@@ -69,7 +71,9 @@ def short(value: object, longest: int = 80) -> str:
 
 
 # What texts and templates may write a value with.
-FILTERS = {write.__name__: write for write in (number, percent, rounded, setting, short, with_uncertainty)}
+FILTERS = {
+    write.__name__: write for write in (number, percent, rounded, setting, short, with_uncertainty)
+}
 
 
 def _power_of_ten(text: str) -> str:

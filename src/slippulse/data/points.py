@@ -9,7 +9,9 @@ import xarray as xr
 from ..model.checks import check_number, short_repr
 
 AXES = ("sample_time", "sample_position")
-DIMENSIONS = {name: (name,) for name in AXES} | dict.fromkeys(("sample_slip", "sample_velocity"), AXES)
+DIMENSIONS = {name: (name,) for name in AXES} | dict.fromkeys(
+    ("sample_slip", "sample_velocity"), AXES
+)
 
 
 class Recorded(dict[str, np.ndarray]):
@@ -46,7 +48,9 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
 
 def runs_in(sweep: xr.Dataset, indices: Iterable[int] | None = None) -> Iterator[Recorded]:
     """Some runs of a sweep by their numbers, or all; raises as `point` does where its blocks are not theirs."""
-    found = [(str(name), variable.dims, variable.values) for name, variable in sweep.variables.items()]
+    found = [
+        (str(name), variable.dims, variable.values) for name, variable in sweep.variables.items()
+    ]
     numbers = {name: values for name, dimensions, values in found if dimensions == ("point",)}
     blocks = {name: values for name, dimensions, values in found if dimensions == ("block",)}
     samples = {name: values for name, _, values in found if name in DIMENSIONS}
@@ -60,4 +64,6 @@ def runs_in(sweep: xr.Dataset, indices: Iterable[int] | None = None) -> Iterator
     for index in range(len(parts)) if indices is None else indices:
         arrays = {name: values[parts[index]] for name, values in blocks.items()}
         arrays |= {name: values[index] for name, values in samples.items()}
-        yield Recorded(arrays, {name: values[index].item() for name, values in numbers.items()} | versions)
+        yield Recorded(
+            arrays, {name: values[index].item() for name, values in numbers.items()} | versions
+        )

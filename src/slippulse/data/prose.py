@@ -43,6 +43,8 @@ def fill(text: str, names: Mapping[str, object]) -> str:
 
 def _line(text: str, error: Exception) -> str:
     """The line of a template at which rendering failed."""
-    numbers = [entry.lineno for entry in extract_tb(error.__traceback__) if entry.filename == "<template>"]
+    numbers = [
+        entry.lineno for entry in extract_tb(error.__traceback__) if entry.filename == "<template>"
+    ]
     last = (numbers[-1] if numbers else getattr(error, "lineno", None)) or 1
     return " ".join(text.splitlines()[last - 1].split())[:100]

@@ -36,11 +36,16 @@ def git_state(root: str | Path) -> dict | None:
 
     def ask(*arguments: str) -> str:
         command = ["git", "-C", str(root), *arguments]
-        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=True).stdout.rstrip()
+        return subprocess.run(
+            command, capture_output=True, text=True, timeout=30, check=True
+        ).stdout.rstrip()
 
     try:
         changed = ask("status", "--porcelain", "--untracked-files=no").splitlines()
-        return {"commit": ask("rev-parse", "HEAD"), "changed_files": sorted(line[3:] for line in changed)}
+        return {
+            "commit": ask("rev-parse", "HEAD"),
+            "changed_files": sorted(line[3:] for line in changed),
+        }
     except (OSError, subprocess.SubprocessError):
         return None
 
@@ -66,7 +71,9 @@ def job_times(results: str | Path) -> dict[str, float]:
     return seconds
 
 
-def provenance(root: str | Path, sources: str, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
+def provenance(
+    root: str | Path, sources: str, config: Mapping, shipped: Mapping, base: str | Path
+) -> dict:
     """Everything that a result depends on; ``sources``: digest of `source_files`; ``shipped``: without overlays."""
     packages = (*PACKAGES, "snakemake", "matplotlib", "pandas")
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
@@ -77,7 +84,8 @@ def provenance(root: str | Path, sources: str, config: Mapping, shipped: Mapping
         "source_digest": sources,
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
-        "versions": {"python": platform.python_version()} | {name: version(name) for name in packages},
+        "versions": {"python": platform.python_version()}
+        | {name: version(name) for name in packages},
         "implementation": sys.implementation.name,
         "machine": machine_class(),
         "times": {"written": written, "seconds_of_jobs": job_times(base)},

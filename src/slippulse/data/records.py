@@ -18,7 +18,11 @@ from .files import write_json, write_text
 FOLDER = "records"
 # Folders of results in which no rule makes what stands there.
 BESIDE = ("logs", "benchmarks", "reference")
-MISSING, CHANGED, PARTED = "missing", "not what its job wrote", "made with a file that is not as made"
+MISSING, CHANGED, PARTED = (
+    "missing",
+    "not what its job wrote",
+    "made with a file that is not as made",
+)
 # In seconds: a file that was just written may change once more within a tick of the clock.
 SETTLED = 2.0
 
@@ -73,7 +77,9 @@ def read_record(path: str | Path) -> Record:
     """Read one record. Raises OSError or ValueError: without one, or if it is not what a job writes."""
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
-        return Record(**{name: kind(content[name]) for name, kind in Record.__annotations__.items()})
+        return Record(
+            **{name: kind(content[name]) for name, kind in Record.__annotations__.items()}
+        )
     except (KeyError, TypeError, RecursionError) as error:
         raise ValueError(str(error)) from error
 
@@ -130,20 +136,28 @@ class Tree:
         """What is in the way of making anew what is faulty of some results and of what they are made from."""
         found = self.faults(self.behind(names))
         # What a job has made goes together: a missing file is made anew only where the others are not there either.
-        parts = {part: found.get(part, PARTED) for name in found for part in self.origins[name].outputs}
+        parts = {
+            part: found.get(part, PARTED) for name in found for part in self.origins[name].outputs
+        }
         # A link to nowhere, or to something else than a file, is in the way too.
         there = [name for name in parts if os.path.lexists(self.results / name)]
         return {name: parts[name] for name in there if not (self.results / name).is_dir()}
 
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
         """One line for each file that is not as a run makes it, of those there or ``complete``; and their number."""
-        paths = (path.relative_to(self.results) for path in self.results.rglob("*") if path.is_file())
-        there = {path.as_posix() for path in paths if path.parts[0] not in BESIDE and path.name[0] != "."}
+        paths = (
+            path.relative_to(self.results) for path in self.results.rglob("*") if path.is_file()
+        )
+        there = {
+            path.as_posix() for path in paths if path.parts[0] not in BESIDE and path.name[0] != "."
+        }
         wanted = there.union(complete)
         compared = [name for name in self.origins if name in wanted]
         unknown = sorted(there - self.origins.keys() - {*map(record_path, self.origins.values())})
         reasons = self.faults(compared) | dict.fromkeys(unknown, "not known; no rule makes it")
-        return [f"{self.results / name}: {reason}" for name, reason in reasons.items()], len(compared)
+        return [f"{self.results / name}: {reason}" for name, reason in reasons.items()], len(
+            compared
+        )
 
     def _compare(self, name: str) -> tuple[str, str]:
         """Why a result is outdated, and its digest as its job wrote it; one of them is empty."""
@@ -154,7 +168,11 @@ class Tree:
             return "no record", ""
         except (OSError, ValueError):
             return "its record cannot be read", ""
-        if record.step != origin.step or name not in record.outputs or record.inputs.keys() != origin.inputs:
+        if (
+            record.step != origin.step
+            or name not in record.outputs
+            or record.inputs.keys() != origin.inputs
+        ):
             return "made by another rule", ""
         if record.configuration != origin.configuration:
             return "made by another configuration", ""

@@ -53,7 +53,11 @@ def load_dataset(path: str | Path) -> xr.Dataset:
                 for reference, axis in own.pop("REFERENCE_LIST", ()):
                     dimensions[h5py.h5r.dereference(reference, file.id)][axis] = name
             variables = {
-                name: (dimensions[item], _values(item, h5py.h5s.ALL, h5py.h5s.ALL), attributes[name])
+                name: (
+                    dimensions[item],
+                    _values(item, h5py.h5s.ALL, h5py.h5s.ALL),
+                    attributes[name],
+                )
                 for name, item in items.items()
                 if not attributes[name].pop("NAME", b"").startswith(BARE.encode())
             }
@@ -66,7 +70,11 @@ def load_dataset(path: str | Path) -> xr.Dataset:
 
 def _attributes(item: h5py.h5d.DatasetID) -> dict[str, Any]:
     opened = (h5py.h5a.open(item, index=number) for number in range(h5py.h5a.get_num_attrs(item)))
-    return {name: _values(each).tolist() for each in opened if (name := each.name.decode()) not in PLUMBING}
+    return {
+        name: _values(each).tolist()
+        for each in opened
+        if (name := each.name.decode()) not in PLUMBING
+    }
 
 
 def _values(item: h5py.h5d.DatasetID | h5py.h5a.AttrID, *spaces: h5py.h5s.SpaceID) -> np.ndarray:

@@ -22,7 +22,9 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
     """Put the runs of a sweep into one Dataset."""
     versions = {"versions": runs[0].attrs["versions"]}
     names = [name for name in runs[0].attrs if name not in versions]
-    variables: dict = {name: ("point", np.array([run.attrs[name] for run in runs])) for name in names}
+    variables: dict = {
+        name: ("point", np.array([run.attrs[name] for run in runs])) for name in names
+    }
     kept = (*(FRONTS if "fronts" in record else ()), *(FIELDS if "fields" in record else ()))
     if kept:
         # CF's contiguous ragged array: the profiles of the runs over x, one after the other.
@@ -35,4 +37,6 @@ def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
             axes = ("point", *(dimension.removeprefix("sample_") for dimension in dimensions))
             variables[name] = axes, np.stack([run[name] for run in runs])
     # All at once: each variable that is added to a Dataset is aligned with those that are there.
-    return xr.Dataset(variables, attrs=FILE | versions | ({"featureType": "profile"} if kept else {}))
+    return xr.Dataset(
+        variables, attrs=FILE | versions | ({"featureType": "profile"} if kept else {})
+    )

@@ -17,7 +17,9 @@ def save_table(table: pd.DataFrame, path: str | Path, digits: int = 9) -> None:
     for _, column in table.items():
         values = column.tolist()
         texts = map(form.__mod__, values) if column.dtype.kind == "f" else values
-        columns.append([text if value == value else None for text, value in zip(texts, values, strict=True)])
+        columns.append(
+            [text if value == value else None for text, value in zip(texts, values, strict=True)]
+        )
     lines = StringIO()
     csv.writer(lines, lineterminator="\n").writerows([table.columns, *zip(*columns, strict=True)])
     write_text(lines.getvalue(), path)

@@ -11,7 +11,10 @@ from .style import BLACK, BLUE, COLUMN, ORANGE, Look, new_panels
 
 NEEDS = {"data": ()}
 
-TITLES = {"stress": r"$\Gamma = 0$: stress imposed", "displacement": r"$\Gamma = 1$: displacement held"}
+TITLES = {
+    "stress": r"$\Gamma = 0$: stress imposed",
+    "displacement": r"$\Gamma = 1$: displacement held",
+}
 # In thicknesses: length of the layer, depth of what is rigid, largest displacement drawn.
 LENGTH, RIGID, DISPLACEMENT = 3.5, 0.2, 0.5
 LENGTHS = ["y", "displacement", "strip_width"]
@@ -28,7 +31,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     linearly to 0, so that its mean is half the slip. Source: section II and appendix A of the paper.
     """
     panels = ["stress", "stress", "displacement", "displacement"]
-    found = pd.DataFrame({"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]})
+    found = pd.DataFrame(
+        {"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]}
+    )
     found["displacement"] *= DISPLACEMENT
     found["strip_width"] = settings["strip_width"]
     found[LENGTHS] *= settings["thickness"]
@@ -55,7 +60,9 @@ def plot(table: pd.DataFrame) -> Figure:
             label(axes, REST + 0.5 * DISPLACEMENT + 0.14, 0.5, "$u_x(y)$", BLUE, ha="left")
         rows = table[table["panel"] == panel]
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
-        axes.plot(REST + rows["displacement"], rows["y"], color=BLUE, linewidth=1.5, gid="displacement")
+        axes.plot(
+            REST + rows["displacement"], rows["y"], color=BLUE, linewidth=1.5, gid="displacement"
+        )
         axes.set_title(TITLES[panel], fontsize=9)
         axes.set(xlim=(-0.65, LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()
@@ -65,7 +72,9 @@ def plot(table: pd.DataFrame) -> Figure:
 def draw_layer(axes: Axes, strip: float) -> None:
     """What both conditions have: layer, substrate, strip, friction, thickness and axes."""
     axes.add_patch(Rectangle((0.0, -RIGID), LENGTH, RIGID, **HATCHED))
-    axes.add_patch(Rectangle((0.0, 0.0), LENGTH, 1.0, facecolor="#e6edf4", edgecolor=BLACK, linewidth=0.8))
+    axes.add_patch(
+        Rectangle((0.0, 0.0), LENGTH, 1.0, facecolor="#e6edf4", edgecolor=BLACK, linewidth=0.8)
+    )
     look: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
     axes.add_patch(Rectangle((STRIP_AT - 0.5 * strip, 0.0), strip, 1.0, gid="strip", **look))
     label(axes, STRIP_AT, 0.47, r"$\mathrm{d}x$", RED, va="bottom")

@@ -55,10 +55,14 @@ def plot(table: pd.DataFrame) -> Figure:
     figure = new_figure(PAGE, 2.75)
     planes, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.05, 1.0)).flat
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
-    numbers = {tuple(rows[["boundary", "regime"]].iloc[0]): NUMBERS[i] for i, rows in enumerate(profiles)}
+    numbers = {
+        tuple(rows[["boundary", "regime"]].iloc[0]): NUMBERS[i] for i, rows in enumerate(profiles)
+    }
     for axes, letter, boundary in zip(planes.subplots(1, 2), "ab", BOUNDARIES, strict=True):
         rows = table[table["boundary"] == boundary]
-        names = {name: f"{numbers.get((boundary, name), '')} {LOOKS[name][1]}".strip() for name in LOOKS}
+        names = {
+            name: f"{numbers.get((boundary, name), '')} {LOOKS[name][1]}".strip() for name in LOOKS
+        }
         draw_plane(axes, rows[rows["role"].isin(["area", "line"])], names)
         for run in rows[rows["role"] == "run"].itertuples():
             # Open where it is not the regime of the area, crossed out where flagged.
@@ -70,7 +74,9 @@ def plot(table: pd.DataFrame) -> Figure:
         panel_letter(axes, letter)
     draw_profiles(strips, profiles)
     faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
-    handles = [entry(label, marker="o", markerfacecolor=face, **MARK) for label, face in faces.items()]
+    handles = [
+        entry(label, marker="o", markerfacecolor=face, **MARK) for label, face in faces.items()
+    ]
     if table.loc[table["role"] == "run", "run_flags"].notna().any():
         handles.append(entry("flagged", marker="x", **MARK))
     legend_below(figure, handles, 3)
@@ -84,7 +90,13 @@ def tint(colour: str) -> tuple[float, ...]:
 
 def draw_plane(axes: Axes, rows: pd.DataFrame, names: dict[str, str]) -> None:
     """The regimes as areas, and as lines where one level is 0, with their names, those of mirrored ones once."""
-    text: Look = {"ha": "center", "va": "center", "fontsize": 8.0, "zorder": 4.0, "linespacing": 1.0}
+    text: Look = {
+        "ha": "center",
+        "va": "center",
+        "fontsize": 8.0,
+        "zorder": 4.0,
+        "linespacing": 1.0,
+    }
     for (role, _), part in rows.groupby(["role", "series"], sort=False):
         regime, corners = part["regime"].iloc[0], part[["left", "right"]].to_numpy()
         (left, right), colour = corners.mean(axis=0), LOOKS[regime][0]
@@ -99,7 +111,9 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, names: dict[str, str]) -> None:
         elif left < right:
             line = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
             axes.annotate(names[regime], (-0.75, 0.04), (-0.6, 0.19), arrowprops=line, **text)
-    axes.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), aspect="equal", xticks=(-1, 0, 1), yticks=(-1, 0, 1))
+    axes.set(
+        xlim=(-1.0, 1.0), ylim=(-1.0, 1.0), aspect="equal", xticks=(-1, 0, 1), yticks=(-1, 0, 1)
+    )
     axes.set(xlabel=r"pre-stress on the left $\tau_{0,l}$", ylabel=r"on the right $\tau_{0,r}$")
 
 

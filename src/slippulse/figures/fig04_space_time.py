@@ -34,12 +34,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         name = f"space_time_{panel}"
         run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
         edges = [
-            pd.DataFrame({"role": role, "position": exact["position"], "time": exact[column]}).dropna()
+            pd.DataFrame(
+                {"role": role, "position": exact["position"], "time": exact[column]}
+            ).dropna()
             for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time"))
         ]
         found = [run_rows(run), transition_rows(run, tables[name].iloc[0]), *edges]
         if panel == "stress":
-            found.append(pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}]))
+            found.append(
+                pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}])
+            )
         parts.append(pd.concat(found).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[["panel", *COLUMNS]]
 
@@ -54,7 +58,9 @@ def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
     ]
     if "last_release_time" in numbers:
         distance, length = numbers["last_release_distance"], numbers["last_release_length"]
-        ends.append(("last_release", numbers["last_release_time"], -distance, length - distance, length))
+        ends.append(
+            ("last_release", numbers["last_release_time"], -distance, length - distance, length)
+        )
     rows = [
         (role, series, time, position, length)
         for role, time, left, right, length in ends
@@ -122,14 +128,22 @@ def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
     left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.04 * (high - low), high)
-    arrow = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9, "mutation_scale": 8.0}
+    arrow = {
+        "arrowstyle": "<->",
+        "shrinkA": 0.0,
+        "shrinkB": 0.0,
+        "linewidth": 0.9,
+        "mutation_scale": 8.0,
+    }
     axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
     end = axes.get_xlim()[1]
     for name, value, height, start, stop in (
         ("T", time, low, (0.0, low), (time, low)),
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
-        axes.annotate("", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0)
+        axes.annotate(
+            "", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0
+        )
         look: Look = {"x": time + 0.025 * end, "s": rf"${name}_\text{{trans}} = {value:#.3g}$"}
         if name == "T" and time > 0.45 * end:
             # On a long arrow, away from what is marked beyond it.

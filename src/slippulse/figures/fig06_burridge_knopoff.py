@@ -62,7 +62,9 @@ def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
     closer = float(-rows.groupby("row")["slip"].diff().min())
     rows["scale"] = min(FARTHEST / rows["slip"].max(), (1.0 - SHORTEST) * (1.0 - BLOCK) / closer)
     rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
-    return rows.assign(panel=name, **{key: run.attrs[key] for key in ("gamma", "left", "right", "width")})
+    return rows.assign(
+        panel=name, **{key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
+    )
 
 
 def arresting_block(run: xr.Dataset) -> float:
@@ -81,7 +83,9 @@ def window(run: xr.Dataset) -> tuple[float, float]:
 def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     """Names and sample numbers: before anything slips, half-way to the first stick, at it, and two later in view."""
     low, high = window(run)
-    x, slip, velocity = (run[name].values for name in ("sample_position", "sample_slip", "sample_velocity"))
+    x, slip, velocity = (
+        run[name].values for name in ("sample_position", "sample_slip", "sample_velocity")
+    )
     in_view = ~(slip[:, (x <= low) | (x >= high)] > 0.0).any(axis=1)
     last = int(np.flatnonzero(in_view)[-1])
     stuck = (slip > 0.0) & (velocity <= 0.0)
@@ -132,14 +136,23 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
         state = state.sort_values("x")
         base, rest = -pitch * row, state["x"].to_numpy()
         centre = rest + (state["scale"] * state["slip"]).to_numpy()
-        coils = [coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT) for a, b in pairwise(centre)]
-        axes.add_collection(LineCollection(coils, colors="0.35", linewidths=0.6, gid="coil springs"))
+        coils = [
+            coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT) for a, b in pairwise(centre)
+        ]
+        axes.add_collection(
+            LineCollection(coils, colors="0.35", linewidths=0.6, gid="coil springs")
+        )
         axes.plot([low, high], [base, base], color=BLACK, linewidth=0.8)
         axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
         if leaf:
             axes.plot([low, high], [base + PLATE] * 2, color=BLACK, linewidth=1.8)
-            bent = [bow(top, base + PLATE, now, base + HEIGHT) for top, now in zip(rest, centre, strict=True)]
-            axes.add_collection(LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs"))
+            bent = [
+                bow(top, base + PLATE, now, base + HEIGHT)
+                for top, now in zip(rest, centre, strict=True)
+            ]
+            axes.add_collection(
+                LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs")
+            )
         for now, block in zip(centre, state.itertuples(), strict=True):
             colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
             patch = Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)

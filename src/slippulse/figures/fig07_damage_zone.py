@@ -27,14 +27,23 @@ def plot(table: pd.DataFrame) -> Figure:
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):
         name = rf"$H_r/H = {thickness:g}$"
-        axes.plot(curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve")
-        look: Look = {"xytext": (3, 0), "textcoords": "offset points", "va": "center", "fontsize": 8.0}
+        axes.plot(
+            curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve"
+        )
+        look: Look = {
+            "xytext": (3, 0),
+            "textcoords": "offset points",
+            "va": "center",
+            "fontsize": 8.0,
+        }
         end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
         axes.annotate(name, end, color=colour, annotation_clip=False, **look)
     limit = r"$G \ll G_r$: imposed at $y = H$"
     line = axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
     ends = curves["stiffness_ratio"].agg(["min", "max"])
-    axes.set(xscale="log", xlim=tuple(ends), ylim=(0.0, 1.08), xlabel="ratio of shear moduli $G/G_r$")
+    axes.set(
+        xscale="log", xlim=tuple(ends), ylim=(0.0, 1.08), xlabel="ratio of shear moduli $G/G_r$"
+    )
     axes.set_ylabel(r"stress drop $\Delta\tau\,/\,(G\delta/H)$")
     axes.legend(handles=[line], loc="lower left")
     return figure
@@ -42,7 +51,10 @@ def plot(table: pd.DataFrame) -> Figure:
 
 def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     """Damage zone under host rock, the imposed displacement, the slip, and the displacement over the height."""
-    top, slip = float(after["y"].max()), float(after["displacement"].iloc[0] - before["displacement"].iloc[0])
+    top, slip = (
+        float(after["y"].max()),
+        float(after["displacement"].iloc[0] - before["displacement"].iloc[0]),
+    )
     imposed = float(after["displacement"].iloc[-1])
     axes.add_patch(Rectangle((0.0, 0.0), WIDTH, 1.0, facecolor="#f6d9b8"))
     axes.add_patch(Rectangle((0.0, 1.0), WIDTH, top - 1.0, facecolor="#d7dde4"))

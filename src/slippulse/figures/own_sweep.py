@@ -33,13 +33,17 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     runs = runs.assign(tau_0=runs["left"] if alike else 0.0)
     for name in AXES:
         # A level that follows another one is no axis of its own.
-        if runs[name].nunique() > 1 and not any((runs[name] == runs[other]).all() for other in varying):
+        if runs[name].nunique() > 1 and not any(
+            (runs[name] == runs[other]).all() for other in varying
+        ):
             varying.append(name)
     varying.sort(key=lambda name: (runs[name].dtype.kind != "f", -runs[name].nunique()))
     axis, *others = varying or ["left"]
     parts = []
     for _, run in runs.iterrows():
-        values = {name: run[name] if isinstance(run[name], str) else f"{run[name]:g}" for name in others}
+        values = {
+            name: run[name] if isinstance(run[name], str) else f"{run[name]:g}" for name in others
+        }
         series = ", ".join(f"{AXES[name]} = {value}" for name, value in values.items())
         numbers = main_numbers(run).assign(run_flags=run["run_flags"])
         parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
@@ -69,7 +73,10 @@ def plot(table: pd.DataFrame) -> Figure:
         axes.set(xlabel=AXES[rows["axis"].iloc[0]], ylabel=with_symbols(rows["label"].iloc[0]))
     for axes in grid[len(quantities) :]:
         axes.set_visible(False)
-    handles = [entry("simulation", marker="o", color=GREY), entry("exact theory", color=GREY, linewidth=0.8)]
+    handles = [
+        entry("simulation", marker="o", color=GREY),
+        entry("exact theory", color=GREY, linewidth=0.8),
+    ]
     if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="o", color=GREY, markerfacecolor="none"))
     legend_below(figure, [*grid[0].get_legend_handles_labels()[0], *handles], 5)

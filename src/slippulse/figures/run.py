@@ -47,7 +47,11 @@ def plot(run: xr.Dataset) -> Picture:
             image = parts.draw_map(times, roles)
             figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
             if run.attrs.get("limit_reason"):
-                unknown = run["sample_time"], run["sample_position"], run["sample_velocity"].isnull().T
+                unknown = (
+                    run["sample_time"],
+                    run["sample_position"],
+                    run["sample_velocity"].isnull().T,
+                )
                 times.contourf(*unknown, [0.5, 1.5], colors="none", hatches=["///"])
                 figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
         else:

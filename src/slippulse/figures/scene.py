@@ -30,7 +30,9 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
     parts = [pd.DataFrame([{"role": "title", "series": title}]), run_rows(run)]
     for name in FIELDS:
         values = run[name].values
-        kept = np.union1d(inside[thin(inside.size, PROFILE_POINTS)], inside[np.argmax(values[inside])])
+        kept = np.union1d(
+            inside[thin(inside.size, PROFILE_POINTS)], inside[np.argmax(values[inside])]
+        )
         rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
         parts.append(pd.DataFrame(rows))
     parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
@@ -72,7 +74,9 @@ def draw_space_time(figure: SubFigure, roles: dict[str, pd.DataFrame]) -> None:
     panel_letter(profile, "a")
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
     spacing = roles["parameter"].set_index("series").loc["dx", "value"]
-    figure.suptitle(rf"{title}" + "\n" + rf"{description(roles)}, $\Delta x = {spacing:g}$", fontsize=9.0)
+    figure.suptitle(
+        rf"{title}" + "\n" + rf"{description(roles)}, $\Delta x = {spacing:g}$", fontsize=9.0
+    )
 
 
 def draw_end(axes: Axes, profile: pd.DataFrame, numbers: pd.DataFrame, field: str) -> None:
@@ -82,7 +86,9 @@ def draw_end(axes: Axes, profile: pd.DataFrame, numbers: pd.DataFrame, field: st
     axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
     theory = numbers.loc[numbers["series"] == LARGEST[field], "theory"].dropna()
     for value in theory:
-        axes.axhline(value, color=ORANGE, linewidth=0.8, linestyle=(0, (3, 1.5)), label="steady pulse, exact")
+        axes.axhline(
+            value, color=ORANGE, linewidth=0.8, linestyle=(0, (3, 1.5)), label="steady pulse, exact"
+        )
     if len(theory):
         axes.legend(loc="center")
     axes.set(xlabel=r"position $x$", ylabel=f"{FIELDS[field]} at the end")

@@ -22,7 +22,10 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
     figure = new_figure(6.4, 3.6)
     panels = figure.subplots(2, 1, sharex=True)
     lines = []
-    fields = {"sample_velocity": (r"slip velocity $\dot u$", BLUE), "sample_slip": (r"slip $u$", ORANGE)}
+    fields = {
+        "sample_velocity": (r"slip velocity $\dot u$", BLUE),
+        "sample_slip": (r"slip $u$", ORANGE),
+    }
     for axes, (name, (label, colour)) in zip(panels, fields.items(), strict=True):
         values = run[name].values[:, inside]
         axes.axhline(0.0, color=GREY, linewidth=0.5)

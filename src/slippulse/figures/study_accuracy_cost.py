@@ -44,7 +44,11 @@ def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6)
     for (order, step), marks in rows[rows["scheme"] == "localised"].groupby(["order", "step"]):
         look: Look = {"linewidth": 0.6} if step == 1.0 else {"alpha": 0.35, "linestyle": "none"}
-        look |= {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": SIZES.get(step, 2.3)}
+        look |= {
+            "color": ORDER_COLOURS[order],
+            "marker": MARKERS[order],
+            "markersize": SIZES.get(step, 2.3),
+        }
         marks = marks.sort_values("work")
         axes.plot(marks["work"], marks[name], markeredgewidth=0.0, **look)
     presets = rows[rows["preset"].notna()]
@@ -58,7 +62,9 @@ def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
 
 def _handles(rows: pd.DataFrame) -> list[Line2D]:
     """Legend: colours and markers are orders, sizes steps."""
-    spacings = ", ".join(f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique())
+    spacings = ", ".join(
+        f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique()
+    )
     orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
     line: Look = {"linewidth": 0.6, "linestyle": "-"}
     found = [entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", **line)]
@@ -67,7 +73,12 @@ def _handles(rows: pd.DataFrame) -> list[Line2D]:
         look = line | {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": 4.0}
         found.append(entry(f"order {order:g}", **look))
     for step, size in SIZES.items():
-        look = {"alpha": 1.0 if step == 1.0 else 0.5, "marker": "o", "markersize": size, "color": GREY}
+        look = {
+            "alpha": 1.0 if step == 1.0 else 0.5,
+            "marker": "o",
+            "markersize": size,
+            "color": GREY,
+        }
         found.append(entry(f"step {step:g} dx", **look))
     return found
 

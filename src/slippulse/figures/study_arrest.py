@@ -7,7 +7,17 @@ from matplotlib.figure import Figure
 
 from ..data.points import point
 from ..measure.fronts import path
-from .style import GREY, ORANGE, PAGE, Look, colour_scale, entry, few_ticks, legend_below, new_panels
+from .style import (
+    GREY,
+    ORANGE,
+    PAGE,
+    Look,
+    colour_scale,
+    entry,
+    few_ticks,
+    legend_below,
+    new_panels,
+)
 
 NEEDS = {
     "data": ["arrest"],

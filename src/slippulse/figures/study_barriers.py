@@ -42,7 +42,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             pairs = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"])
             out = pairs.to_frame(index=False)
             for name, power in powers.items():
-                depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
+                depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[
+                    :, ::-1
+                ]
                 depth = np.exp(_between(at[0], levels) @ np.log(depths) @ _between(at[1], y).T)
                 out[name] = depth.ravel() / gamma**power
             parts.append(out.assign(part=part, gamma=gamma, damping_ratio=ratio))
@@ -89,11 +91,15 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _draw_map(axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm, bands: np.ndarray):
+def _draw_map(
+    axes: Axes, fine: pd.DataFrame, finest: pd.DataFrame, scale: LogNorm, bands: np.ndarray
+):
     grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
     image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
-    lines = axes.contour(x, y, grid.to_numpy(), levels=CONTOURS, colors=_ink(CONTOURS), linewidths=0.5)
+    lines = axes.contour(
+        x, y, grid.to_numpy(), levels=CONTOURS, colors=_ink(CONTOURS), linewidths=0.5
+    )
     axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
     look: Look = {"s": 26.0, "linewidths": 0.9, "norm": scale, "cmap": MAP, "zorder": 3.0}
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):

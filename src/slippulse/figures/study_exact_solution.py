@@ -7,7 +7,19 @@ from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from . import style
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, entry, few_ticks, new_panels
+from .style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAGE,
+    VELOCITY_MAP,
+    Look,
+    entry,
+    few_ticks,
+    new_panels,
+)
 
 NEEDS = {"studies": ["exact_rupture"]}
 table = style.as_given
@@ -31,15 +43,23 @@ def plot(table: pd.DataFrame) -> Figure:
             _draw_edge(axes, rows, quantity, colour)
     dx = scenes["dx"].iloc[0]
     drawn = table.loc[table["role"] == "exact", "scene"].unique()
-    looks = {"-": "front, exact", "--": "trailing edge, exact", "o": rf"front, lattice, $\Delta x = {dx:g}$"}
+    looks = {
+        "-": "front, exact",
+        "--": "trailing edge, exact",
+        "o": rf"front, lattice, $\Delta x = {dx:g}$",
+    }
     for look, label in (looks | {"s": "trailing edge, lattice"}).items():
-        edge_axes.plot([], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label)
+        edge_axes.plot(
+            [], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label
+        )
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     edge_axes.legend(loc="upper left", fontsize=7.0)
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
     others = {names[scene]: SCENES[scene] for scene in SCENES.keys() - set(drawn)}
     _draw_differences(difference_axes, table[table["role"] == "difference"], others)
-    lines = [entry(names[scene], color=colour) for scene, colour in SCENES.items() if scene in drawn]
+    lines = [
+        entry(names[scene], color=colour) for scene, colour in SCENES.items() if scene in drawn
+    ]
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     return figure
 
@@ -50,7 +70,9 @@ def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     for _, half in samples.groupby("role"):
         # What does not slide stays white.
         grid = half.pivot(index="position", columns="time", values="slip_velocity")
-        image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
+        image = axes.pcolormesh(
+            grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look
+        )
     exact = rows[rows["role"] == "exact"]
     for quantity, dashes in (("release", "-"), ("stick", "--")):
         axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
@@ -63,7 +85,12 @@ def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
 
 def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
     """The exact line and the lattice's marks."""
-    look: Look = {"linewidth": 0.9, "markersize": 2.2, "markerfacecolor": "white", "markeredgewidth": 0.6}
+    look: Look = {
+        "linewidth": 0.9,
+        "markersize": 2.2,
+        "markerfacecolor": "white",
+        "markeredgewidth": 0.6,
+    }
     # Space-time has time on the horizontal axis, as in every figure.
     x, y = ("position", "slip") if quantity == "slip" else (quantity, "position")
     marks = ("--", "s") if quantity == "stick" else ("-", "o")
@@ -76,7 +103,9 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) ->
     """The largest and the smallest difference of each scene; its others lie between them."""
     drawn = []
     for scene, colour in SCENES.items():
-        lines = rows[rows["scene"] == scene].pivot(index="dx", columns="quantity", values="difference")
+        lines = rows[rows["scene"] == scene].pivot(
+            index="dx", columns="quantity", values="difference"
+        )
         finest = lines.iloc[0].dropna().sort_values()
         for quantity in finest.index[[0, -1]]:
             axes.plot(lines[quantity], MARKERS[quantity] + "-", color=colour, linewidth=0.7)

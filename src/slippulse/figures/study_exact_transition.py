@@ -6,7 +6,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .shared.scaling import SYMBOLS
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, colour_scale, few_ticks, legend_above, new_panels
+from .style import (
+    BLACK,
+    BLUE,
+    GREY,
+    ORANGE,
+    PAGE,
+    Look,
+    colour_scale,
+    few_ticks,
+    legend_above,
+    new_panels,
+)
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress", "transition_convergence"],
@@ -32,7 +43,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     kept += [f"{source}_{quantity}" for source in sources for quantity in QUANTITIES]
     roles = dict(zip(NEEDS["measured"], ("sweep", "sweep", "refinement"), strict=True))
     runs = [tables[name][kept].assign(role=role) for name, role in roles.items()]
-    return pd.concat([*runs, tables["gaussian_transition"].assign(role="gaussian")], ignore_index=True)
+    return pd.concat(
+        [*runs, tables["gaussian_transition"].assign(role="gaussian")], ignore_index=True
+    )
 
 
 def plot(table: pd.DataFrame) -> Figure:
@@ -48,7 +61,10 @@ def plot(table: pd.DataFrame) -> Figure:
     last.axhline(1.0, color=BLACK, linewidth=0.6)
     last.plot(line["left"], line["over_paper"], "--", color=BLACK, label="uniform")
     for gamma, line in rows.groupby("gamma"):
-        look: Look = {"color": colour_scale("gamma").to_rgba(gamma), "label": rf"$\gamma = {gamma:g}$"}
+        look: Look = {
+            "color": colour_scale("gamma").to_rgba(gamma),
+            "label": rf"$\gamma = {gamma:g}$",
+        }
         last.plot(line["left"], line["over_paper"], **look)
     last.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
     last.set_ylabel(r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$")
@@ -76,13 +92,23 @@ def _draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
     spacing = runs["dx"] / runs["width"]
     for quantity, (marker, colour) in QUANTITIES.items():
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
-        look: Look = {"color": colour, "markersize": 2.5, "markerfacecolor": "none", "markeredgewidth": 0.5}
+        look: Look = {
+            "color": colour,
+            "markersize": 2.5,
+            "markerfacecolor": "none",
+            "markeredgewidth": 0.5,
+        }
         axes.plot(spacing, error, marker, **look)
         largest, label = error.groupby(spacing).max(), f"${SYMBOLS[quantity]}$, largest"
         axes.plot(largest, marker=marker, color=colour, label=label)
     ends = spacing.agg(["min", "max"]).to_numpy()
     axes.plot(ends, 0.4 * ends, color=BLACK, linewidth=0.8, linestyle=":", label="first order")
-    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x/W$", ylabel=r"|measured / exact $-$ 1|")
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlabel=r"spacing $\Delta x/W$",
+        ylabel=r"|measured / exact $-$ 1|",
+    )
     few_ticks(axes.xaxis, np.unique(spacing))
     axes.set_title(r"$\Gamma = 1$, refining", loc="right")
     axes.legend(loc="lower right")

@@ -23,7 +23,18 @@ RULES = ("total", "elastic")
 # Narrower pulses stick within the layer of lattice waves at their front, which theory leaves out.
 FEWEST_BLOCKS = 4.0
 MARKERS = ("o", "s", "^", "D", "v", "P")
-COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx", "springs", "held", "fixed"]
+COLUMNS = [
+    "panel",
+    "release",
+    "left",
+    "gamma",
+    "beta",
+    "damping_ratio",
+    "dx",
+    "springs",
+    "held",
+    "fixed",
+]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -31,10 +42,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     formula) and sound (whether theory should hold); each of panel prestress, springs or refined.
     """
     lines = tables["front_law"].assign(role="theory")
-    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]]).assign(panel="prestress")
+    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]]).assign(
+        panel="prestress"
+    )
     springs = tables["front_speed_springs"]
-    springs = springs[springs["release"] == lines.loc[lines["panel"] == "springs", "release"].iloc[0]]
-    ratio = tables["continuum_fixed_ratio"].assign(held="b", fixed=lambda runs: runs["damping_ratio"])
+    springs = springs[
+        springs["release"] == lines.loc[lines["panel"] == "springs", "release"].iloc[0]
+    ]
+    ratio = tables["continuum_fixed_ratio"].assign(
+        held="b", fixed=lambda runs: runs["damping_ratio"]
+    )
     betas = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
     refined = pd.concat([ratio, betas.assign(held="beta", fixed=betas["beta"])])
     drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
@@ -94,7 +111,9 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(line["springs"], line["speed"], style, color=_colour(ratio))
         known = line.dropna(subset="speed")
         if len(known) < len(line):
-            axes.plot(known["springs"].iloc[-1:], known["speed"].iloc[-1:], "x", color=_colour(ratio))
+            axes.plot(
+                known["springs"].iloc[-1:], known["speed"].iloc[-1:], "x", color=_colour(ratio)
+            )
         _points(axes, group, "springs", "speed", marker)
     for left, (style, marker) in looks.items():
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
@@ -116,7 +135,10 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
         _points(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=name, **look)
     undamped = rows["undamped"].max()
-    for value, style, name, side in ((limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")):
+    for value, style, name, side in (
+        (limit, ":", r"\tau_0", "bottom"),
+        (undamped, "--", r"\tau_0^2", "top"),
+    ):
         axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=style)
         look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
         axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
@@ -131,7 +153,9 @@ def _speed_axis(axes: Axes, xlabel: str, ticks: tuple[float, ...]) -> None:
     few_ticks(axes.yaxis, ticks)
 
 
-def _points(axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None) -> None:
+def _points(
+    axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None
+) -> None:
     """Simulated speeds in the colour of their damping ratio; open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):

@@ -37,7 +37,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             for found in claim["choices"] or [{"deviation": claim["deviation"]}]:
                 own = {name: claim[name] for name in names}
                 rows.append({"release": "", "solution": "lattice"} | found | own)
-    drawn = pd.DataFrame(rows)[[*names, "deviation", "release", "solution"]].dropna(subset="deviation")
+    drawn = pd.DataFrame(rows)[[*names, "deviation", "release", "solution"]].dropna(
+        subset="deviation"
+    )
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
@@ -60,7 +62,9 @@ def plot(table: pd.DataFrame) -> Figure:
     axes.set_ylim(-0.7, len(farthest) - 0.3)
     figure.supylabel("claim", fontsize=9.0)
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
-    handles = [entry(marker="o", **LOOKS[name]) for name in LOOKS if (table["choice"] == name).any()]
+    handles = [
+        entry(marker="o", **LOOKS[name]) for name in LOOKS if (table["choice"] == name).any()
+    ]
     handles += [entry(name, color=BLACK, **look) for name, look in MARKERS.items()]
     legend_below(figure, handles, 2)
     return figure

@@ -39,7 +39,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         parts.append(kept.assign(part="curve", release=release))
         parts.append(rows.assign(part="best", release=release, **best[names]))
     scene = settings["simulations"]["space_time_displacement"]
-    ours = {"part": "ours", "tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
+    ours = {
+        "part": "ours",
+        "tau0": scene["left"][0],
+        "gamma": scene["gamma"][0],
+        **settings["model"],
+    }
     return pd.concat([*parts, pd.DataFrame([ours])], ignore_index=True)
 
 
@@ -75,7 +80,9 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
         shown = line[line["chi2"] <= accepted]
         axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
         inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
-        axes.fill_between(inside["damping_ratio"], inside["chi2"], color=colour, alpha=0.18, linewidth=0.0)
+        axes.fill_between(
+            inside["damping_ratio"], inside["chi2"], color=colour, alpha=0.18, linewidth=0.0
+        )
         label = rf"{label}: $\chi^2 = {found['chi2']:.1f}$"
         axes.plot(found["damping_ratio"], found["chi2"], marker, color=colour, label=label)
     top = 1.75 * accepted
@@ -101,7 +108,9 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
             inside = line[room >= 0.0]
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
             ends = inside["damping_ratio"], inside[name] - half, inside[name] + half
-            axes.fill_between(*ends, color=colour, alpha=alpha, linewidth=0.0, gid=f"{release} {level:g}")
+            axes.fill_between(
+                *ends, color=colour, alpha=alpha, linewidth=0.0, gid=f"{release} {level:g}"
+            )
         look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
         axes.plot(best["damping_ratio"], best[name], marker, **look)
     ours = table[table["part"] == "ours"].iloc[0]
@@ -121,7 +130,9 @@ def _draw_pulls(axes: Axes, table: pd.DataFrame) -> None:
     for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
         rows = _of(table, "best", release)
         axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
-    labels = [NAMES.get(name, rf"edge, $t = {name.rpartition('_')[2]}$") for name in rows["reading"]]
+    labels = [
+        NAMES.get(name, rf"edge, $t = {name.rpartition('_')[2]}$") for name in rows["reading"]
+    ]
     axes.set_xticks(np.arange(len(labels)), labels, rotation=35, ha="right", rotation_mode="anchor")
     axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
     axes.legend(title="released by", loc="upper right", ncols=2)

@@ -33,7 +33,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     runs = tables["continuum_fixed_ratio"]
     limits = study[study["role"] == "limit"].set_index("quantity")["value"]
     for quantity, column in REFINED.items():
-        values = {"value": runs[column], "theory": limits[quantity], "quantity": quantity, "role": "refined"}
+        values = {
+            "value": runs[column],
+            "theory": limits[quantity],
+            "quantity": quantity,
+            "role": "refined",
+        }
         parts.append(runs[["left", "gamma", "damping_ratio", "dx"]].assign(**values))
     return pd.concat(parts, ignore_index=True)
 
@@ -53,7 +58,9 @@ def plot(table: pd.DataFrame) -> Figure:
                 axes.plot(group["damping_ratio"], group["value"] / group["paper"], "o", **look)
         gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]
         axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", loc="right")
-        axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula", xlim=(-0.02, None))
+        axes.set(
+            xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula", xlim=(-0.02, None)
+        )
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     legend_above(figure, grid[0], columnspacing=1.0)
     rows = table[table["role"] == "refined"]
@@ -64,9 +71,16 @@ def plot(table: pd.DataFrame) -> Figure:
         fine.plot(line["dx"], error, marker=marker, **look)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
     fine.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
-    fine.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"|simulation / limit $-$ 1|")
+    fine.set(
+        xscale="log",
+        yscale="log",
+        xlabel=r"spacing $\Delta x$",
+        ylabel=r"|simulation / limit $-$ 1|",
+    )
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
-    fine.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right")
+    fine.set_title(
+        rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right"
+    )
     fine.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
     fine.set_ylim(1e-6, None)
     return figure

@@ -26,7 +26,10 @@ def plot(table: pd.DataFrame) -> Figure:
     _draw_plane(plane, parts["lattice"], parts["limit"])
     shown = parts["lattice"]["level"] == parts["map"]["level"].iloc[0]
     runs, steady = parts["lattice"][shown], parts["steady"]
-    sizes = {"pulse_width": (BLACK, "o", r"width $W_\text{p}$"), "pulse_slip": (GREY, "s", r"slip $u$")}
+    sizes = {
+        "pulse_width": (BLACK, "o", r"width $W_\text{p}$"),
+        "pulse_slip": (GREY, "s", r"slip $u$"),
+    }
     for column, (colour, marker, label) in sizes.items():
         pulses.plot(steady["over"], steady[column], color=colour, label=label)
         pulses.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
@@ -40,7 +43,9 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
-    axes.fill_betweenx(limit["level"], -limit["over"], limit["over"], color=BLUE, alpha=0.12, linewidth=0.0)
+    axes.fill_betweenx(
+        limit["level"], -limit["over"], limit["over"], color=BLUE, alpha=0.12, linewidth=0.0
+    )
     for sign, label in ((1.0, "exact"), (-1.0, None)):
         axes.plot(sign * limit["over"], limit["level"], label=label, **LINES)
     flags = runs["run_flags"].notna()
@@ -54,14 +59,24 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$", loc="right")
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.09), ncols=2, columnspacing=0.8, handletextpad=0.4)
+    axes.legend(
+        loc="lower center",
+        bbox_to_anchor=(0.5, 1.09),
+        ncols=2,
+        columnspacing=0.8,
+        handletextpad=0.4,
+    )
 
 
 def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": rows["slip_velocity"].max()}
     for regime, half in rows.groupby("regime"):
-        grid = half.pivot(index="position", columns="time", values="slip_velocity").where(lambda v: v > 0.0)
-        image = axes.pcolormesh(grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look)
+        grid = half.pivot(index="position", columns="time", values="slip_velocity").where(
+            lambda v: v > 0.0
+        )
+        image = axes.pcolormesh(
+            grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look
+        )
         name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
         axes.text(0.04, 0.92 if regime == "crack" else 0.04, name, transform=axes.transAxes)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")

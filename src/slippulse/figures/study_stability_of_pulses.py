@@ -27,12 +27,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
-    across, beyond = ([point(runs, i) for i in range(runs.sizes["point"])] for runs in data.values())
+    across, beyond = (
+        [point(runs, i) for i in range(runs.sizes["point"])] for runs in data.values()
+    )
     for run in across:
         position, level = prestress_from(run.attrs).steps[-1]
         x = run["x"].values - position
         drawn = exact.loc[np.isclose(exact["level"], level), "x"]
-        inside = np.flatnonzero(np.isfinite(run["stick_time"]) & (x > drawn.min()) & (x < drawn.max()))
+        inside = np.flatnonzero(
+            np.isfinite(run["stick_time"]) & (x > drawn.min()) & (x < drawn.max())
+        )
         kept = inside[:: max(1, inside.size // POINTS)]
         lines = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
         parts.append(lines.assign(role="lattice", level=level, dx=run.attrs["dx"]))
@@ -40,10 +44,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     lowest = float(data["regimes_beyond"]["left"].min())
     for run in beyond:
         if run.attrs["left"] == lowest:
-            largest = run["sample_velocity"].sel(sample_position=slice(1e-9, None)).max("sample_position")
-            lines = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest.values})
+            largest = (
+                run["sample_velocity"].sel(sample_position=slice(1e-9, None)).max("sample_position")
+            )
+            lines = pd.DataFrame(
+                {"time": run["sample_time"].values, "largest_velocity": largest.values}
+            )
             position, level = prestress_from(run.attrs).steps[-1]
-            parts.append(lines.assign(role="velocity", level=level, before=run.attrs["right"], step=position))
+            parts.append(
+                lines.assign(role="velocity", level=level, before=run.attrs["right"], step=position)
+            )
     return pd.concat(parts, ignore_index=True)
 
 
@@ -67,13 +77,17 @@ def plot(table: pd.DataFrame) -> Figure:
     rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
     rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center", fontsize=8.0)
     rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING, 3.0))
-    rest_axes.set(xlabel=r"distance / $W_\text{p}/(v - 1)$", ylabel="|slip / new steady slip $-$ 1|")
+    rest_axes.set(
+        xlabel=r"distance / $W_\text{p}/(v - 1)$", ylabel="|slip / new steady slip $-$ 1|"
+    )
     rest_axes.set_title(r"$\Gamma = 1$", loc="right")
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure
 
 
-def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str) -> None:
+def _draw_level(
+    slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str
+) -> None:
     exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
     slip_axes.plot(exact["x"], exact["slip"], color=colour, label=rf"$\tau_0 = {level}$ beyond")
@@ -95,17 +109,37 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     rows = rows[rows["largest_velocity"] > 0.0]
     for level, line in rows.groupby("level"):
         colour = style.GREEN if level < 0.0 else style.PURPLE if level > 0.0 else style.YELLOW
-        axes.plot(line["time"], line["largest_velocity"], "o-", color=colour, markersize=2.0, linewidth=0.8)
+        axes.plot(
+            line["time"],
+            line["largest_velocity"],
+            "o-",
+            color=colour,
+            markersize=2.0,
+            linewidth=0.8,
+        )
         # Where the line ends or leaves the panel; velocities fall with time there.
-        seen, below = line[line["largest_velocity"] > LEAST], line[line["largest_velocity"] <= LEAST]
+        seen, below = (
+            line[line["largest_velocity"] > LEAST],
+            line[line["largest_velocity"] <= LEAST],
+        )
         at = tuple(seen[["time", "largest_velocity"]].iloc[-1])
         if len(below):
             two = pd.concat([below.iloc[:1], seen.iloc[-1:]])
-            at = np.interp(np.log(LEAST), np.log(two["largest_velocity"]), two["time"]), 1.15 * LEAST
-        look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 7.0}
+            at = (
+                np.interp(np.log(LEAST), np.log(two["largest_velocity"]), two["time"]),
+                1.15 * LEAST,
+            )
+        look: Look = {
+            "xytext": (4, 0),
+            "textcoords": "offset points",
+            "va": "center",
+            "fontsize": 7.0,
+        }
         axes.annotate(setting(level), at, color=BLACK, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set(xlim=(None, 1.28 * rows["time"].max()), ylim=(LEAST, None))
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
-    axes.text(0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top", fontsize=8.0)
+    axes.text(
+        0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top", fontsize=8.0
+    )

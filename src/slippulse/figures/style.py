@@ -42,7 +42,9 @@ VELOCITY_MAP = "viridis"
 HALO = [withStroke(linewidth=2.2, foreground="white")]
 # A quantity has the same colour for the same value in every figure: map, its part that is used, as far as it can be
 # seen on white, ends, and the scale; that of tau_l is stretched towards 0, where most levels are.
-SCALES: dict[str, tuple[str, tuple[float, float], tuple[float, float], Callable[..., Normalize]]] = {
+SCALES: dict[
+    str, tuple[str, tuple[float, float], tuple[float, float], Callable[..., Normalize]]
+] = {
     "tau_0": ("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
     "tau_l": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
     "gamma": ("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),

@@ -5,7 +5,9 @@ import numpy as np
 from ..data.points import AnyRun
 
 
-def path(run: AnyRun, side: str = "right", edge: str = "release_time") -> tuple[np.ndarray, np.ndarray]:
+def path(
+    run: AnyRun, side: str = "right", edge: str = "release_time"
+) -> tuple[np.ndarray, np.ndarray]:
     """Times and distances from x = 0 of a front ("release_time") or trailing edge ("stick_time") on one side.
 
     In order of distance, as x increases; blocks without the event are left out.
@@ -49,8 +51,14 @@ def front_speed(run: AnyRun, window: float, side: str = "right") -> tuple[float,
     As `straight_line`; NaN with fewer than 4 blocks.
     """
     times, distances = path(run, side)
-    chosen = distances >= (1.0 - window) * distances[-1] if distances.size else np.zeros(0, dtype=bool)
-    return straight_line(times[chosen], distances[chosen]) if chosen.sum() >= 4 else (np.nan, np.nan, np.nan)
+    chosen = (
+        distances >= (1.0 - window) * distances[-1] if distances.size else np.zeros(0, dtype=bool)
+    )
+    return (
+        straight_line(times[chosen], distances[chosen])
+        if chosen.sum() >= 4
+        else (np.nan, np.nan, np.nan)
+    )
 
 
 def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:

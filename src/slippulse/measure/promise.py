@@ -29,12 +29,18 @@ def covers(run: Mapping, quantity: str, fraction: float) -> bool:
 
     ``fraction`` : of |x_minus| that the left front covers at T_trans under a stress boundary.
     """
-    if quantity not in COVERED[run["boundary"]] or run["run_flags"] or not math.isfinite(run[quantity]):
+    if (
+        quantity not in COVERED[run["boundary"]]
+        or run["run_flags"]
+        or not math.isfinite(run[quantity])
+    ):
         return False
     if quantity.startswith("front_speed"):
         ahead = run[quantity.removeprefix("front_speed_")]
         # A step on either side.
-        return (ahead if run["beyond"] == run["right"] else min(ahead, run["beyond"])) >= LOWEST_LEVEL
+        return (
+            ahead if run["beyond"] == run["right"] else min(ahead, run["beyond"])
+        ) >= LOWEST_LEVEL
     if quantity.startswith("pulse"):
         return run["pulse_state"] == "steady"
     if run["boundary"] == "displacement":
@@ -49,7 +55,9 @@ def covers(run: Mapping, quantity: str, fraction: float) -> bool:
     )
 
 
-def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction: float) -> pd.DataFrame:
+def judged(
+    study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction: float
+) -> pd.DataFrame:
     """A grid study with two more columns: `promised` (NaN where nothing is) and `kept` ("true", "false" or "").
 
     study : as `grid_tables` has it
@@ -59,7 +67,9 @@ def judged(study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction
 
     A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept its promise.
     """
-    rows = measured.assign(run_flags=measured["run_flags"].astype(object).fillna("")).to_dict("records")
+    rows = measured.assign(run_flags=measured["run_flags"].astype(object).fillna("")).to_dict(
+        "records"
+    )
     covered = [
         math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction)
         for row in study.itertuples()
@@ -82,6 +92,8 @@ def summary(study: pd.DataFrame, promise: float) -> str:
         f"{point} ({missed.loc[of.idxmax(), 'quantity']} {of.max():.1e})"
         for point, of in relative.groupby(missed["point"])
     ]
-    text += f"; missed by {', '.join(worst[:5])}" + (" ..." if len(worst) > 5 else "") if worst else ""
+    text += (
+        f"; missed by {', '.join(worst[:5])}" + (" ..." if len(worst) > 5 else "") if worst else ""
+    )
     rest = study["point"].nunique() - runs
     return text + (f"; {rest} have no number that it covers" if rest else "")

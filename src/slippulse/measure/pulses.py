@@ -15,7 +15,9 @@ class LeadingPulse(NamedTuple):
 
     front: float  # distance from x = 0, between blocks
     speed: float  # of the front
-    width: float  # distance from the front to where blocks stick; NaN when nothing has stuck behind it
+    width: (
+        float  # distance from the front to where blocks stick; NaN when nothing has stuck behind it
+    )
     peak_velocity: float  # largest slip velocity, from a parabola through three blocks
     peak_distance: float
     slip: float  # of the blocks that stuck last, halfway between the trailing edge and the nucleation at the nearest

@@ -50,7 +50,9 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     speeds = {}
     for side in ("left", "right"):
         covered = position_at(run, window, side)
-        speeds[side] = float(np.diff(covered)[0] / np.diff(window)[0]) if np.isfinite(covered).all() else 0.0
+        speeds[side] = (
+            float(np.diff(covered)[0] / np.diff(window)[0]) if np.isfinite(covered).all() else 0.0
+        )
     keeps_up = {side: speed >= 1.0 - steady_tolerance for side, speed in speeds.items()}
     slides = {
         side: bool(np.max(now[sign * x > 0.0], initial=0.0) >= still * largest_now)

@@ -43,7 +43,11 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
         row |= zip(names, front_speed(run, settings["front_window"], side), strict=True)
     if run.attrs["boundary"] == "displacement" and run.attrs["left"] == run.attrs["right"] > 0.0:
         row |= transition_displacement(run)
-    if run.attrs["boundary"] == "stress" and run.attrs["left"] < 0.0 == run.attrs["right"] and not steps:
+    if (
+        run.attrs["boundary"] == "stress"
+        and run.attrs["left"] < 0.0 == run.attrs["right"]
+        and not steps
+    ):
         row |= transition_stress(run, settings["share"])
     row["first_stick_time"] = run.attrs["first_stick_time"]
     times = settings["trailing_times"]
@@ -131,7 +135,9 @@ def far_field(run: AnyRun) -> dict[str, float]:
     if np.count_nonzero(far) < 8 or not np.max(velocity[early][far], initial=0.0) > 0.0:
         return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
     strain = np.gradient(slip[:, far], x[far], axis=1)
-    energies = [np.trapezoid(0.5 * (velocity[i][far] ** 2 + strain[i] ** 2), x[far]) for i in (early, -1)]
+    energies = [
+        np.trapezoid(0.5 * (velocity[i][far] ** 2 + strain[i] ** 2), x[far]) for i in (early, -1)
+    ]
     inside = far & (x + moved <= x[-1])
     later = np.interp(x[inside] + moved, x, velocity[-1])
     entered = x[far] <= start + run.attrs["width"]

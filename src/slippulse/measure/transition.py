@@ -31,7 +31,11 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
 
 def between_fronts(run: AnyRun, time: float) -> float:
     """Distance between both fronts at a time; NaN for NaN."""
-    return float(position_at(run, time, "right") + position_at(run, time, "left")) if time == time else NAN
+    return (
+        float(position_at(run, time, "right") + position_at(run, time, "left"))
+        if time == time
+        else NAN
+    )
 
 
 def slip_time(run: AnyRun, slip: float) -> float:

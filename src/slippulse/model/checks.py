@@ -21,7 +21,9 @@ def check_number(
     below: float | None = None, whole: bool = False,
 ) -> None:  # fmt: skip
     """Refuse anything but a finite number in the stated range, or a whole one."""
-    number = type(value) is float or (isinstance(value, Real) and not isinstance(value, (bool, np.bool_)))
+    number = type(value) is float or (
+        isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
+    )
     if (
         number
         and (not whole or isinstance(value, Integral))
@@ -42,7 +44,11 @@ def check_number(
 def check_runaway(gamma: float, alpha: float) -> None:
     """Refuse alpha < 0 by which uniform slip, d2u/dt2 = tau - gamma u - alpha du/dt, never slows down again."""
     if alpha < 0.0 and alpha * alpha >= 4.0 * gamma:
-        least = f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}" if gamma else ">= 0 without leaf springs"
+        least = (
+            f"> -2 sqrt(gamma) = {-2.0 * math.sqrt(gamma):.6g}"
+            if gamma
+            else ">= 0 without leaf springs"
+        )
         raise ValueError(f"rate_strengthening: {alpha!r}; allowed: {least}, or slip runs away")
 
 

@@ -51,7 +51,10 @@ class Prestress:
         check_number("prestress.width", self.width, above=0.0)
         for name in ("left", "right", "width", "peak"):
             object.__setattr__(self, name, float(getattr(self, name)))
-        for name, parts in (("steps", ("position", "level")), ("bumps", ("centre", "amplitude", "width"))):
+        for name, parts in (
+            ("steps", ("position", "level")),
+            ("bumps", ("centre", "amplitude", "width")),
+        ):
             object.__setattr__(self, name, _tuples(f"prestress.{name}", getattr(self, name), parts))
         for position, level in self.steps:
             check_number("prestress.steps level", level, below=1.0)
@@ -60,8 +63,12 @@ class Prestress:
                     "prestress.steps: position is 0.0; allowed: any other number (see left, right)"
                 )
         positions = [position for position, _ in self.steps]
-        if twice := next((position for position in positions if positions.count(position) > 1), None):
-            raise ValueError(f"prestress.steps: position {twice} twice; allowed: different positions")
+        if twice := next(
+            (position for position in positions if positions.count(position) > 1), None
+        ):
+            raise ValueError(
+                f"prestress.steps: position {twice} twice; allowed: different positions"
+            )
         for *_, width in self.bumps:
             check_number("prestress.bumps width", width, above=0.0)
 
@@ -69,7 +76,9 @@ class Prestress:
     def symmetric(self) -> bool:
         """Whether tau(-x) = tau(x), so that half the lattice is enough."""
         parts = {*self.steps, *self.bumps}
-        return self.left == self.right and parts == {(-position, *rest) for position, *rest in parts}
+        return self.left == self.right and parts == {
+            (-position, *rest) for position, *rest in parts
+        }
 
     def level(self, x: np.ndarray | float) -> np.ndarray:
         """Side level at positions x, steps included, the Gaussian and the bumps not."""
@@ -86,7 +95,8 @@ class Prestress:
         inside = [jumps[0] - 1.0, *(0.5 * (a + b) for a, b in pairwise(jumps)), jumps[-1] + 1.0]
         ends = pairwise([-math.inf, *jumps, math.inf])
         return [
-            (*pair, level) for pair, level in zip(ends, self.level(np.array(inside)).tolist(), strict=True)
+            (*pair, level)
+            for pair, level in zip(ends, self.level(np.array(inside)).tolist(), strict=True)
         ]
 
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
@@ -96,10 +106,16 @@ class Prestress:
         tau = self.peak + (self.level(x) - self.peak) * -np.expm1(-0.5 * (x / self.width) ** 2)
         # Bumps at equal distances first to each other, so that a mirrored profile is mirrored to the last bit.
         parts = [(abs(c), a, w, a * np.exp(-0.5 * ((x - c) / w) ** 2)) for c, a, w in self.bumps]
-        for _, group in groupby(sorted(parts, key=lambda part: part[:3]), key=lambda part: part[:3]):
+        for _, group in groupby(
+            sorted(parts, key=lambda part: part[:3]), key=lambda part: part[:3]
+        ):
             tau = tau + sum(values for *_, values in group)
         # The far tail of a bump leaves the peak within rounding of the threshold, which it is meant to meet.
-        return np.where(np.abs(tau - 1.0) <= 4.0 * sys.float_info.epsilon, 1.0, tau) if self.bumps else tau
+        return (
+            np.where(np.abs(tau - 1.0) <= 4.0 * sys.float_info.epsilon, 1.0, tau)
+            if self.bumps
+            else tau
+        )
 
     def integral(self, lower: float, upper: float) -> float:
         """Integral of tau from ``lower`` to ``upper``, in closed form between the steps.
@@ -113,7 +129,9 @@ class Prestress:
         for left, right, level in self.intervals:
             a, b = max(left, low), min(right, high)
             if a < b:
-                total += level * (b - a) + (self.peak - level) * _gaussian_area(a, b, 0.0, self.width)
+                total += level * (b - a) + (self.peak - level) * _gaussian_area(
+                    a, b, 0.0, self.width
+                )
         for centre, amplitude, width in self.bumps:
             total += amplitude * _gaussian_area(low, high, centre, width)
         return total if upper >= lower else -total
@@ -153,9 +171,13 @@ def _balance_position(prestress: Prestress) -> float:
     far = max([40.0 * prestress.width, *(abs(x) + width for x, width in reaches)])
     right, left = float(prestress.level(np.asarray(far))), float(prestress.level(np.asarray(-far)))
     if right != 0.0:
-        raise ValueError(f"prestress.right: {right!r}; allowed: 0, or the balance integral is not finite")
+        raise ValueError(
+            f"prestress.right: {right!r}; allowed: 0, or the balance integral is not finite"
+        )
     if left >= 0.0:
-        raise ValueError(f"prestress.left: {left!r}; allowed: < 0, or the pre-stress is never balanced")
+        raise ValueError(
+            f"prestress.left: {left!r}; allowed: < 0, or the pre-stress is never balanced"
+        )
     lower, upper = -far, 0.0
     while prestress.integral(lower, far) > 0.0:
         lower *= 2.0
@@ -185,7 +207,11 @@ def _tuples(key: str, rows: Any, names: tuple[str, ...]) -> tuple[tuple[float, .
         raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     out = []
     for row in rows:
-        if not hasattr(row, "__len__") or len(row) != len(names) or not all(isinstance(v, Real) for v in row):
+        if (
+            not hasattr(row, "__len__")
+            or len(row) != len(names)
+            or not all(isinstance(v, Real) for v in row)
+        ):
             raise ValueError(f"{key}: {short_repr(row)}; allowed: {allowed}, numbers")
         for name, value in zip(names, row, strict=True):
             check_number(f"{key} {name}", value)

@@ -4,7 +4,11 @@ from collections.abc import Callable
 
 
 def root_between(
-    function: Callable[[float], float], lower: float, upper: float, xtol: float = 2e-12, rtol: float = 1e-15
+    function: Callable[[float], float],
+    lower: float,
+    upper: float,
+    xtol: float = 2e-12,
+    rtol: float = 1e-15,
 ) -> float:
     """Root of a continuous function whose signs differ between two floats, to xtol + rtol |root|; else ValueError."""
     # Slow to load.

@@ -26,7 +26,9 @@ class Samples:
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
-            raise ValueError("samples.times: not increasing or negative; allowed: increasing times >= 0")
+            raise ValueError(
+                "samples.times: not increasing or negative; allowed: increasing times >= 0"
+            )
 
     def check_within(self, duration: float) -> None:
         """Refuse samples after the end of a run."""

@@ -104,13 +104,17 @@ class Scene:
         check_number("rate_strengthening", self.rate_strengthening)
         check_runaway(float(self.gamma), float(self.rate_strengthening))
         for centre, _, width in self.prestress.bumps:
-            check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=FARTHEST_BUMP * self.dx)
+            check_number(
+                "prestress.bumps reach", abs(centre) + 4.0 * width, at_most=FARTHEST_BUMP * self.dx
+            )
         if self.prestress.width < self.dx:
             raise ValueError(
                 f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
             )
         stiffness = float(self.gamma) * float(self.dx) ** 2
-        bound = self._stable_step(self.max_step / MARGIN if isinstance(self.max_step, float) else math.inf)
+        bound = self._stable_step(
+            self.max_step / MARGIN if isinstance(self.max_step, float) else math.inf
+        )
         at = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
@@ -119,7 +123,15 @@ class Scene:
         if self.scheme != "continuum":
             check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
         # Single-precision or integer parameters would be computed with as such, and compiled for.
-        for name in ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio", "rate_strengthening"):
+        for name in (
+            "duration",
+            "dx",
+            "gamma",
+            "beta",
+            "max_step",
+            "friction_ratio",
+            "rate_strengthening",
+        ):
             object.__setattr__(self, name, float(getattr(self, name)))
         if self.max_step > bound:
             drag = f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
@@ -172,17 +184,25 @@ class Scene:
         Raises ValueError: if a parameter is missing or is none that `attributes` writes.
         """
         if not hasattr(attributes, "keys"):
-            raise ValueError(f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values")
+            raise ValueError(
+                f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values"
+            )
         try:
             for name, kind in KINDS.items():
                 most = 1 if kind is bool else None
                 check_number(name, attributes[name], whole=True, at_least=0, at_most=most)
             # Data files of the paper's model need not name the rate strengthening.
-            given = {"rate_strengthening": 0.0, **attributes, "prestress": prestress_from(attributes)}
+            given = {
+                "rate_strengthening": 0.0,
+                **attributes,
+                "prestress": prestress_from(attributes),
+            }
             given |= {name: kind(given[name]) for name, kind in KINDS.items()}
             return cls(**{name: given[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
-            raise ValueError(f"{error.args[0]}: missing; allowed: every attribute of a run") from None
+            raise ValueError(
+                f"{error.args[0]}: missing; allowed: every attribute of a run"
+            ) from None
 
 
 def scene_of(run: Any) -> Scene:

@@ -48,7 +48,9 @@ def largest_step(
 
 @lru_cache(maxsize=4096)
 @np.errstate(over="ignore", invalid="ignore")
-def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float, enough: float) -> float:
+def _taylor_bound(
+    order: int, damping_ratio: float, gamma_dx2: float, drag: float, enough: float
+) -> float:
     modes = np.linspace(0.0, 4.0, 101)
     stiffness, damping = modes + gamma_dx2, damping_ratio * modes + drag
     # Time derivatives of slip of each mode, each a combination of slip and velocity at the start.
@@ -85,7 +87,9 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
 def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
     """Amplification of each mode by each step, shape (steps, modes)."""
     degrees = np.arange(len(derivatives))
-    powers = np.asarray(steps, dtype=float)[:, None] ** degrees / [math.factorial(k) for k in degrees]
+    powers = np.asarray(steps, dtype=float)[:, None] ** degrees / [
+        math.factorial(k) for k in degrees
+    ]
     slip = np.tensordot(powers, derivatives, 1)
     velocity = np.tensordot(powers[:, :-1], derivatives[1:], 1)
     half_trace = 0.5 * (slip[:, 0] + velocity[:, 1])

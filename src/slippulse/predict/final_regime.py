@@ -24,7 +24,9 @@ def _regime(scene: Scene, still: float) -> str:
         formed = scene.boundary == "stress" and profile.left < 0.0 == profile.right
         ahead = all(position > 0.0 for position, _ in profile.steps)
         return growth_beyond(level(scene, "right")) if formed and ahead else UNDECIDED
-    return final_regime(profile.left, profile.right, scene.gamma, ratio(scene), scene.release, still)
+    return final_regime(
+        profile.left, profile.right, scene.gamma, ratio(scene), scene.release, still
+    )
 
 
 def final_regime(

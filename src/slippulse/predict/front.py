@@ -24,7 +24,11 @@ def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
         paper[outruns] = front_speed_undamped(levels[outruns])
         for i, scene in enumerate(scenes):
             damping = ratio(scene)
-            if outruns[i] and scene.gamma > 0.0 and (damping == 0.0 or scene.gamma * scene.dx**2 >= COARSE):
+            if (
+                outruns[i]
+                and scene.gamma > 0.0
+                and (damping == 0.0 or scene.gamma * scene.dx**2 >= COARSE)
+            ):
                 lattice[i] = _with_springs(levels[i], scene.gamma, scene.dx, damping, scene.release)
         kinds = {"paper": paper, "exact": exact_speeds(scenes, side), "lattice": lattice}
         out |= {f"{kind}_front_speed_{side}": speeds for kind, speeds in kinds.items()}

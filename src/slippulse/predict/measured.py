@@ -76,7 +76,11 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
     lattice rounds its corner.
     """
     tau = run.attrs["right"]
-    if run.attrs["boundary"] != "displacement" or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
+    if (
+        run.attrs["boundary"] != "displacement"
+        or not np.isfinite(pulse.width)
+        or not 0.0 < tau < 1.0
+    ):
         return float("nan")
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)

@@ -26,7 +26,9 @@ def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
             row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
         if not profile.steps and not profile.bumps and profile.peak == 1.0:
             if held and profile.left == profile.right > 0.0:
-                row |= _first_stick(profile.left, profile.width, scene.gamma, ratio(scene), scene.release)
+                row |= _first_stick(
+                    profile.left, profile.width, scene.gamma, ratio(scene), scene.release
+                )
             elif not held and profile.left < 0.0 == profile.right:
                 unit = _arrest(profile.left, ratio(scene), scene.release, settings["share"])
                 # All lengths and times go with the width.
@@ -36,7 +38,9 @@ def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
 
 
 @cache
-def _first_stick(level: float, width: float, gamma: float, ratio: float, release: str) -> dict[str, float]:
+def _first_stick(
+    level: float, width: float, gamma: float, ratio: float, release: str
+) -> dict[str, float]:
     profile = Prestress(level, level, width)
     # None with more panels than theory allows, or more damping.
     if exact := known(lambda: exact_transition_displacement(profile, gamma, ratio, release)):

@@ -25,7 +25,9 @@ Rows = Sequence[Mapping]
 FEW = 6
 
 
-def claims_page(claims: Rows, altered: Rows = (), findings: Rows = (), tables: Iterable[str] = ()) -> str:
+def claims_page(
+    claims: Rows, altered: Rows = (), findings: Rows = (), tables: Iterable[str] = ()
+) -> str:
     """The ledger and the findings, as in their JSON, with links to tables, files from the folder of the page on."""
     return page(
         "claims.html",
@@ -42,7 +44,9 @@ def claims_page(claims: Rows, altered: Rows = (), findings: Rows = (), tables: I
 def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
     """What templates that show claims ask for; `html` has the HTML of each of their texts, and of others."""
     asked = [(claim.statement, claim.why, reading.evidence_text(claim)) for claim in ledger]
-    by_verdict = {name: [claim for claim in ledger if claim.verdict == name] for name in WORST_FIRST}
+    by_verdict = {
+        name: [claim for claim in ledger if claim.verdict == name] for name in WORST_FIRST
+    }
     return {
         "html": markup_of([*texts, *chain.from_iterable(asked)]),
         "summary": ledger.summary(),
@@ -61,7 +65,9 @@ def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str
         found.setdefault(path.stem, {})[KINDS.get(path.parts[0], path.parts[0])] = path.as_posix()
     if source.startswith("every simulation"):
         return found
-    return {name: found[name] for name in dict.fromkeys(re.findall(r"\w+", source)) if name in found}
+    return {
+        name: found[name] for name in dict.fromkeys(re.findall(r"\w+", source)) if name in found
+    }
 
 
 def command(behind: Mapping[str, Mapping[str, str]]) -> str:

@@ -68,7 +68,9 @@ def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> N
     if not one[SAME].equals(two[SAME]):
         found.other.append(f"{name}: other runs")
         return
-    found.other += [f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})]
+    found.other += [
+        f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})
+    ]
     studies = [tree / "uncertainties" / name for tree in trees]
     if len({path.exists() for path in studies}) > 1:
         found.other.append(f"{name}: uncertainties in one tree only")
@@ -116,7 +118,9 @@ def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
         return values * np.nan
     table = _table(path, ["point", "quantity", "value", "uncertainty"])
     with _readable(path):
-        study = table.pivot(index="point", columns="quantity", values=["value", "uncertainty"]).astype(float)
+        study = table.pivot(
+            index="point", columns="quantity", values=["value", "uncertainty"]
+        ).astype(float)
         studied, found = (study[part].reindex_like(values) for part in ("value", "uncertainty"))
     return found.mask((values - studied).abs() > DIGITS * values.abs())
 

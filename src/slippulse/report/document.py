@@ -30,7 +30,13 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
-        options = ["--to=html5", "--mathml", "--default-image-extension=png", "--toc", "--toc-depth=2"]
+        options = [
+            "--to=html5",
+            "--mathml",
+            "--default-image-extension=png",
+            "--toc",
+            "--toc-depth=2",
+        ]
         html = as_page(_pandoc(text, manuscript, template, options))
     write_text(html, output)
 
@@ -73,7 +79,9 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
         return f"{image[0]}, alt: {json.dumps(shows[Path(image[1]).stem], ensure_ascii=False)}"
 
     source = re.sub(r'image\("([^"]+)"', with_alternative, source)
-    compiled = partial(typst.compile, ignore_system_fonts=True, font_paths=[FONTS], timestamp=TIMESTAMP)
+    compiled = partial(
+        typst.compile, ignore_system_fonts=True, font_paths=[FONTS], timestamp=TIMESTAMP
+    )
     try:
         pdf: bytes | None = compiled(source.encode(), root=Path("/"), format="pdf")
     except typst.TypstError as error:

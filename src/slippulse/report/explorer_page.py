@@ -44,7 +44,9 @@ def front_law(law: pd.DataFrame) -> dict:
     out: dict = {"ratio": {"scale": scale, "step": float(ratios[-1]) / (len(ratios) - 1)}}
     out["excess"] = {"first": first, "step": (last - first) / (len(excesses) - 1)}
     for release, rows in law.groupby("release", sort=False):
-        out[release] = rows.pivot(index="damping_ratio", columns="excess_log", values="logit").values.tolist()
+        out[release] = rows.pivot(
+            index="damping_ratio", columns="excess_log", values="logit"
+        ).values.tolist()
     return out
 
 
@@ -58,7 +60,11 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan
-        settings = [run[name] for name in ("left", "gamma", "width", "beta", "damping_ratio", "release")]
+        settings = [
+            run[name] for name in ("left", "gamma", "width", "beta", "damping_ratio", "release")
+        ]
         numbers = [run.get(name, math.nan) for name in MEASURED]
-        kept.append(settings + [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in numbers])
+        kept.append(
+            settings + [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in numbers]
+        )
     return kept

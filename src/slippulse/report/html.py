@@ -27,7 +27,9 @@ def page(template: str, **data: object) -> str:
 def pandoc(text: str, options: Sequence[str]) -> str:
     """The text as pandoc converts it; a ValueError has its message if it refuses the text or warns of it."""
     command = [pypandoc.get_pandoc_path(), "--fail-if-warnings", *options]
-    done = subprocess.run(command, input=text, capture_output=True, text=True, encoding="utf-8", check=False)
+    done = subprocess.run(
+        command, input=text, capture_output=True, text=True, encoding="utf-8", check=False
+    )
     if done.returncode != 0:
         raise ValueError(f"pandoc: {done.stderr.strip()}")
     return done.stdout
@@ -40,7 +42,12 @@ def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
         return {"": Markup()}
     # All by one call of pandoc.
     whole = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
-    options = ["--from=markdown-raw_html-smart-fancy_lists", "--to=html5", "--mathml", "--wrap=none"]
+    options = [
+        "--from=markdown-raw_html-smart-fancy_lists",
+        "--to=html5",
+        "--mathml",
+        "--wrap=none",
+    ]
     parts = [part.strip() for part in pandoc(whole, options).split("<hr />")]
     paragraphs = [part[3:-4] for part in parts if part.startswith("<p>") and part.endswith("</p>")]
     if not len(texts) == len(parts) == len(paragraphs):

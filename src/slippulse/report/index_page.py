@@ -37,20 +37,28 @@ SCALE = 0.4
 WIDE = 600
 
 
-def index_page(results: str | Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]) -> str:
+def index_page(
+    results: str | Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]
+) -> str:
     """The page, by files of texts, figures by heading and titles of scenes; what is not there gets no link."""
     results = Path(results)
     made = (results / f"{name}.json" for name in ("claims", "findings", "provenance"))
     claims, findings, facts = (json.loads(path.read_text(encoding="utf-8")) for path in made)
     ledger, config = Ledger(claims, findings), facts["config"]
-    names = {"claim": ledger, "found": ledger.found, "config": config, "runs": partial(parameters, config)}
+    names = {
+        "claim": ledger,
+        "found": ledger.found,
+        "config": config,
+        "runs": partial(parameters, config),
+    }
     filled = partial(fill, names=names)
     captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
     lines = judged_lines(summary, ledger, filled)
     found, accuracy = answer(lines), filled(summary["accuracy"])
     figures = {
         # A user-defined sweep has no caption but its name.
-        name: captions.get(name) or captions["own_sweep"]._replace(title=name.removeprefix("sweep_"))
+        name: captions.get(name)
+        or captions["own_sweep"]._replace(title=name.removeprefix("sweep_"))
         for name in chain.from_iterable(galleries.values())
     }
     written = [text for line in lines for text in (line.topic, line.text)]
@@ -77,7 +85,10 @@ def index_page(results: str | Path, texts: Mapping, galleries: Mapping, scenes: 
         first=there(FIRST),
         others=there(OTHERS),
         galleries=galleries,
-        scenes={name: (title, (results / f"scenes/{name}.html").exists()) for name, title in scenes.items()},
+        scenes={
+            name: (title, (results / f"scenes/{name}.html").exists())
+            for name, title in scenes.items()
+        },
         facts=facts,
         **shown(ledger, [*written, found, accuracy]),
     )

@@ -56,13 +56,17 @@ class Gallery:
     ) -> None:
         self.captions, self.folder, self.here = captions, folder, here
         named = {document: NAMED.findall(text) for document, text in texts.items()}
-        self.unnamed = [name for name in included if not any(name in names for names in named.values())]
+        self.unnamed = [
+            name for name in included if not any(name in names for names in named.values())
+        ]
         named[[*texts][-1]] += self.unnamed
         # Of each figure the document and the number.
         self.places: dict[str, tuple[str, str]] = {}
         for letter, (document, names) in zip(["", *"S" * len(named)], named.items(), strict=False):
             there = [name for name in names if name in included]
-            self.places |= {name: (document, f"{letter}{i}") for i, name in enumerate(there, start=1)}
+            self.places |= {
+                name: (document, f"{letter}{i}") for i, name in enumerate(there, start=1)
+            }
 
     def figure(self, name: str) -> str:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
@@ -155,6 +159,8 @@ def execute(source: str | Path, inputs: Inputs) -> str:
                 shown.append(fill(cell.source, names))
         except Exception as error:
             start, reason = cell.source.strip().splitlines()[0][:70], " ".join(str(error).split())
-            raise ValueError(f"{source.name}: {type(error).__name__}: {reason} (cell {start!r})") from error
+            raise ValueError(
+                f"{source.name}: {type(error).__name__}: {reason} (cell {start!r})"
+            ) from error
     # No line ends between a number and its per cent sign.
     return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(filter(None, shown))) + "\n"

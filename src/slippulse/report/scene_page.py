@@ -19,14 +19,21 @@ SHOWN = (
 NONE = "\N{EN DASH}"
 
 
-def scene_page(name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping) -> str:
+def scene_page(
+    name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping
+) -> str:
     """A page that stands alone, with its figure; ``attributes``: of the data, with the state of the leading pulse."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         # In words, what its pre-stress has beside the Gaussian and its levels.
-        profile, bump = prestress_from(attributes), "bump of {1:s} and width {2:s} at x = {0:s}".format
+        profile, bump = (
+            prestress_from(attributes),
+            "bump of {1:s} and width {2:s} at x = {0:s}".format,
+        )
         parts = [f"step to {setting(level)} at x = {setting(at)}" for at, level in profile.steps]
-        shown["steps_and_bumps"] = "; ".join([*parts, *(bump(*map(setting, each)) for each in profile.bumps)])
+        shown["steps_and_bumps"] = "; ".join(
+            [*parts, *(bump(*map(setting, each)) for each in profile.bumps)]
+        )
     return page(
         "scene.html",
         name=name,
@@ -53,5 +60,7 @@ def _number(row) -> dict[str, str]:
         if math.isfinite(difference):
             found["difference"] = f"{'+' * (difference > 0.0)}{rounded(100.0 * difference, 2)} %"
     if math.isfinite(getattr(row, "promised", math.nan)):
-        found["promise"] = f"{row.promised:g}, {'kept' if str(row.kept).lower() == 'true' else 'missed'}"
+        found["promise"] = (
+            f"{row.promised:g}, {'kept' if str(row.kept).lower() == 'true' else 'missed'}"
+        )
     return found

@@ -51,7 +51,9 @@ def table(head: str, rows: Iterable[Sequence[object]]) -> str:
     dashes = [(form[0], "-" * max(3, round(FULL * int(form[1:]) / total))) for *_, form in columns]
     marks = [f":{dash}" if side == "l" else f"{dash}:" for side, dash in dashes]
     lines = [[title for title, *_ in columns], marks, *rows]
-    return "\n".join("| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines)
+    return "\n".join(
+        "| " + " | ".join(" ".join(str(cell).split()) for cell in line) + " |" for line in lines
+    )
 
 
 def plain(text: str) -> str:
@@ -84,7 +86,9 @@ def whole_ledger(ledger: Ledger) -> str:
     texts, rows = (reading.predicted_text, reading.measured_text, reading.compared_text), []
     for claim in ledger:
         what = f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`"
-        rows.append((what, *(text(claim) for text in texts), claim.verdict, reading.evidence_text(claim)))
+        rows.append(
+            (what, *(text(claim) for text in texts), claim.verdict, reading.evidence_text(claim))
+        )
     head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
     return table(f"{head} | verdict l9 | rests on l29", rows)
 
@@ -94,7 +98,9 @@ def tolerances(ledger: Ledger) -> str:
     groups: dict[tuple[str, ...], list[str]] = {}
     for claim in ledger:
         exponent = getattr(claim, "tolerance_exponent", None)
-        tolerance = setting(claim.tolerance) + (f"; exponent {setting(exponent)}" if exponent else "")
+        tolerance = setting(claim.tolerance) + (
+            f"; exponent {setting(exponent)}" if exponent else ""
+        )
         groups.setdefault((claim.kind, tolerance, plain(claim.reason)), []).append(claim.id)
     rows = [(*key, code(ids)) for key, ids in groups.items()]
     return table("kind l11 | tolerance r11 | reason l42 | claims l36", rows)
@@ -120,7 +126,9 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
 def found_list(ledger: Ledger) -> str:
     """Every finding, as a list."""
-    return "\n".join(f"- {' '.join(finding['text'].split())}" for finding in ledger.findings.values())
+    return "\n".join(
+        f"- {' '.join(finding['text'].split())}" for finding in ledger.findings.values()
+    )
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
@@ -135,7 +143,9 @@ def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping
     for sentence in sentences:
         if claims := claims_of(entries, sentence):
             # For a narrow column: paragraph and sentence as numbers.
-            position = re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", sentence["place"])
+            position = re.sub(
+                r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", sentence["place"]
+            )
             rows.append((position, sentence["paraphrase"], code(claims)))
     return table("section l22 | what it says l45 | claims l33", rows)
 
@@ -152,9 +162,14 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
     for simulation, quantity, name in QUANTITIES:
         found = tables[f"uncertainties/{simulation}"]
         found = found[found["quantity"] == quantity]
-        relative, orders = (found["uncertainty"] / found["value"].abs()).dropna(), found["observed_order"]
+        relative, orders = (
+            (found["uncertainty"] / found["value"].abs()).dropna(),
+            found["observed_order"],
+        )
         order = number(orders.median(), 2) if len(relative) and orders.notna().any() else DASH
-        off = [percent(size) if len(relative) else DASH for size in (relative.median(), relative.max())]
+        off = [
+            percent(size) if len(relative) else DASH for size in (relative.median(), relative.max())
+        ]
         rows.append((name, len(relative) or len(found), order, *off))
     return table("quantity l40 | runs r10 | order r12 | median uncertainty r20 | largest r18", rows)
 
@@ -179,9 +194,13 @@ def edges(study: pd.DataFrame) -> str:
         # Behind a flag its name, which is the first word of the message.
         if outcome == "flagged":
             outcome += ": " + str(row["message"]).partition(",")[0].replace("_", " ")
-        numbers = ("" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance"))
+        numbers = (
+            "" if pd.isna(row[name]) else number(row[name], 2) for name in ("error", "tolerance")
+        )
         rows.append((row["family"], plain(row["value"]), plain(row["quantity"]), *numbers, outcome))
-    return table("edge l16 | value l28 | compared l18 | error r12 | tolerance r12 | outcome l24", rows)
+    return table(
+        "edge l16 | value l28 | compared l18 | error r12 | tolerance r12 | outcome l24", rows
+    )
 
 
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
@@ -191,11 +210,15 @@ def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mappin
         return "absent" if value is None else "`" + short(value).replace("`", "'") + "`"
 
     pair, lines = "`{}`: {} (shipped: {})".format, []
-    keys = "; ".join(pair(each["key"], literal(each["here"]), literal(each["shipped"])) for each in altered)
+    keys = "; ".join(
+        pair(each["key"], literal(each["here"]), literal(each["shipped"])) for each in altered
+    )
     judged = [(claim.id, claim.verdict, verdicts.get(claim.id, "absent")) for claim in ledger]
     others = "; ".join(pair(*each) for each in judged if each[1] != each[2])
     if keys:
-        lines = [f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."]
+        lines = [
+            f"> **Altered configuration.** This run differs from the shipped configuration in {keys}."
+        ]
     if others:
         lines.append(f"> **Verdicts that differ from the shipped report:** {others}.")
     elif keys:

@@ -115,7 +115,8 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
         return min(map(ledger, claims), key=lambda claim: WORST_FIRST.index(claim.verdict))
 
     return [
-        Line(it["topic"], it["named"], fill(it["text"]), worst(it["claims"])) for it in summary["verdict"]
+        Line(it["topic"], it["named"], fill(it["text"]), worst(it["claims"]))
+        for it in summary["verdict"]
     ]
 
 

@@ -56,7 +56,9 @@ def run_all(
     with ThreadPoolExecutor(max_workers=threads) as pool:
         try:
             futures = [] if alone else [pool.submit(run, i) for i in order]
-            finished = map(run, order) if alone else (future.result() for future in as_completed(futures))
+            finished = (
+                map(run, order) if alone else (future.result() for future in as_completed(futures))
+            )
             for done, _ in enumerate(finished, start=1):
                 if progress is not None:
                     progress(done, len(scenes))
@@ -77,7 +79,9 @@ def recorded(scene: Scene, samples: Samples | None, run: LatticeRun) -> Recorded
     arrays = {name: values for name, values in vars(run).items() if isinstance(values, np.ndarray)}
     if samples is not None:
         arrays |= {"sample_time": samples.times, "sample_position": samples.positions}
-    return Recorded(arrays, scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()})
+    return Recorded(
+        arrays, scene.attributes() | run.numbers | judge(scene, run) | {"versions": versions()}
+    )
 
 
 def judge(scene: Scene, run: LatticeRun) -> dict:

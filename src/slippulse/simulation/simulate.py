@@ -45,7 +45,9 @@ def simulate(
     _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
     _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
     known = isinstance(progress, bool | None) or callable(progress)
-    _require(known, "progress", progress, "a function of the fraction done, True, or None", TypeError)
+    _require(
+        known, "progress", progress, "a function of the fraction done, True, or None", TypeError
+    )
     _require(isinstance(strict, bool), "strict", strict, "true or false", TypeError)
     if samples is not None:
         samples.check_within(scene.duration)
@@ -87,15 +89,26 @@ def run_sweep(
 
     Raises ValueError: naming the argument and what is allowed.
     """
-    listed = isinstance(scenes, Sequence) and scenes and all(isinstance(scene, Scene) for scene in scenes)
+    listed = (
+        isinstance(scenes, Sequence)
+        and scenes
+        and all(isinstance(scene, Scene) for scene in scenes)
+    )
     _require(bool(listed), "scenes", scenes, "a list of Scenes, at least one")
     schemes = sorted({scene.scheme for scene in scenes})
     alike = schemes[0] != "continuum" or len(schemes) == 1
     _require(alike, "scheme", schemes, "'continuum' for all, or for none")
     samples = [None] * len(scenes) if samples is None else samples
-    listed = isinstance(samples, Sequence) and all(isinstance(each, Samples | None) for each in samples)
+    listed = isinstance(samples, Sequence) and all(
+        isinstance(each, Samples | None) for each in samples
+    )
     one_each = listed and len(samples) == len(scenes)
-    _require(one_each, "samples", samples, f"a list of Samples, {len(scenes)} for as many scenes, or None")
+    _require(
+        one_each,
+        "samples",
+        samples,
+        f"a list of Samples, {len(scenes)} for as many scenes, or None",
+    )
     for scene, of_scene in zip(scenes, samples, strict=True):
         if of_scene is not None:
             of_scene.check_within(scene.duration)
@@ -103,7 +116,9 @@ def run_sweep(
     known = bool(words) and all(isinstance(word, str) and word in RECORDS for word in words)
     _require(known, "record", record, f"a list of {', '.join(RECORDS)}")
     if "samples" in words:
-        shapes = {of_scene and (of_scene.times.shape, of_scene.positions.shape) for of_scene in samples}
+        shapes = {
+            of_scene and (of_scene.times.shape, of_scene.positions.shape) for of_scene in samples
+        }
         if None in shapes:
             raise ValueError(
                 "record: 'samples' without samples; allowed: Samples for each scene, the second argument"
@@ -132,7 +147,9 @@ def bar(stream=None) -> Callable[[float], None]:
     return draw
 
 
-def _run(scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None) -> LatticeRun:
+def _run(
+    scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None
+) -> LatticeRun:
     solve = solve_scene if scene.scheme == "continuum" else run_by_scheme
     return solve(scene, samples, progress)
 

@@ -25,8 +25,12 @@ DONE, CONTINUE, GROW, UNSTABLE, ALL_STUCK = 0, 1, 2, 3, 4
 # again by its address, and would find the type of a copy anew in each call.
 # pending_step: the step whose viscous loss still lacks the part of the dissipation at its end.
 _FLOATS = "time first_stick_time pending_step viscous_loss stick_loss min_velocity min_stuck_stress"
-_COUNTS = "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
-_FIELDS = [(name, np.float64) for name in _FLOATS.split()] + [(name, np.int64) for name in _COUNTS.split()]
+_COUNTS = (
+    "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
+)
+_FIELDS = [(name, np.float64) for name in _FLOATS.split()] + [
+    (name, np.int64) for name in _COUNTS.split()
+]
 TALLY = np.dtype((np.record, _FIELDS))
 COUNT = np.dtype((np.record, [("n", np.int64)]))
 # Sums over the events of a step of k, k s and k s^2: the event at time s changes dD/dt, D the dissipation, by k.
@@ -81,7 +85,9 @@ class Event(NamedTuple):
 class Forecast(NamedTuple):
     """Events foreseen within the step."""
 
-    release: np.ndarray  # (N,), time of each stuck neighbour of a segment; inf: none, or a mirror image
+    release: (
+        np.ndarray
+    )  # (N,), time of each stuck neighbour of a segment; inf: none, or a mirror image
     stick_block: np.ndarray  # (N,), blocks that stick, the first ``sticks.n`` entries
     stick_time: np.ndarray  # (N,)
     sticks: np.record
@@ -172,6 +178,8 @@ def make_scratch(size: int, order: int) -> Scratch:
     )
 
 
-def make_medium(dx: float, leaf: float, beta: float, mirror: bool, total: bool, alpha: float = 0.0) -> Medium:
+def make_medium(
+    dx: float, leaf: float, beta: float, mirror: bool, total: bool, alpha: float = 0.0
+) -> Medium:
     """Constants of one run."""
     return Medium(dx, 1.0 / dx, 1.0 / (dx * dx), leaf, beta, beta / (dx * dx), alpha, mirror, total)

@@ -14,4 +14,6 @@ def compile_all(schemes: Iterable[str] = LATTICES) -> None:
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
     for scheme in schemes:
-        run_by_scheme(Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme))
+        run_by_scheme(
+            Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme)
+        )

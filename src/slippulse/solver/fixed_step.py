@@ -22,7 +22,9 @@ def forces(medium, motion, sliding, history, t):
     per_dx2, damping, tally = medium.per_dx2, medium.damping, history.tally
     moving, lowest = 0, tally.min_stuck_stress
     for i in range(1, tau.shape[0] - 1):
-        stress = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - medium.leaf * slip[i] + tau[i]
+        stress = (
+            per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - medium.leaf * slip[i] + tau[i]
+        )
         drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
         force[i] = stress + drag - medium.alpha * velocity[i]
         if not sliding[i]:
@@ -135,7 +137,9 @@ class FixedStepLattice(Lattice):
     localised = False
 
     def _advance(self, limits: Limits) -> int:
-        return advance_fixed(self.medium, self.motion, self.sliding, self.history, self.recorder, limits)
+        return advance_fixed(
+            self.medium, self.motion, self.sliding, self.history, self.recorder, limits
+        )
 
 
 # By the scheme of a scene.

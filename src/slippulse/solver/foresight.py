@@ -133,7 +133,9 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h, to
             block = segments.ends[r] if side else segments.starts[r] - 1
             if not first <= block < last or (medium.mirror and block == 0):
                 continue
-            forecast.release[block], stress = foresee_release(medium, motion, forecast, block, now, h, top)
+            forecast.release[block], stress = foresee_release(
+                medium, motion, forecast, block, now, h, top
+            )
             lowest = min(lowest, stress)
     return lowest
 
@@ -164,7 +166,9 @@ def simultaneous(segments, forecast, mirror, block, latest):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
             others += 0 < abs(edge - block) <= near and forecast.release[edge] <= latest
     for q in range(forecast.sticks.n):
-        others += 0 < abs(forecast.stick_block[q] - block) <= near and forecast.stick_time[q] <= latest
+        others += (
+            0 < abs(forecast.stick_block[q] - block) <= near and forecast.stick_time[q] <= latest
+        )
     return others > 0
 
 

@@ -61,4 +61,6 @@ def inner(*, inline: bool = False, reorder: bool = False):
     inline puts its machine code into that of its caller, rather than hand on groups of arrays at each call; reorder
     lets its sums vectorise.
     """
-    return register_jitable(forceinline=inline, **FLAGS | ({"fastmath": REORDER} if reorder else {}))
+    return register_jitable(
+        forceinline=inline, **FLAGS | ({"fastmath": REORDER} if reorder else {})
+    )

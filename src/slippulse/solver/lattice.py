@@ -43,7 +43,9 @@ class Lattice:
             scene.dx, leaf, beta, self.mirror, scene.release == "total", scene.rate_strengthening
         )
         # Slip velocity under a constant force grows by at most this more where friction weakens with it.
-        self.growth = float(np.exp(min(max(-scene.rate_strengthening, 0.0) * scene.duration, 600.0)))
+        self.growth = float(
+            np.exp(min(max(-scene.rate_strengthening, 0.0) * scene.duration, 600.0))
+        )
         # The block at array position 0; block 0 lies at x = 0.
         self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
         size = _row_length(FIRST_BLOCKS + 2 if self.mirror else 2 * FIRST_BLOCKS + 3)
@@ -122,7 +124,10 @@ class Lattice:
         stick[inside] = self.history.stick_time
         self.sliding, self.history = sliding, arrays.History(release, stick, self.tally)
         grown = arrays.make_segments(size)
-        grown.starts[:n], grown.ends[:n] = self.segments.starts[:n] + left, self.segments.ends[:n] + left
+        grown.starts[:n], grown.ends[:n] = (
+            self.segments.starts[:n] + left,
+            self.segments.ends[:n] + left,
+        )
         grown.count.n = n
         self.segments = grown
         self.tally.first_stuck_block += left

@@ -14,7 +14,15 @@ from .lattice import Lattice
 # Blocks at rest that are kept beyond the outermost released one.
 MARGIN = 16
 # Of the tally, as they are.
-COUNTED = ("steps", "block_updates", "event_updates", "releases", "sticks", "re_releases", "min_velocity")
+COUNTED = (
+    "steps",
+    "block_updates",
+    "event_updates",
+    "releases",
+    "sticks",
+    "re_releases",
+    "min_velocity",
+)
 
 
 @dataclass
@@ -85,7 +93,11 @@ def kept_blocks(lattice: Lattice) -> np.ndarray:
     blocks = np.arange(lattice.size) + lattice.first_block
     released = blocks[np.isfinite(lattice.history.release_time)]
     first, last = (released.min(), released.max()) if released.size else (0, 0)
-    keep = (blocks >= first - MARGIN) & (blocks <= last + MARGIN) & ((blocks >= 0) | (not lattice.mirror))
+    keep = (
+        (blocks >= first - MARGIN)
+        & (blocks <= last + MARGIN)
+        & ((blocks >= 0) | (not lattice.mirror))
+    )
     keep[0] = keep[-1] = False
     return keep
 
@@ -101,7 +113,9 @@ def assemble(lattice: Lattice, status: int) -> LatticeRun:
     # Samples that a run that stopped early did not take: all is at rest.
     inside = recorder.blocks >= 0
     for n in range(lattice.tally.samples_taken, recorder.times.size):
-        recorder.slip[n, inside], recorder.velocity[n, inside] = motion.w[:2, recorder.blocks[inside]]
+        recorder.slip[n, inside], recorder.velocity[n, inside] = motion.w[
+            :2, recorder.blocks[inside]
+        ]
     keep = kept_blocks(lattice)
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:

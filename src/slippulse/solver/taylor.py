@@ -127,7 +127,9 @@ def derivatives(medium, motion, segments, alpha, top):
         a, b = segments.starts[r], segments.ends[r]
         if mirror and a == 1:
             w[1, 0] = w[1, 2]
-        first_acceleration(w, motion.strain, motion.tau, a, b, medium.per_dx, medium.leaf, medium.damping)
+        first_acceleration(
+            w, motion.strain, motion.tau, a, b, medium.per_dx, medium.leaf, medium.damping
+        )
         if alpha != 0.0:
             strengthen(w, 2, a, b, alpha)
         for k in range(3, top + 1):
@@ -261,7 +263,12 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
     same = SIMULTANEOUS * limits.largest_step
-    tally, moved, forecast, changed = history.tally, scratch.moved, scratch.forecast, scratch.changed
+    tally, moved, forecast, changed = (
+        history.tally,
+        scratch.moved,
+        scratch.forecast,
+        scratch.changed,
+    )
     kinks, lossy = changed.kinks, medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.steps):
         t = tally.time

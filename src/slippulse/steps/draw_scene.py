@@ -22,4 +22,6 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     save_table(scene.table(found, numbers, title), outputs["csv"])
     save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
     state = {"pulse_state": row["pulse_state"]}
-    write_text(scene_page(name, title, outputs["png"], numbers, found.attrs | state), outputs["html"])
+    write_text(
+        scene_page(name, title, outputs["png"], numbers, found.attrs | state), outputs["html"]
+    )

@@ -23,7 +23,9 @@ def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame
         for path in map(Path, files.get(kind, [])):
             name = f"{kind}/{path.stem}" if kind in ("uncertainties", "coarser") else path.stem
             table = load_table(path)
-            tables[name] = tables[name].join(table) if kind == "predicted" and name in tables else table
+            tables[name] = (
+                tables[name].join(table) if kind == "predicted" and name in tables else table
+            )
     for path in map(Path, files.get("lists", [])):
         read = json.loads if path.suffix == ".json" else yaml.safe_load
         tables[path.stem] = pd.DataFrame(read(path.read_text(encoding="utf-8")))

@@ -101,7 +101,9 @@ def run_jobs(jobs: Connection) -> None:
             jobs.send(None)
 
 
-def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path) -> None:
+def run_job(
+    origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
+) -> None:
     """Run one step; files and outputs are paths, or lists of them, by name."""
     began, processor = time.monotonic(), time.process_time()
     # Else the record would have the most memory of all jobs before.
@@ -111,10 +113,15 @@ def run_job(origin: Origin, name: str, files: dict, outputs: dict, settings: dic
     with logged(log):
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name)})
-        used = {"seconds": time.monotonic() - began, "processor_seconds": time.process_time() - processor}
+        used = {
+            "seconds": time.monotonic() - began,
+            "processor_seconds": time.process_time() - processor,
+        }
         bits = 20 if sys.platform == "darwin" else 10
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> bits
-        write_record(origin, {key: round(value, 2) for key, value in used.items()} | {"memory_MB": memory})
+        write_record(
+            origin, {key: round(value, 2) for key, value in used.items()} | {"memory_MB": memory}
+        )
     if not sys.stderr.isatty():
         sys.stderr.write(f"  {name}: {used['seconds']:.1f} s\n")
 
@@ -170,7 +177,9 @@ def logged(path: str | Path) -> Iterator[None]:
 def _reason(error: Exception) -> str:
     """One line; HDF5 describes a full disk in several, with addresses."""
     if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
-        return f"{os.strerror(error.errno)}: the unfinished file is removed; make room and run again"
+        return (
+            f"{os.strerror(error.errno)}: the unfinished file is removed; make room and run again"
+        )
     return f"{type(error).__name__}: {' '.join(str(error).split())}"
 
 

@@ -7,4 +7,6 @@ from ..predict.measured import measured_table
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data. Outputs: measured. Settings: measure (how to measure)."""
-    save_table(measured_table(load_dataset(files["data"]), settings["measure"]), outputs["measured"])
+    save_table(
+        measured_table(load_dataset(files["data"]), settings["measure"]), outputs["measured"]
+    )

@@ -23,5 +23,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 def predictions(topics: Iterable[str], scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
     """What the paper and the exact theory say of each run by some modules of `predict`; NaN where they say nothing."""
-    found = [import_module(f"slippulse.predict.{topic}").predictions(scenes, settings) for topic in topics]
+    found = [
+        import_module(f"slippulse.predict.{topic}").predictions(scenes, settings)
+        for topic in topics
+    ]
     return pd.concat(found, axis=1)

@@ -30,7 +30,11 @@ class Job(NamedTuple):
 
 
 def jobs_of(
-    name: str, inputs: Iterable, outputs: Sequence[str], params: Mapping, values: Mapping[str, Iterable[str]]
+    name: str,
+    inputs: Iterable,
+    outputs: Sequence[str],
+    params: Mapping,
+    values: Mapping[str, Iterable[str]],
 ) -> Iterator[Job]:
     """The jobs of a rule, one for each value of its wildcard; its inputs and params may be functions of wildcards."""
     wildcard = next((key for key in values if f"{{{key}}}" in outputs[0]), "none")
@@ -41,7 +45,9 @@ def jobs_of(
             several = (entry(wildcards) if callable(entry) else [entry] for entry in entries)
             return tuple(path.format(**vars(wildcards)) for paths in several for path in paths)
 
-        settings = {key: entry(wildcards) if callable(entry) else entry for key, entry in params.items()}
+        settings = {
+            key: entry(wildcards) if callable(entry) else entry for key, entry in params.items()
+        }
         # A rule without another step has that of its own name.
         yield Job(settings.pop("step", name), files(inputs), files(outputs), settings)
 
@@ -89,7 +95,9 @@ def declared(module: str, name: str, default=None):
     text = _text(_file(module))
     if f"\n{name} = " in text:
         for node in ast.parse(text).body:
-            if isinstance(node, ast.Assign) and any(getattr(at, "id", "") == name for at in node.targets):
+            if isinstance(node, ast.Assign) and any(
+                getattr(at, "id", "") == name for at in node.targets
+            ):
                 return ast.literal_eval(node.value)
     return default
 
@@ -153,7 +161,9 @@ def _imported(path: Path) -> list[Path]:
     inside = path.relative_to(PACKAGE).parent.parts
     found = [_file(".".join(inside[:depth])) for depth in range(len(inside) + 1)]
     for dots, module, several, one in IMPORT.findall(_text(path)):
-        home = PACKAGE.joinpath(*inside[: len(inside) - len(dots) + 1], *module.split(".") if module else ())
+        home = PACKAGE.joinpath(
+            *inside[: len(inside) - len(dots) + 1], *module.split(".") if module else ()
+        )
         found.append(home / "__init__.py" if home.is_dir() else home.with_suffix(".py"))
         for name in re.findall(r"\w+", re.sub(r"#.*| as \w+", "", several or one)):
             # Of a package it cannot be seen from here which of its names are used.

@@ -16,7 +16,9 @@ def simulate(solve: Callable, files: dict, outputs: dict, settings: dict) -> Non
     """Outputs: data. Settings: simulation (its name), sweep (resolved), threads, progress (of `run_sweep`)."""
     sweep = settings["sweep"]
     scenes, samples = expand(sweep)
-    data = run_all(solve, scenes, samples, sweep["record"], settings["threads"], settings.get("progress"))
+    data = run_all(
+        solve, scenes, samples, sweep["record"], settings["threads"], settings.get("progress")
+    )
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
         what = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"

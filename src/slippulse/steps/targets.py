@@ -43,7 +43,9 @@ class Plan:
         for target in targets:
             if target not in known:
                 allowed = "a rule of a single job, or a file that a rule makes"
-                raise ConfigError(f"target: {short_repr(target)}{nearest(target, known)}; allowed: {allowed}")
+                raise ConfigError(
+                    f"target: {short_repr(target)}{nearest(target, known)}; allowed: {allowed}"
+                )
             files += self.named.get(target, (target,))
         return self.tree.behind(map(below, files))
 
@@ -52,10 +54,16 @@ class Plan:
         files = {RESULTS / name for name in self.origins}
         files |= {RESULTS / record_path(origin) for origin in self.origins.values()}
         folders = {Path(other) for other in others}.union(*(path.parents[:-1] for path in files))
-        taken = [(path, "file", "folder") for path in folders if os.path.lexists(path) and not path.is_dir()]
+        taken = [
+            (path, "file", "folder")
+            for path in folders
+            if os.path.lexists(path) and not path.is_dir()
+        ]
         taken += [(path, "folder", "file") for path in files if path.is_dir()]
         for path, found, needed in sorted(taken):
-            raise ConfigError(f"{path} is a {found}; remove or rename it: a {needed} of that name is needed")
+            raise ConfigError(
+                f"{path} is a {found}; remove or rename it: a {needed} of that name is needed"
+            )
 
     def verify(self, complete: Iterable[str]) -> int:
         """Say what is not as a complete run would make it; returns the exit code."""
@@ -63,7 +71,9 @@ class Plan:
         print("\n".join(problems) or f"{count} files are as made by what is here now")
         others = [name for name in self.wanted(["everything"]) if name not in complete]
         if left := [name for name in others if not (RESULTS / name).exists()]:
-            print(f"Not looked at: {len(left)} files that TARGET=everything makes besides, as {left[0]}")
+            print(
+                f"Not looked at: {len(left)} files that TARGET=everything makes besides, as {left[0]}"
+            )
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
@@ -87,11 +97,15 @@ class Plan:
     def _settle_times(self, wanted: set[str]) -> None:
         """Let no result be older than what it is made from, for which it would be made anew, nor later than now."""
         now, jobs = time.time(), [job for job in self.jobs if below(job.outputs[0]) in wanted]
-        paths = {path for job in jobs for path in (*job.inputs, *job.outputs) if os.path.isfile(path)}
+        paths = {
+            path for job in jobs for path in (*job.inputs, *job.outputs) if os.path.isfile(path)
+        }
         times = {path: os.path.getmtime(path) for path in paths}
         late = sorted(path for path in paths if times[path] > now)
         if late:
-            sys.stderr.write(f"{len(late)} files have a time in the future, as {late[0]}: set to now.\n")
+            sys.stderr.write(
+                f"{len(late)} files have a time in the future, as {late[0]}: set to now.\n"
+            )
         made = [(source, path) for job in jobs for source in job.inputs for path in job.outputs]
         if late or any(times.get(source, 0.0) > times.get(path, now) for source, path in made):
             for path in {*late, *filter(is_result, paths)}:

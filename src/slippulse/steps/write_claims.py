@@ -25,6 +25,10 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     write_json(claims, outputs["json"])
     write_json(beside, outputs["findings"])
     here = Path(outputs["html"]).parent
-    listed = [path for kind in ("measured", "predicted", "uncertainties", "studies") for path in files[kind]]
+    listed = [
+        path
+        for kind in ("measured", "predicted", "uncertainties", "studies")
+        for path in files[kind]
+    ]
     tables_of = [Path(path).relative_to(here).as_posix() for path in listed]
     write_text(claims_page(claims, settings["altered"], beside, tables_of), outputs["html"])

@@ -15,4 +15,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, comments), outputs["manifest"])
     sources = digest_of_files(source_files("."))
-    write_json(provenance(".", sources, settings["config"], settings["shipped"], base), outputs["provenance"])
+    write_json(
+        provenance(".", sources, settings["config"], settings["shipped"], base),
+        outputs["provenance"],
+    )

@@ -52,10 +52,13 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     window = settings["measure"]["front_window"]
     given = settings["presets"].items()
     presets = {
-        ("localised", preset["order"], preset["max_step"], preset["dx"]): name for name, preset in given
+        ("localised", preset["order"], preset["max_step"], preset["dx"]): name
+        for name, preset in given
     }
     ladder = [("fixed_step", 1, step, TEXTBOOK_SPACING) for step in TEXTBOOK_STEPS]
-    ladder += [("localised", order, step, dx) for dx, order, step in product(SPACINGS, ORDERS, STEPS)]
+    ladder += [
+        ("localised", order, step, dx) for dx, order, step in product(SPACINGS, ORDERS, STEPS)
+    ]
     ladder += [("continuum", 1, 1.0, TEXTBOOK_SPACING)]
     ladder += [setting for setting in presets if setting not in ladder]
     trade = pd.DataFrame(ladder, columns=["scheme", "order", "step", "dx"])
@@ -83,7 +86,9 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
     # The textbook scheme and the exact solution have no order to choose.
     known = max(order, 3)
 
-    def run(profile: Prestress, duration: float, dx: float, gamma: float, ratio: float) -> xr.Dataset:
+    def run(
+        profile: Prestress, duration: float, dx: float, gamma: float, ratio: float
+    ) -> xr.Dataset:
         # The step is cut where it would not be stable, as the pipeline does.
         bound = MARGIN * largest_step(scheme, known, ratio, gamma * dx**2)
         of = ("displacement" if gamma > 0.0 else "stress", profile, duration, dx, gamma, ratio * dx)
@@ -98,13 +103,21 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
         names = ("speed", "peak_velocity", "width", "slip")
         ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
         ratios.append(data.attrs["first_stick_time"] / transition_of(EVEN, GAMMA, ratio).time)
-        found.append(costs(data) | dict(zip(QUANTITIES, np.abs(np.array(ratios) - 1.0), strict=False)))
+        found.append(
+            costs(data) | dict(zip(QUANTITIES, np.abs(np.array(ratios) - 1.0), strict=False))
+        )
     crack = crack_of(UNEVEN, max(DAMPING_RATIOS))
     time, distance = crack.share_time(FRACTION), abs(crack.balance_position)
     data = run(UNEVEN, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
-    late, short = arrival(data, FRACTION * distance, "left")[0] / time, path(data, "left")[1][-1] / distance
+    late, short = (
+        arrival(data, FRACTION * distance, "left")[0] / time,
+        path(data, "left")[1][-1] / distance,
+    )
     found.append(costs(data) | {"share_time": abs(late - 1.0), "arrest_position": abs(short - 1.0)})
-    out = {name: float(np.max([entry[name] for entry in found if name in entry])) for name in QUANTITIES}
+    out = {
+        name: float(np.max([entry[name] for entry in found if name in entry]))
+        for name in QUANTITIES
+    }
     return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
 
 

@@ -51,20 +51,32 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             depth = entered(found, pulse, dx, (0.0, barrier))
             rows.append(found | {"part": "depth", "dx": dx, "measured": depth})
         for length in LENGTHS:
-            depth = entered(found, pulse, PASSING_SPACING, (0.0, barrier), (length * found["exact"], tau0))
+            depth = entered(
+                found, pulse, PASSING_SPACING, (0.0, barrier), (length * found["exact"], tau0)
+            )
             past = {"length": length, "measured": float(depth > (length + 0.5) * found["exact"])}
-            passing.append(found | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING} | past)
+            passing.append(
+                found | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING} | past
+            )
     return pd.DataFrame(rows + passing)
 
 
 def depths(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str, Any]:
     """A row of the map, or the beginning of another."""
-    point = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio}
+    point = {
+        "part": "map",
+        "tau0": tau0,
+        "barrier": barrier,
+        "gamma": gamma,
+        "damping_ratio": ratio,
+    }
     estimate = barrier_depth_estimate(tau0, barrier, gamma)
     return point | {"exact": barrier_depth(tau0, barrier, gamma, ratio), "paper": estimate}
 
 
-def entered(scene: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[float, float]) -> float:
+def entered(
+    scene: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[float, float]
+) -> float:
     """How far the right front of a pulse enters a barrier on a lattice, to half a block beyond the last released one.
 
     The pre-stress has ``steps``, counted from where the barrier begins, on both sides: between two blocks, and farther
@@ -72,8 +84,12 @@ def entered(scene: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[
     """
     tau0, gamma, ratio = (scene[name] for name in ("tau0", "gamma", "damping_ratio"))
     start = (math.floor((TAIL * WIDTH + pulse.width / (pulse.speed - 1.0)) / dx) + 0.5) * dx
-    both = tuple((sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps)
+    both = tuple(
+        (sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps
+    )
     profile = Prestress(tau0, tau0, WIDTH, steps=both)
     duration = start + CROSSINGS * scene["exact"] + pulse.width
-    run = run_scene(Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4))
+    run = run_scene(
+        Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4)
+    )
     return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

@@ -30,6 +30,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         for ratio, speed in zip(ratios, front_speed(left, ratios, scene.release), strict=True):
             pulse = steady_pulse(left, scene.gamma, ratio * scene.dx, speed)
             for name in QUANTITIES:
-                rows.append(("curve", left, ratio, name, getattr(pulse, name) / getattr(paper, name)))
-    found = pd.DataFrame(rows + limits, columns=["role", "left", "damping_ratio", "quantity", "value"])
+                rows.append(
+                    ("curve", left, ratio, name, getattr(pulse, name) / getattr(paper, name))
+                )
+    found = pd.DataFrame(
+        rows + limits, columns=["role", "left", "damping_ratio", "quantity", "value"]
+    )
     return found.replace({"quantity": {"speed": "front_speed"}})

@@ -45,7 +45,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     stop = one_way.front_ends[0][0]
     # An undamped one at the speed with damping.
     pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
-    admissible = [front["admissible"] for rule in RELEASES for front in admissibility_table(*FOLLOWED, rule)]
+    admissible = [
+        front["admissible"] for rule in RELEASES for front in admissibility_table(*FOLLOWED, rule)
+    ]
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
         "pulse_width": lambda: pulse().width,
@@ -57,7 +59,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         # Where the left front stops between a negative level and a positive one, and the transition there.
         "one_way_stop_position": lambda: stop.x,
         "one_way_stop_time": lambda: stop.time,
-        "one_way_first_stick_position": lambda: one_way.first_stick[1] if one_way.first_stick else math.nan,
+        "one_way_first_stick_position": lambda: (
+            one_way.first_stick[1] if one_way.first_stick else math.nan
+        ),
         "one_way_transition_time": lambda: one_way.transition_time,
         "one_way_transition_length": lambda: one_way.transition_length,
         "transition_point_lowest": lambda: over_paper(levels[0]),
@@ -68,7 +72,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "transition_peak_level": lambda: over_paper(level, 1.0),
         "transition_peak_level_soft": lambda: over_paper(level, SOFT),
         # The curvature of slip at the nucleation point halfway to the transition, where the pre-stress is 1.
-        "strain_term": lambda: abs(float(rupture().strain(STEP, 0.5 * rupture().transition_time)) / STEP),
+        "strain_term": lambda: abs(
+            float(rupture().strain(STEP, 0.5 * rupture().transition_time)) / STEP
+        ),
         # Steady fronts found block by block, and those of them that are admissible.
         "fronts_block_by_block": lambda: len(admissible),
         "fronts_admissible": lambda: sum(admissible),

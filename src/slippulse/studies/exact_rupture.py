@@ -89,6 +89,8 @@ def _differences(
         both = np.isfinite(found[quantity]) & np.isfinite(known[quantity])
         if both.any():
             expected = known[quantity][both]
-            mean = float(np.mean(np.abs(found[quantity][both] - expected)) / np.mean(np.abs(expected)))
+            mean = float(
+                np.mean(np.abs(found[quantity][both] - expected)) / np.mean(np.abs(expected))
+            )
             rows.append({"quantity": quantity, "difference": mean, "places": int(both.sum())})
     return pd.DataFrame(rows).assign(role="difference", dx=run.attrs["dx"])

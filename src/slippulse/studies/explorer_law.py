@@ -22,6 +22,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ratio, parts = SCALE * np.sinh(position), []
     for release in RELEASES:
         tau = prestress_for_speed(1.0 + np.exp(excess), ratio, release)
-        grid = {"release": release, "damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess}
+        grid = {
+            "release": release,
+            "damping_ratio": ratio,
+            "ratio_arsinh": position,
+            "excess_log": excess,
+        }
         parts.append(pd.DataFrame(grid | {"logit": np.round(np.log(tau) - np.log1p(-tau), 6)}))
     return pd.concat(parts, ignore_index=True)

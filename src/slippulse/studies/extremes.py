@@ -76,7 +76,9 @@ def edges() -> Iterator[Edge]:
     # Undamped fronts at 7 to 70 wave speeds are exact at any spacing.
     for level in (0.99, 0.999, 0.9999):
         of = {"level": level, "dx": 0.1, "duration": 6.0, "ratio": 0.0}
-        yield Edge("level near 1", f"tau_0 = {level:g}", "front speed", "right", speed(level, 0.0), of)
+        yield Edge(
+            "level near 1", f"tau_0 = {level:g}", "front speed", "right", speed(level, 0.0), of
+        )
     # Pulses narrower than a block, and the same resolved.
     for level, dx, duration, should in (
         (0.05, 0.8, 60.0, "flagged"), (0.05, 0.005, 60.0, "right"), (0.02, 0.4, 60.0, "flagged"),
@@ -84,17 +86,29 @@ def edges() -> Iterator[Edge]:
     ):  # fmt: skip
         of = {"level": level, "dx": dx, "duration": duration, "width": max(0.02, dx)}
         slip = pulse_behind_front(level, GAMMA, RATIO * dx, speed(level)).slip
-        yield Edge("level near 0", f"tau_0 = {level:g}, dx = {dx:g}", "final slip", should, slip, of)
+        yield Edge(
+            "level near 0", f"tau_0 = {level:g}, dx = {dx:g}", "final slip", should, slip, of
+        )
     # Slip of 1e8, at 500 blocks to 1/sqrt(gamma), the scale of the leaf springs.
     for gamma in (1e-8, 1e-4):
         dx = 1.0 / (500.0 * math.sqrt(gamma))
-        yield Edge("gamma", f"gamma = {gamma:g}", "T_trans", "right", *first_stick(dx, 4.0 * dx, gamma))
+        yield Edge(
+            "gamma", f"gamma = {gamma:g}", "T_trans", "right", *first_stick(dx, 4.0 * dx, gamma)
+        )
     # To beyond the largest gamma for which the lattice has a front faster than the waves.
     for gamma in (1.0, 100.0, 1000.0, 6000.0, 1e4, 1e5):
-        of = {"gamma": gamma, "dx": 0.01, "duration": 40.0 / math.sqrt(gamma), "width": 0.1, "ratio": 0.0}
+        of = {
+            "gamma": gamma,
+            "dx": 0.01,
+            "duration": 40.0 / math.sqrt(gamma),
+            "width": 0.1,
+            "ratio": 0.0,
+        }
         expected = lattice_front_speed(LEVEL, gamma, 0.01) if gamma < 1e4 else math.nan
         should = "right" if gamma <= 100.0 else "flagged"
-        yield Edge("gamma", f"gamma dx^2 = {gamma * 0.01**2:g}", "front speed", should, expected, of)
+        yield Edge(
+            "gamma", f"gamma dx^2 = {gamma * 0.01**2:g}", "front speed", should, expected, of
+        )
     # The elastic rule meets leaf springs within its damped layer, which must be told.
     for release, ratio, should in (
         ("total", 0.0, "right"), ("total", 1.0, "right"), ("total", 10.0, "right"), ("total", 100.0, "right"),
@@ -104,10 +118,14 @@ def edges() -> Iterator[Edge]:
         duration = 40.0 / (1.0 + 0.05 * ratio) if release == "total" else 40.0
         of = {"level": 0.3, "dx": 0.05, "duration": duration, "ratio": ratio, "release": release}
         expected = speed(0.3, ratio, release)
-        yield Edge("damping", f"beta/dx = {ratio:g}, {release}", "front speed", should, expected, of)
+        yield Edge(
+            "damping", f"beta/dx = {ratio:g}, {release}", "front speed", should, expected, of
+        )
     # One layer thickness to a thousandth.
     for dx, should in ((1.0, "flagged"), (0.3, "right"), (0.1, "right"), (0.01, "right")):
-        yield Edge("spacing", f"dx = {dx:g}", "front speed", should, speed(), {"dx": dx, "duration": 60.0})
+        yield Edge(
+            "spacing", f"dx = {dx:g}", "front speed", should, speed(), {"dx": dx, "duration": 60.0}
+        )
     for dx in (0.1, 0.01, 1e-3):
         yield Edge("spacing", f"dx = {dx:g}", "T_trans", "right", *first_stick(dx))
     # A peak between two blocks cannot be seen; one block is enough for the front; 1000 layer thicknesses.
@@ -124,9 +142,18 @@ def edges() -> Iterator[Edge]:
         (-100.0, 0.05, 60.0, 0.1, "flagged"), (-100.0, 0.001, 60.0, 0.1, "right"),
     ):  # fmt: skip
         time = ArrestingCrack(Prestress(level, 0.0), ratio).share_time(FRACTION)
-        of = {"level": level, "right": 0.0, "gamma": 0.0, "ratio": ratio, "dx": dx, "duration": 1.5 * time}
+        of = {
+            "level": level,
+            "right": 0.0,
+            "gamma": 0.0,
+            "ratio": ratio,
+            "dx": dx,
+            "duration": 1.5 * time,
+        }
         value = f"tau_l = {level:g}, dx {dx:g}, b {ratio:g}, r {friction:g}"
-        yield Edge("negative level", value, "T_trans", should, time, of | {"friction_ratio": friction})
+        yield Edge(
+            "negative level", value, "T_trans", should, time, of | {"friction_ratio": friction}
+        )
     of = {"dx": 1.0, "duration": LONG, "width": 2.0, "gamma": 0.01}
     for quantity in ("speed drift", "slip drift", "energy residual"):
         yield Edge("duration", f"t = {LONG:g}", quantity, "right", 0.0, of)
@@ -149,10 +176,16 @@ def edges() -> Iterator[Edge]:
         yield Edge("two nucleations", f"{APART:g} apart", quantity, "right", expected, of)
     # A deep barrier of negative pre-stress stops the pulse, a shallow one only slows it.
     for depth, quantity, expected in ((1.5, "passes by", 0.0), (0.2, "front speed", speed())):
-        of = {"bumps": ((CENTRE, -depth, WIDTH), (-CENTRE, -depth, WIDTH)), "dx": 0.05, "duration": 60.0}
+        of = {
+            "bumps": ((CENTRE, -depth, WIDTH), (-CENTRE, -depth, WIDTH)),
+            "dx": 0.05,
+            "duration": 60.0,
+        }
         yield Edge("barrier", f"depth {depth:g}", quantity, "right", expected, of)
     # The damping term as the paper prints it feeds the grid modes.
-    yield Edge("damping sign", "as printed", "slip", "stopped", math.nan, {"dx": 0.02, "duration": 10.0})
+    yield Edge(
+        "damping sign", "as printed", "slip", "stopped", math.nan, {"dx": 0.02, "duration": 10.0}
+    )
     for scheme in ("localised", "fixed_step"):
         of = {"dx": 0.1, "duration": 10.0, "scheme": scheme, "max_step": 3.0}
         yield Edge("step", f"3 dx, {scheme}", "front speed", "refused", math.nan, of)
@@ -162,7 +195,9 @@ def speed(level: float = LEVEL, ratio: float = RATIO, release: str = "total") ->
     return float(exact_speed(level, ratio, release))
 
 
-def first_stick(dx: float, width: float = 1.0, gamma: float = GAMMA) -> tuple[float, dict[str, Any]]:
+def first_stick(
+    dx: float, width: float = 1.0, gamma: float = GAMMA
+) -> tuple[float, dict[str, Any]]:
     """T_trans of the continuum, and a scene that just reaches it."""
     exact = exact_transition_displacement(Prestress(LEVEL, LEVEL, width), gamma, RATIO).time
     return exact, {"dx": dx, "duration": 1.02 * exact + 4.0 * dx, "width": width, "gamma": gamma}
@@ -189,7 +224,13 @@ def row(edge: Edge, window: float) -> dict[str, Any]:
         ended, message = "stopped" if isinstance(error, UnstableRun) else "refused", str(error)
     off = abs(value - edge.expected) / (abs(edge.expected) or 1.0)
     # Comparisons with NaN are False: a number where theory has none is wrong unless it was flagged.
-    judged = "no number" if math.isnan(value) else "right" if off <= tolerance else "WRONG WITHOUT A FLAG"
+    judged = (
+        "no number"
+        if math.isnan(value)
+        else "right"
+        if off <= tolerance
+        else "WRONG WITHOUT A FLAG"
+    )
     flagged = message if message == "not offered" else message and "flagged"
     return {
         "family": edge.family, "value": edge.value, "quantity": edge.quantity, "should": edge.should,
@@ -208,9 +249,17 @@ def measured(edge: Edge, window: float) -> tuple[float, str, int]:
         return single_precision_error(edge.scene["gamma"]), "not offered", 0
     of = scene(**edge.scene)
     if edge.quantity == "slip":
-        return float(run_scene(of, damping_sign=-1 if edge.family == "damping sign" else 1).slip.max()), "", 0
+        return (
+            float(
+                run_scene(of, damping_sign=-1 if edge.family == "damping sign" else 1).slip.max()
+            ),
+            "",
+            0,
+        )
     run = simulated(of)
-    numbers, pulse = measure_run(run, {"front_window": window, "share": FRACTION, "trailing_times": ()})
+    numbers, pulse = measure_run(
+        run, {"front_window": window, "share": FRACTION, "trailing_times": ()}
+    )
     flags = [numbers["run_flags"], numbers.get("transition_state", "")]
     if pulse is not None and edge.quantity in OF_PULSES:
         flags.append(pulse_state(run, pulse))
@@ -222,7 +271,9 @@ def measured(edge: Edge, window: float) -> tuple[float, str, int]:
         case "speed drift" | "slip drift":
             value = drift(run, edge.quantity)
         case "meeting time":
-            value = float(np.nanmax(run["release_time"].values[np.abs(x - 0.5 * APART) < 1.5 * of.dx]))
+            value = float(
+                np.nanmax(run["release_time"].values[np.abs(x - 0.5 * APART) < 1.5 * of.dx])
+            )
         case "asymmetry":
             mirrored = np.interp(APART - x, x, slip, left=0.0, right=0.0)
             value = float(np.max(np.abs(slip - mirrored)) / slip.max())

@@ -35,10 +35,19 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     swept, springs, fixed_ratio, *fixed_beta = tabulated
     parts, rows = [], []
     for release, ratio in swept[["release", "damping_ratio"]].drop_duplicates().values:
-        line = {"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS, "panel": "prestress"}
+        line = {
+            "left": prestress_for_speed(SPEEDS, ratio, release),
+            "speed": SPEEDS,
+            "panel": "prestress",
+        }
         parts.append(pd.DataFrame(line | {"release": release, "damping_ratio": ratio}))
     for left, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
-        line = {"panel": "springs", "release": SPRINGS_RELEASE, "left": left, "damping_ratio": ratio}
+        line = {
+            "panel": "springs",
+            "release": SPRINGS_RELEASE,
+            "left": left,
+            "damping_ratio": ratio,
+        }
         line["speed"] = [_speed(left, each, 1.0, ratio, SPRINGS_RELEASE) for each in SPRINGS]
         parts.append(pd.DataFrame(line | {"springs": SPRINGS}))
     held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
@@ -51,7 +60,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         for spacing in np.union1d(np.geomspace(dx.min(), dx.max(), SPACINGS), dx):
             ratio = line["fixed"] / (1.0 if line["held"] == "b" else spacing)
             speed = _speed(line["left"], line["gamma"], spacing, ratio, line["release"])
-            rows.append(line | {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed})
+            rows.append(
+                line | {"panel": "refined", "dx": spacing, "damping_ratio": ratio, "speed": speed}
+            )
     return pd.concat([*parts, pd.DataFrame(rows)], ignore_index=True)
 
 

@@ -22,4 +22,6 @@ def over_paper(level: float, gamma: float | None = None) -> float:
     """T_trans sqrt(gamma)/pi with the Gaussian at nucleation; without gamma, nucleated at a point."""
     if gamma is None:
         return uniform_transition_time(level, 1.0) / np.pi
-    return exact_transition_displacement(Prestress(level, level), gamma).time * np.sqrt(gamma) / np.pi
+    return (
+        exact_transition_displacement(Prestress(level, level), gamma).time * np.sqrt(gamma) / np.pi
+    )

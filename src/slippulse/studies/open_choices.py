@@ -13,7 +13,10 @@ from ..theory.front_law import front_speed
 from ..theory.part import roots_between
 from ..theory.pulse import paper_transition_displacement
 
-NEEDS = {"lists": ["manuscript/open_choices.yaml"], "sweeps": ["scaling_displacement", "scaling_stress"]}
+NEEDS = {
+    "lists": ["manuscript/open_choices.yaml"],
+    "sweeps": ["scaling_displacement", "scaling_stress"],
+}
 
 # The first stick, over pi/sqrt(gamma), lies between these; beyond this number of widths a Gaussian is 0 to rounding;
 # the error of a time.
@@ -48,7 +51,9 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> Iterator[dic
         reach = max(float(last.max()), 2.0 * FAR * width)
         fronts = Fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
 
-        def velocity(time: np.ndarray, which=slice(None), fronts=fronts, gammas=gammas) -> np.ndarray:
+        def velocity(
+            time: np.ndarray, which=slice(None), fronts=fronts, gammas=gammas
+        ) -> np.ndarray:
             return slip_velocity(fronts, gammas[which], 0.0, time)
 
         times = roots_between(velocity, first, last, velocity(first), velocity(last), xtol=TIME)
@@ -64,7 +69,9 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> Iterator[dic
             }  # fmt: skip
 
 
-def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float]) -> Iterator[dict]:
+def stress(
+    grid: pd.DataFrame, ratio: float, release: str, fractions: list[float]
+) -> Iterator[dict]:
     """When fractions of |x_minus| are covered, and when all of it is where the tail ends. Without leaf springs nothing
     but W is a length: every number of a level is proportional to it.
     """
@@ -73,7 +80,9 @@ def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float
     for left, rows in grid.groupby("left"):
         crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
         way = -crack.balance_position
-        found = [("Gaussian", f, crack.share_time(f), crack.share_length(f), way) for f in fractions]
+        found = [
+            ("Gaussian", f, crack.share_time(f), crack.share_length(f), way) for f in fractions
+        ]
         way = 1.0 + (1.0 + 0.5 * left) / -left
         found.append(("tent", 1.0, way + 1.0 + crossing, 2.0 * way + 2.0, way))
         for width in rows["width"]:

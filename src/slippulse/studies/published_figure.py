@@ -93,12 +93,16 @@ def readings_of(published: dict, simulation: str) -> pd.DataFrame:
     """What was read off for one simulation, of `published`: rows reading, drawn, quantity, reading_error, arrow."""
     found = pd.DataFrame.from_dict(published, orient="index").rename_axis("reading").reset_index()
     found = found[found["simulation"] == simulation].rename(columns={"value": "drawn"})
-    return found[["reading", "drawn", "quantity", "reading_error"]].assign(arrow=found["arrow"].eq(True))
+    return found[["reading", "drawn", "quantity", "reading_error"]].assign(
+        arrow=found["arrow"].eq(True)
+    )
 
 
 def sampled(scene: Scene, left: float) -> xr.Dataset:
     """The lattice run of a scene, with samples at its blocks from x = left on."""
-    positions = scene.dx * np.arange(round(left / scene.dx), round(REACH * scene.duration / scene.dx))
+    positions = scene.dx * np.arange(
+        round(left / scene.dx), round(REACH * scene.duration / scene.dx)
+    )
     return simulate_on_lattice(scene, Samples(np.linspace(0.0, scene.duration, TIMES), positions))
 
 
@@ -126,11 +130,19 @@ class LeftPanel:
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
         """Of a lattice run."""
         tau0, gamma = map(float, trial)
-        scene = lattice_of("displacement", Prestress(tau0, tau0), END, dx, gamma, ratio * dx, release)
+        scene = lattice_of(
+            "displacement", Prestress(tau0, tau0), END, dx, gamma, ratio * dx, release
+        )
         run = sampled(scene, 0.0)
         speed, intercept, _ = front_speed(run, WINDOW)
         first = run.attrs["first_stick_time"]
-        known = speed, intercept, first, between_fronts(run, first), float(run["sample_velocity"].max())
+        known = (
+            speed,
+            intercept,
+            first,
+            between_fronts(run, first),
+            float(run["sample_velocity"].max()),
+        )
         return self._chosen(known, lambda time: position_at(run, time, edge="stick_time"))
 
     def _chosen(self, known: tuple[float, ...], trailing_edge: Callable) -> np.ndarray:
@@ -139,7 +151,9 @@ class LeftPanel:
         for name in self.readings["quantity"]:
             if name not in found and not name.startswith(TRAILING):
                 raise ValueError(f"quantity: {name!r}; allowed: {', '.join(KNOWN)}, {TRAILING}TIME")
-            out.append(found[name] if name in found else trailing_edge(float(name.removeprefix(TRAILING))))
+            out.append(
+                found[name] if name in found else trailing_edge(float(name.removeprefix(TRAILING)))
+            )
         return np.array(out, dtype=float)
 
     def fitted(
@@ -156,12 +170,18 @@ class LeftPanel:
             misfit = (exact + correction - self.drawn) / self.error
             if step < steps:
                 nudges = np.diag(DIFFERENCE * trial)
-                changes = [(self.exact(trial + each, ratio, release) - exact) / each.sum() for each in nudges]
+                changes = [
+                    (self.exact(trial + each, ratio, release) - exact) / each.sum()
+                    for each in nudges
+                ]
                 slopes = np.column_stack(changes) / self.error[:, None]
                 trial = trial - np.linalg.lstsq(slopes[fitted], misfit[fitted], rcond=None)[0]
         near = trial - np.linalg.lstsq(slopes, misfit, rcond=None)[0]
         every, of_near, parts = np.ones_like(fitted), self.exact(near, ratio, release), []
-        for part, at, found, chosen in (("profile", trial, exact, fitted), ("arrows", near, of_near, every)):
+        for part, at, found, chosen in (
+            ("profile", trial, exact, fitted),
+            ("arrows", near, of_near, every),
+        ):
             errors = np.sqrt(np.diag(np.linalg.inv(slopes[chosen].T @ slopes[chosen])))
             rows = self.readings.drop(columns="arrow").assign(
                 part=part, release=release, damping_ratio=ratio, dx=dx, tau0=at[0], gamma=at[1], tau0_error=errors[0],

@@ -25,7 +25,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ours = [run[name].values for name in ("x", "release_time", "stick_time", "slip")]
     window = settings["measure"]["front_window"]
     published, localised = numbers(published_run(), window), numbers(ours, window)
-    found = {"published": published, "localised": localised, "exact": [pulse.speed, first_stick, pulse.slip]}
+    found = {
+        "published": published,
+        "localised": localised,
+        "exact": [pulse.speed, first_stick, pulse.slip],
+    }
     return pd.DataFrame({"quantity": ["front_speed", "first_stick_time", "pulse_slip"]} | found)
 
 
@@ -60,4 +64,8 @@ def numbers(run: list[np.ndarray], window: float) -> list[float]:
     released = np.isfinite(release)
     passed = released & (x > (1.0 - window) * x[released].max())
     behind = np.isfinite(stick) & (x > 0.0)
-    return [straight_line(release[passed], x[passed])[0], float(np.nanmin(stick)), float(slip[behind][-1])]
+    return [
+        straight_line(release[passed], x[passed])[0],
+        float(np.nanmin(stick)),
+        float(slip[behind][-1]),
+    ]

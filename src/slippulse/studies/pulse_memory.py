@@ -26,11 +26,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         before = scene.prestress.right
         # In the limit dx -> 0 damping acts through the speed alone.
         old, new = (
-            steady_pulse(each, scene.gamma, damping_ratio=scene.damping_ratio, release=scene.release)
+            steady_pulse(
+                each, scene.gamma, damping_ratio=scene.damping_ratio, release=scene.release
+            )
             for each in (before, level)
         )
         memory = new.width / (new.speed - 1.0)
         x, exact = np.concatenate([BEHIND, memory * BEYOND]), exact_rupture(scene.attributes())
         rows = pd.DataFrame({"level": level, "x": x, "slip": exact.final_slip(position + x)})
-        parts.append(rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory))
+        parts.append(
+            rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory)
+        )
     return pd.concat(parts, ignore_index=True)

@@ -50,5 +50,7 @@ def far_profile(scene: Scene) -> pd.DataFrame:
     x, v = x[apart], v[apart]
     # The pulse moves at the wave speed without changing, so slip is the integral of its velocity over distance.
     slip = cumulative_trapezoid(v[::-1], -x[::-1], initial=0.0)[::-1]
-    found = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": v, "slip_acceleration": -np.gradient(v, x)})
+    found = pd.DataFrame(
+        {"x": x, "slip": slip, "slip_velocity": v, "slip_acceleration": -np.gradient(v, x)}
+    )
     return found.iloc[:: max(1, len(found) // (2 * POINTS))]

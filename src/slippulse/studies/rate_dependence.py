@@ -54,7 +54,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "lattice": pd.DataFrame(lattices, columns=LATTICE),
         "limit": pd.DataFrame(limit, columns=["level", "rate_strengthening"]),
         "steady": pd.DataFrame(steady, columns=["rate_strengthening", "pulse_width", "pulse_slip"]),
-        "map": pd.concat([_map(regime, fraction * critical) for regime, fraction in MAPPED.items()]),
+        "map": pd.concat(
+            [_map(regime, fraction * critical) for regime, fraction in MAPPED.items()]
+        ),
         "arrest": pd.concat([_arrest(alpha, dx) for alpha in ALPHAS for dx in SPACINGS]),
         "asymptote": pd.concat([_asymptote(alpha) for alpha in ALPHAS if alpha]),
     }
@@ -82,7 +84,9 @@ def _lattice(level: float, fraction: float) -> tuple:
     x, stick, release, velocity, slip = (run[name].values[right] for name in names)
     # Between the outermost blocks that have stuck and that have been released, at the end and half-way to it.
     times = duration, 0.5 * duration
-    stuck, released = ([x[known <= time].max(initial=0.0) for time in times] for known in (stick, release))
+    stuck, released = (
+        [x[known <= time].max(initial=0.0) for time in times] for known in (stick, release)
+    )
     width, earlier = np.subtract(released, stuck)
     # From the front backwards, the last that slides.
     slowest = velocity[velocity > 0.0][0] / velocity.max()

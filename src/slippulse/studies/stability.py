@@ -61,12 +61,16 @@ def boundary(stable: Callable[[float], bool], lower: float, upper: float) -> flo
     return lower
 
 
-def sound(profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float) -> bool:
+def sound(
+    profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float
+) -> bool:
     """Whether nothing sticks: in these scenes every velocity is positive, and a growing mode throws one below 0."""
     step = fraction * bound
     # No longer than a wave takes to cross, after which a chain between walls turns back.
     duration = min(STEPS * step, 0.8 * BLOCKS)
-    scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, max(order, 3))
+    scene = Scene(
+        "stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, max(order, 3)
+    )
     # A Scene refuses a step beyond the bound.
     object.__setattr__(scene, "max_step", step)
     lattice = LATTICES[scheme](scene, None, scene.beta)

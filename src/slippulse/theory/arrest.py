@@ -27,7 +27,9 @@ class ArrestingCrack:
     Raises ValueError: outside these ranges; of every method, outside those that it states.
     """
 
-    def __init__(self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total") -> None:
+    def __init__(
+        self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total"
+    ) -> None:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
         # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
@@ -44,7 +46,9 @@ class ArrestingCrack:
                 f"position: {position!r}; allowed: farther from x_minus = {self.balance_position:.10g}, where"
                 f" characteristics that entered before {last:g} end"
             )
-        return root_between(lambda e: self.prestress.integral(position, e), self.zero, last, xtol=1e-13)
+        return root_between(
+            lambda e: self.prestress.integral(position, e), self.zero, last, xtol=1e-13
+        )
 
     def time_at(self, position: float) -> float:
         """When the left front reaches a position in (x_minus, 0]."""
@@ -62,7 +66,10 @@ class ArrestingCrack:
     def share_length(self, share: float) -> float:
         """Distance between the fronts then."""
         time = self.share_time(share)
-        last, last_time = float(self.fronts.curve.edges[-1]), float(self.fronts.curve.edge_times[-1])
+        last, last_time = (
+            float(self.fronts.curve.edges[-1]),
+            float(self.fronts.curve.edge_times[-1]),
+        )
         right = last + time - last_time if time >= last_time else self.fronts.reached(time, 1.0)
         return right - share * self.balance_position
 
@@ -74,7 +81,10 @@ class ArrestingCrack:
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
         """x - t of characteristics far to the right and du/dt on them, ``count`` (2 to 10000) of each third."""
         check_number("count", count, whole=True, at_least=2, at_most=10_000)
-        right, left = np.linspace(2.0 * self.far, 0.0, count), np.linspace(0.0, self.zero, count)[1:]
+        right, left = (
+            np.linspace(2.0 * self.far, 0.0, count),
+            np.linspace(0.0, self.zero, count)[1:],
+        )
         entries = np.concatenate([right, left])
         delay = entries - self.fronts.arrival(entries)
         # Denser towards x_minus, which takes for ever.

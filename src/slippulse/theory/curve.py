@@ -36,7 +36,9 @@ def power_basis(count: int) -> np.ndarray:
 
 def with_slopes(powers: np.ndarray) -> np.ndarray:
     """Coefficients [power, column] and those of the derivative, for `value_and_slope`."""
-    slopes = np.append(powers[1:] * np.arange(1.0, len(powers))[:, None], np.zeros_like(powers[:1]), axis=0)
+    slopes = np.append(
+        powers[1:] * np.arange(1.0, len(powers))[:, None], np.zeros_like(powers[:1]), axis=0
+    )
     return np.stack([powers, slopes], axis=1).reshape(-1, 8, powers.shape[1])
 
 
@@ -62,7 +64,9 @@ class Panel(NamedTuple):
     def until(self, s: float, x_end: float) -> "Panel":
         """The part from the left end to the parameter s, where x is x_end."""
         half = 0.5 * (s + 1.0)
-        resample = legendre.legvander(np.append(half * (1.0 + NODES) - 1.0, s), COUNT - 1) @ TO_SERIES
+        resample = (
+            legendre.legvander(np.append(half * (1.0 + NODES) - 1.0, s), COUNT - 1) @ TO_SERIES
+        )
         x, time, source = resample @ self.x, resample @ self.time, half * (resample @ self.source)
         ends = (self.x_ends[0], x_end), (self.time_ends[0], float(time[-1]))
         return Panel(x[:-1], time[:-1], source[:-1], *ends)
@@ -85,7 +89,10 @@ class Curve:
     """Panels side by side, from left to right without gaps; and where a front on each side outran the waves again."""
 
     def __init__(
-        self, panels: list[Panel], restarts_left: Iterable[float] = (), restarts_right: Iterable[float] = ()
+        self,
+        panels: list[Panel],
+        restarts_left: Iterable[float] = (),
+        restarts_right: Iterable[float] = (),
     ) -> None:
         self.panels = panels
         self.x = np.array([panel.x for panel in panels])
@@ -134,7 +141,9 @@ class Curve:
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.panels) - 1)
         return panel, self._solve(self.row("x", panel), x)
 
-    def crossings(self, y: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> tuple[Crossing, Crossing]:
+    def crossings(
+        self, y: np.ndarray, xi: np.ndarray, eta: np.ndarray
+    ) -> tuple[Crossing, Crossing]:
         """Where T - x rises to xi, going left from y, and where T + x rises to eta, going right."""
         right, known_right = _first_rise(self.edges, self._exits[0], y, eta)
         # The same at -x.
@@ -142,7 +151,10 @@ class Curve:
         left = len(self.panels) - 1 - left
         rows = np.concatenate([self.row("early", left), self.row("late", right)])
         s = self._solve(rows, np.concatenate([xi, eta]))
-        s_left, s_right = np.where(known_left, s[: y.size], -1.0), np.where(known_right, s[y.size :], 1.0)
+        s_left, s_right = (
+            np.where(known_left, s[: y.size], -1.0),
+            np.where(known_right, s[y.size :], 1.0),
+        )
         return Crossing(left, s_left, known_left), Crossing(right, s_right, known_right)
 
     @cached_property
@@ -168,7 +180,9 @@ class Curve:
         if not beyond.size:
             return float(self.edges[-1 if side > 0.0 else 0])
         panel = beyond[:1] - 1 if side > 0.0 else beyond[-1:]
-        found = float(self.at("x", panel, self._solve(self.row("time", panel), np.array([time])))[0])
+        found = float(
+            self.at("x", panel, self._solve(self.row("time", panel), np.array([time])))[0]
+        )
         return side * max(side * found, side * x)
 
     def _solve(self, row: np.ndarray, level: np.ndarray) -> np.ndarray:

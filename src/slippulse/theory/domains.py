@@ -30,4 +30,6 @@ def of_one_shape(domains: Mapping[str, dict] = DOMAINS, **values: Any) -> tuple[
         return np.broadcast_arrays(*arrays.values())
     except ValueError:
         shapes = " and ".join(str(array.shape) for array in arrays.values())
-        raise ValueError(f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast") from None
+        raise ValueError(
+            f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast"
+        ) from None

@@ -34,7 +34,12 @@ class Fronts:
     """
 
     def __init__(
-        self, prestress: Prestress, damping_ratio: float, release: str, reach: float, gamma: float = 0.0
+        self,
+        prestress: Prestress,
+        damping_ratio: float,
+        release: str,
+        reach: float,
+        gamma: float = 0.0,
     ) -> None:
         law = FrontLaw(prestress, gamma, damping_ratio, release)
         check_number("reach", reach, at_least=NARROWEST)
@@ -78,11 +83,15 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     released = fronts.curve.arrival(y) < time
     past = Past(fronts.curve, stiffness[released], y[released], time[released])
     if not np.all(past.left.known & past.right.known):
-        raise ValueError(f"time: {time!r}; allowed: earlier, its past leaves the part that outruns the waves")
+        raise ValueError(
+            f"time: {time!r}; allowed: earlier, its past leaves the part that outruns the waves"
+        )
     out = np.zeros(released.shape)
     out[released] = past.slip_velocity()
     if not np.isfinite(out).all():
-        raise ValueError(f"gamma: {gamma!r}; allowed: numbers whose waves the panels of the fronts resolve")
+        raise ValueError(
+            f"gamma: {gamma!r}; allowed: numbers whose waves the panels of the fronts resolve"
+        )
     return out if out.ndim else float(out)
 
 
@@ -111,7 +120,9 @@ def exact_transition_displacement(
     check_domains(gamma=gamma)
     level = float(prestress.level(np.asarray(1e300)))
     if not prestress.symmetric or level <= 0.0:
-        raise ValueError("prestress: not symmetric and positive; allowed: equal levels > 0 on both sides")
+        raise ValueError(
+            "prestress: not symmetric and positive; allowed: equal levels > 0 on both sides"
+        )
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.
@@ -139,5 +150,7 @@ def uniform_transition_time(
     # Beyond where its waves come from, a slow front need not be known.
     reach = 12.0 / max(1.0 - rate**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
-    curve = Curve([straight_panel(a, b, np.copysign(rate, a + b), tau) for a, b in pairwise(edges.tolist())])
+    curve = Curve(
+        [straight_panel(a, b, np.copysign(rate, a + b), tau) for a, b in pairwise(edges.tolist())]
+    )
     return float(Part(curve, 1.0, 10.0).scan(np.zeros(1))[0]) / float(np.sqrt(float(gamma)))

@@ -107,7 +107,9 @@ def lattice_front_speed(
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
             # To first order in g/v^2, whose factor is 1/24 without damping and 1/6, by quadrature, for b v >> 1.
             strength = damping_ratio * speed if release == "total" else 0.0
-            return speed * (1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0))
+            return speed * (
+                1.0 - springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0)
+            )
     ratio = np.array([float(damping_ratio)])
     low, least = 0.0, 1.0
     if springs <= 1e30:
@@ -198,7 +200,9 @@ def slowest(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndar
 def in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     """`log_prestress` without leaf springs, in as much memory."""
     parts = (slice(i, i + CHUNK) for i in range(0, excess.size, CHUNK))
-    return np.concatenate([log_prestress(excess[part], ratio[part], 0.0, release) for part in parts])
+    return np.concatenate(
+        [log_prestress(excess[part], ratio[part], 0.0, release) for part in parts]
+    )
 
 
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
@@ -209,7 +213,9 @@ def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
         damped = np.log(tau) - np.log(rest + np.sqrt(rest))
         return np.where(ratio < 0.2, undamped + 0.5 * ratio, damped - 1.0 / (1.0 + 2.0 * ratio))
     weight = np.minimum(ratio, 1.0)
-    return (1.0 - weight) * undamped + weight * (np.log(tau / rest) + np.log(np.maximum(ratio, 1.0)))
+    return (1.0 - weight) * undamped + weight * (
+        np.log(tau / rest) + np.log(np.maximum(ratio, 1.0))
+    )
 
 
 def root(
@@ -238,7 +244,9 @@ def root(
         low[alive] = np.where(value < 0.0, np.maximum(low[alive], x[alive]), low[alive])
         change = value - value_before[alive]
         flat = change == 0.0
-        step = np.where(flat, 0.0, -value * (x[alive] - before[alive]) / np.where(flat, 1.0, change))
+        step = np.where(
+            flat, 0.0, -value * (x[alive] - before[alive]) / np.where(flat, 1.0, change)
+        )
         following = x[alive] + step
         outside = (following <= low[alive]) | (following >= high[alive])
         # A secant's error is the product of the last two, up to a factor of order 1.

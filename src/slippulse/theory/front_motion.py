@@ -45,7 +45,11 @@ class SteadyFront:
 
 
 def steady_front(
-    speed: float, damping_ratio: float, springs: float = 0.0, release: str = "total", blocks: int = 100
+    speed: float,
+    damping_ratio: float,
+    springs: float = 0.0,
+    release: str = "total",
+    blocks: int = 100,
 ) -> SteadyFront:
     """The steady front at a given speed, without sticking behind it.
 
@@ -80,7 +84,9 @@ def steady_front(
     period = np.linalg.matrix_power(step, SUBSTEPS)
     # A period later each block is one farther behind, and a block at rest leads.
     shift = np.kron(np.eye(2), np.eye(count, k=-1))
-    state = np.linalg.solve(np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size])
+    state = np.linalg.solve(
+        np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size]
+    )
     states = [np.append(state, 1.0)]
     for _ in range(SUBSTEPS):
         states.append(step @ states[-1])
@@ -107,7 +113,13 @@ def admissibility_table(speeds, ratios, springs, release: str = "total") -> list
     rows = []
     for g, b, v in product(*(as_numbers(*each).flat for each in given.items())):
         front = steady_front(v, b, g, release)
-        row = {"speed": v, "damping_ratio": b, "springs": g, "release": release, "prestress": front.prestress}
+        row = {
+            "speed": v,
+            "damping_ratio": b,
+            "springs": g,
+            "release": release,
+            "prestress": front.prestress,
+        }
         row |= {"stress_ahead": float(front.ahead[:-1].max()), "rest": front.first_rest}
         rows.append(row | {"admissible": front.admissible})
     return rows

@@ -81,7 +81,9 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
     return merged
 
 
-def _crossings(prestress, left: float, right: float, level: float, value: float) -> tuple[bool, list[float]]:
+def _crossings(
+    prestress, left: float, right: float, level: float, value: float
+) -> tuple[bool, list[float]]:
     """Whether an interval begins with the pre-stress at a value or above, and where that changes; it touches twice."""
     # Positions that show each change of sign, and both ends; far outside everything a side has its last level.
     fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
@@ -101,7 +103,9 @@ def _crossings(prestress, left: float, right: float, level: float, value: float)
     for k in np.flatnonzero(above[1:] != above[:-1]):
         touching = x[k : k + 2][at[k : k + 2] == 0.0]
         marks.append(
-            float(touching[0]) if touching.size else root_between(excess, x[k], x[k + 1], xtol=1e-14)
+            float(touching[0])
+            if touching.size
+            else root_between(excess, x[k], x[k + 1], xtol=1e-14)
         )
     return bool(above[0]), marks
 
@@ -128,7 +132,11 @@ class FrontLaw:
         self.prestress, self.gamma, self.alpha = prestress, float(gamma), float(alpha)
         # The fastest that a kernel changes.
         self.rate = max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
-        self.damping_ratio, self.release, self.refinement = float(damping_ratio), release, int(refinement)
+        self.damping_ratio, self.release, self.refinement = (
+            float(damping_ratio),
+            release,
+            int(refinement),
+        )
         # Where an edge of a panel stands, so that no feature falls between two nodes.
         centres = [centre + width * FEATURES for centre, width in _gaussians(prestress)]
         self.features = np.unique(np.concatenate(centres))
@@ -143,7 +151,9 @@ class FrontLaw:
         steps = tuple((-position, level) for position, level in profile.steps)
         bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
         turned = replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)
-        return FrontLaw(turned, self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha)
+        return FrontLaw(
+            turned, self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
+        )
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
         """1/v of each pre-stress."""
@@ -212,7 +222,9 @@ class FrontLaw:
 
     def _too_many(self, level: float, start: float, end: float) -> ValueError:
         scene = f"over a distance of {end - start:g} at gamma = {self.gamma:g}, damping_ratio = {self.damping_ratio:g}"
-        allowed = f"fronts that stay within {MOST_PANELS} panels, of {self.longest(level):.3g} at most"
+        allowed = (
+            f"fronts that stay within {MOST_PANELS} panels, of {self.longest(level):.3g} at most"
+        )
         return ValueError(f"prestress: level {level!r} {scene}; allowed: {allowed}")
 
 
@@ -220,4 +232,6 @@ def straight_panel(left: float, right: float, slope: float, tau: float) -> Panel
     """A panel of a front at constant speed in uniform pre-stress, T = slope x."""
     half = 0.5 * (right - left)
     x = left + half * (1.0 + NODES)
-    return Panel(x, slope * x, np.full(COUNT, tau * half), (left, right), (slope * left, slope * right))
+    return Panel(
+        x, slope * x, np.full(COUNT, tau * half), (left, right), (slope * left, slope * right)
+    )

@@ -97,7 +97,9 @@ class Part:
         """Stick times at positions, found without help from others."""
         out = np.full(x.shape, np.nan)
         release = self.curve.arrival(x)
-        step = (SCAN / self.rate if self.rate > 0.0 else SCAN_WITHOUT_SPRINGS * self.until) / self.refinement
+        step = (
+            SCAN / self.rate if self.rate > 0.0 else SCAN_WITHOUT_SPRINGS * self.until
+        ) / self.refinement
         alive = np.flatnonzero(release < self.until)
         # The last two times and velocities of each: a velocity that turns may have been below 0 in between.
         times = np.stack([release, release], axis=1)
@@ -123,7 +125,11 @@ class Part:
         """Zeros between samples around a minimum above 0 before the first sample below it; NaN where there is none."""
         out = np.full(x.shape, np.nan)
         inner = v[:, 1:-1]
-        turns = (inner < v[:, :-2]) & (inner <= v[:, 2:]) & (np.arange(1, v.shape[1] - 1) < first[:, None])
+        turns = (
+            (inner < v[:, :-2])
+            & (inner <= v[:, 2:])
+            & (np.arange(1, v.shape[1] - 1) < first[:, None])
+        )
         rows, k = np.nonzero(turns & (t[:, 2:] > t[:, 1:-1]))
         low, high = t[rows, k], t[rows, k + 2]
         for _ in range(2):
@@ -209,7 +215,9 @@ class Part:
         slow = self._slow(edge)
         out = list(zip(x[slow].tolist(), stick[slow].tolist(), strict=True))
         jump = np.abs(np.diff(stick)) >= np.diff(x) * (1.0 + SAME)
-        between = (jump | (slow[1:] != slow[:-1])) & (stuck[1:] | stuck[:-1]) & ~(slow[1:] & slow[:-1])
+        between = (
+            (jump | (slow[1:] != slow[:-1])) & (stuck[1:] | stuck[:-1]) & ~(slow[1:] & slow[:-1])
+        )
         for k in np.flatnonzero(between):
             ahead = slow[k] or (not slow[k + 1] and stick[k] >= stick[k + 1])
             fast = k + 1 if ahead else k
@@ -264,7 +272,9 @@ class Part:
                 away = sign * pace(at)
             return at if away > 0.0 else x
 
-        if 0 < k < edge.x.size - 1 and (low := beyond(k - 1, -1.0)) < x < (high := beyond(k + 1, 1.0)):
+        if 0 < k < edge.x.size - 1 and (low := beyond(k - 1, -1.0)) < x < (
+            high := beyond(k + 1, 1.0)
+        ):
             lowest = root_between(pace, low, high, xtol=STEP)
             found = float(self.stick_time(np.array([lowest]))[0])
             # Not for a kink, nor for what is the same.
@@ -322,7 +332,9 @@ def roots_between(function: Callable, lower, upper, at_lower, at_upper, xtol: fl
             values[going] for values in (alive, x, x2, x3, f, f2, f3, least)
         )
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
-        quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+        quadratic = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (
+            f3 - f1
+        ) * f2 / (f3 - f2)
         part = np.where((phi**2 < xi) & ((1.0 - phi) ** 2 < 1.0 - xi), quadratic, 0.5)
         part = np.clip(part, least, 1.0 - least)
     return out

@@ -88,11 +88,15 @@ def pulse_behind_front(
     except (ArithmeticError, ValueError):
         pulse = None
     # Floats of Python overflow without a word.
-    if not pulse or not all(0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)):
+    if not pulse or not all(
+        0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)
+    ):
         critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
         if abs(alpha) > 0.5 * critical:
             at = f"at gamma = {gamma:.4g}, speed = {speed:.6g} without beta, or no pulse is steady"
-            raise ValueError(f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size {at}")
+            raise ValueError(
+                f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size {at}"
+            )
         point = f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
         raise ValueError(f"{point}; allowed: numbers whose pulse can be computed")
     return pulse

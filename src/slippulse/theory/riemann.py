@@ -53,7 +53,11 @@ class Rest:
             left = left[::-1, ::-1]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
-        self.at_nodes = (p, slope, *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)))
+        self.at_nodes = (
+            p,
+            slope,
+            *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)),
+        )
         self._powers = [TO_POWERS @ values.T for values in (p, slope)]
 
     def at(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
@@ -82,7 +86,12 @@ class Past:
     """The domains of dependence of points (y, time), flat arrays as gamma may be for du/dt, behind a curve."""
 
     def __init__(
-        self, curve: Curve, gamma: float | np.ndarray, y: np.ndarray, time: np.ndarray, alpha: float = 0.0
+        self,
+        curve: Curve,
+        gamma: float | np.ndarray,
+        y: np.ndarray,
+        time: np.ndarray,
+        alpha: float = 0.0,
     ):
         self.curve, self.alpha, self.y = curve, alpha, y
         self.stiffness = gamma - 0.25 * alpha**2
@@ -92,12 +101,16 @@ class Past:
     def slip_velocity(self) -> np.ndarray:
         """du/dt."""
         source = self.curve.source
-        return 0.5 * self._along(lambda behind, ahead, kernel, panels: kernel(0) * source[panels].ravel())
+        return 0.5 * self._along(
+            lambda behind, ahead, kernel, panels: kernel(0) * source[panels].ravel()
+        )
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of du/dt by t - y and by t + y: of the formula's ends and of its kernel."""
         ends = []
-        crossings = zip(("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True)
+        crossings = zip(
+            ("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True
+        )
         for name, (panel, s, _), fall in crossings:
             slope = self.curve.at(name, panel, s, order=1)
             # Where the slope is 0 so is tau, and the end contributes nothing.
@@ -172,7 +185,10 @@ class Past:
     def _along(self, integrand: Callable, *count: int) -> np.ndarray:
         """Integrals of an integrand (or a count), per unit of the panels' parameter, over each domain."""
         curve = self.curve
-        out, stiffness = np.empty((*count, self.xi.size)), np.broadcast_to(self.stiffness, self.xi.shape)
+        out, stiffness = (
+            np.empty((*count, self.xi.size)),
+            np.broadcast_to(self.stiffness, self.xi.shape),
+        )
         # Points of about the same panels together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, order.size, CHUNK):

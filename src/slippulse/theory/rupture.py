@@ -64,9 +64,15 @@ class Rupture:
         duration: float = 10.0, refinement: int = 1, rate_strengthening: float = 0.0,
     ) -> None:  # fmt: skip
         check_number("duration", duration, at_least=NARROWEST)
-        self.law = FrontLaw(prestress, gamma, damping_ratio, release, refinement, rate_strengthening)
+        self.law = FrontLaw(
+            prestress, gamma, damping_ratio, release, refinement, rate_strengthening
+        )
         check_number("rate_strengthening", rate_strengthening, at_most=MOST_DECAY / duration)
-        self.prestress, self.gamma, self.rate_strengthening = prestress, self.law.gamma, self.law.alpha
+        self.prestress, self.gamma, self.rate_strengthening = (
+            prestress,
+            self.law.gamma,
+            self.law.alpha,
+        )
         self.duration = float(duration)
         until = self.duration * (1.0 + BEYOND)
         self.stretches, self._unknown = spread(self.law, until)
@@ -117,7 +123,9 @@ class Rupture:
 
     def _stick(self, x: np.ndarray) -> np.ndarray:
         """Stick times, NaN where not until a little beyond the end, whatever the horizon."""
-        positions, back = np.unique(np.abs(x) if self.prestress.symmetric else x, return_inverse=True)
+        positions, back = np.unique(
+            np.abs(x) if self.prestress.symmetric else x, return_inverse=True
+        )
         out = np.full(positions.shape, np.nan)
         for part in self._parts:
             on = part.curve.covers(positions)
@@ -129,7 +137,9 @@ class Rupture:
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
-        return np.where(slides, np.nan, self.slip(x, np.where(np.isfinite(stick), stick, self.duration)))
+        return np.where(
+            slides, np.nan, self.slip(x, np.where(np.isfinite(stick), stick, self.duration))
+        )
 
     @cached_property
     def first_stick(self) -> tuple[float, float] | None:
@@ -164,7 +174,10 @@ class Rupture:
         front = self.fronts_at(time, x)[side == "right"]
 
         def late(position: float) -> float:
-            return float(np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)) - time
+            return (
+                float(np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration))
+                - time
+            )
 
         trailing = front if late(front) <= 0.0 else root_between(late, x, front, xtol=1e-11)
         beyond = self._beyond_horizon(np.array([trailing, front]), time).any()
@@ -190,21 +203,29 @@ class Rupture:
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
         """Fields on a grid of times and positions, at most 1e7 points: arrays [time, position]."""
         if not isinstance(fields, Sequence) or isinstance(fields, str):
-            raise ValueError(f"fields: {short_repr(fields)}; allowed: a list of {', '.join(FIELDS)}")
+            raise ValueError(
+                f"fields: {short_repr(fields)}; allowed: a list of {', '.join(FIELDS)}"
+            )
         for name in fields:
             check_choice("fields", name, FIELDS)
         x, time = as_numbers("positions", positions), as_numbers("times", times)
         if x.ndim != 1 or time.ndim != 1:
-            raise ValueError("times, positions: not one-dimensional; allowed: one-dimensional arrays")
+            raise ValueError(
+                "times, positions: not one-dimensional; allowed: one-dimensional arrays"
+            )
         check_number("times and positions", x.size * time.size, at_most=MOST_POINTS)
         return self._points(tuple(fields), x[None, :], time[:, None])
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
         x, time = of_one_shape(x=x, time=time)
         if np.any(time > self.duration * (1.0 + SAME)):
-            raise ValueError(f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}")
+            raise ValueError(
+                f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}"
+            )
         time = np.minimum(time, self.duration)
-        positions, column = np.unique(np.abs(x) if self.prestress.symmetric else x, return_inverse=True)
+        positions, column = np.unique(
+            np.abs(x) if self.prestress.symmetric else x, return_inverse=True
+        )
         column = column.reshape(x.shape)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._parts:

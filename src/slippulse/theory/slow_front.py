@@ -97,7 +97,9 @@ def _roots_on(values: np.ndarray, limit: float) -> list[float]:
 class _Chunk:
     """One chunk of entries, from where the last one ended leftwards, and the front's positions for them."""
 
-    def __init__(self, curve: Curve, prestress: Prestress, level: float, gamma: float, alpha: float) -> None:
+    def __init__(
+        self, curve: Curve, prestress: Prestress, level: float, gamma: float, alpha: float
+    ) -> None:
         self.curve, self.prestress, self.level = curve, prestress, level
         self.stiffness, self.alpha = gamma - 0.25 * alpha**2, alpha
         self.x0, self.t0 = float(curve.edges[-1]), float(curve.edge_times[-1])
@@ -147,7 +149,9 @@ class _Chunk:
             half = 0.5 * (x - self.x0)
             tau = self.tau(self.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
             area, tau = half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
-            entered, growth = ((weight * each[:, : late.size]).sum(axis=1) for each in (value, slope))
+            entered, growth = (
+                (weight * each[:, : late.size]).sum(axis=1) for each in (value, slope)
+            )
             fall = tau + growth
             if not np.all(fall < 0.0):
                 return None
@@ -202,7 +206,11 @@ class _Chunk:
 
 
 def barrier_depth(
-    tau0: float, tau_barrier: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
+    tau0: float,
+    tau_barrier: float,
+    gamma: float,
+    damping_ratio: float = 0.0,
+    release: str = "total",
 ) -> float:
     """Distance from the edge of a barrier at which a steady pulse dies; a shorter barrier is passed.
 
@@ -219,7 +227,9 @@ def barrier_depth(
     check_number("tau_barrier", tau_barrier, at_least=-STRONGEST, at_most=-WEAKEST * tau0)
     check_domains(gamma=gamma, damping_ratio=damping_ratio)
     speed = float(front_speed(tau0, damping_ratio, release))
-    check_number(f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST)
+    check_number(
+        f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST
+    )
     # The depth scales like 1/sqrt(gamma). Its characteristics entered no further back than the pulse remembers.
     memory = MEMORY * pulse_behind_front(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed

@@ -63,9 +63,14 @@ def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float
     """All connected parts of the rupture until a time, from left to right, and points where more is not known."""
     starts = nucleations(law.prestress)
     if not starts:
-        raise ValueError("prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere")
+        raise ValueError(
+            "prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere"
+        )
     laws = {1.0: law, -1.0: law.mirrored()}
-    befores, afters = [-np.inf, *(right for _, right in starts)], [*(left for left, _ in starts[1:]), np.inf]
+    befores, afters = (
+        [-np.inf, *(right for _, right in starts)],
+        [*(left for left, _ in starts[1:]), np.inf],
+    )
     stretches = []
     for (left, right), before, after in zip(starts, befores, afters, strict=False):
         stretch = Stretch({-1.0: (left, 0.0), 1.0: (right, 0.0)}, {-1.0: -before, 1.0: after})
@@ -158,7 +163,9 @@ def _joined(stretches: list[Stretch]) -> list[Stretch]:
             out.append(right)
             continue
         x = root_between(lead, low, high, xtol=1e-14)
-        rises = np.diff([first.arrival(np.array([x - 1e-6, x])), second.arrival(np.array([x, x + 1e-6]))])
+        rises = np.diff(
+            [first.arrival(np.array([x - 1e-6, x])), second.arrival(np.array([x, x + 1e-6]))]
+        )
         slow = bool(np.any(np.abs(rises) > 1e-6))
         left.cut(1.0, x)
         right.cut(-1.0, x)

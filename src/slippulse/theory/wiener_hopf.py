@@ -41,7 +41,11 @@ SMALL = 0.5
 
 
 def log_prestress(
-    excess: np.ndarray, ratio: np.ndarray, springs: float = 0.0, release: str = "total", drag: float = 0.0
+    excess: np.ndarray,
+    ratio: np.ndarray,
+    springs: float = 0.0,
+    release: str = "total",
+    drag: float = 0.0,
 ) -> np.ndarray:
     """ln tau_0 of steady fronts at speeds v = 1 + excess.
 
@@ -108,7 +112,9 @@ def log_factor(
         factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
     if springs > 0.0:
         edge = 0.5 * np.sqrt(springs)
-        return log(factor), np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge)) + 0.0 * excess[:, 0]
+        return log(factor), np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge)) + 0.0 * excess[
+            :, 0
+        ]
     reference = (1j * excess * z - curved) / (1.0 + iw)
     return log(factor / reference), 0.0 * excess[:, 0]
 
@@ -118,7 +124,9 @@ def log(z: np.ndarray) -> np.ndarray:
     return np.log(np.abs(z)) + 1j * np.arctan2(z.imag, z.real)
 
 
-def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> tuple[np.ndarray, np.ndarray]:
+def roots(
+    iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+) -> tuple[np.ndarray, np.ndarray]:
     """q and r (module docstring) with cuts that run straight up from their branch points."""
     four = 4.0 + springs
     ratio = ratio + 0.25 * drag
@@ -135,7 +143,9 @@ def roots(iw: np.ndarray, ratio: np.ndarray, springs: float, drag: float) -> tup
 
 
 @lru_cache(maxsize=32)
-def nodes(panels: int, angle: float = ANGLE) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def nodes(
+    panels: int, angle: float = ANGLE
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """The right half of the contour, its ray in panels: z, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
@@ -144,7 +154,9 @@ def nodes(panels: int, angle: float = ANGLE) -> tuple[np.ndarray, np.ndarray, np
     turn = np.exp(-1j * angle)
     size = np.exp(ray)
     z = np.concatenate([inner * turn, size * turn, REACH * turn + leg * LEG_DIRECTION])
-    weight = np.concatenate([inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION])
+    weight = np.concatenate(
+        [inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION]
+    )
     return z, weight, np.expm1(1j * z), _exp_beyond(1j * z)
 
 

@@ -56,28 +56,44 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     window = settings["measure"]["front_window"]
     profiles = tables["pulse_profiles"].groupby("simulation")
-    parts = [_rows(sweep, tables[name], profiles.get_group(name), window) for name, sweep in data.items()]
+    parts = [
+        _rows(sweep, tables[name], profiles.get_group(name), window) for name, sweep in data.items()
+    ]
     return pd.concat(parts, ignore_index=True)
 
 
-def _rows(sweep: xr.Dataset, runs: pd.DataFrame, profiles: pd.DataFrame, window: float) -> pd.DataFrame:
+def _rows(
+    sweep: xr.Dataset, runs: pd.DataFrame, profiles: pd.DataFrame, window: float
+) -> pd.DataFrame:
     runs = runs[runs["left"].isin(chosen(runs["left"], LEVELS[runs["boundary"].iloc[0]]))]
     parts = [runs[PARAMETERS].assign(role="run", run=runs.index)]
     for index, numbers in runs.iterrows():
         exact = profiles[profiles["run"] == index].assign(role="exact")
         if numbers["boundary"] == "displacement":
-            scale = dict(zip(FIELDS, numbers[[f"paper_pulse_{kind}" for kind in SCALES]], strict=True))
-            scale["x"], span, reach = numbers["paper_pulse_width"], numbers["exact_pulse_width"], 1.0 + BEHIND
+            scale = dict(
+                zip(FIELDS, numbers[[f"paper_pulse_{kind}" for kind in SCALES]], strict=True)
+            )
+            scale["x"], span, reach = (
+                numbers["paper_pulse_width"],
+                numbers["exact_pulse_width"],
+                1.0 + BEHIND,
+            )
         else:
             peak, width = numbers["exact_largest_velocity"], numbers["width"]
-            scale = {"slip": exact["slip"].max(), "slip_velocity": peak, "slip_acceleration": peak / width}
+            scale = {
+                "slip": exact["slip"].max(),
+                "slip_velocity": peak,
+                "slip_acceleration": peak / width,
+            }
             scale["x"], span, reach = width, float(np.ptp(exact["x"])), 1.0
         run = point(sweep, int(index))
         pulse = leading_pulse(run, window)
         found = pd.DataFrame(comoving(run, pulse)).assign(role="simulation")
         inside = found[found["xi"].between(-reach * span, AHEAD * span)]
         thinned = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
-        found = pd.concat([thinned.assign(x=thinned["xi"] - (pulse.peak_distance - pulse.front)), exact])
+        found = pd.concat(
+            [thinned.assign(x=thinned["xi"] - (pulse.peak_distance - pulse.front)), exact]
+        )
         curves = {key: (found[key] / scale[key]).round(DIGITS) for key in ("x", *FIELDS)}
         parts.append(pd.DataFrame({"role": found["role"], "run": index, **curves}))
     return pd.concat(parts, ignore_index=True).assign(panel=runs["boundary"].iloc[0])
@@ -87,7 +103,10 @@ def looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
     """Colour and line style of each run of one boundary."""
     quantity, other, *_ = LOOKS[table["panel"].iloc[0]]
     runs = table[table["role"] == "run"].set_index("run")
-    style, scale = dict(zip(np.sort(runs[other].unique()), STYLES, strict=False)), colour_scale(quantity)
+    style, scale = (
+        dict(zip(np.sort(runs[other].unique()), STYLES, strict=False)),
+        colour_scale(quantity),
+    )
     return {run: (scale.to_rgba(row["left"]), style[row[other]]) for run, row in runs.iterrows()}
 
 
@@ -124,7 +143,10 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 
 def draw_prestress(axes: Axes, table: pd.DataFrame, box: Box, widths: float) -> None:
     """The pre-stress of the runs in an inset, over some widths of the widest Gaussian."""
-    runs, look = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"]), looks(table)
+    runs, look = (
+        table[table["role"] == "run"].drop_duplicates(["left", "right", "width"]),
+        looks(table),
+    )
     prestress_inset(axes, box, runs, [look[run][0] for run in runs["run"]], widths)
 
 
@@ -148,7 +170,9 @@ def conditions(table: pd.DataFrame) -> str:
     return rf"$\Gamma = {int(held)}$, ${symbol} = {values}$"
 
 
-def prestress_inset(axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float) -> None:
+def prestress_inset(
+    axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float
+) -> None:
     """Profiles of pre-stress of some runs in a box of a panel, over some widths of the widest Gaussian."""
     inset = axes.inset_axes(box)
     x = np.linspace(-widths, widths, 161) * runs["width"].max()

@@ -8,7 +8,17 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..style import BLACK, GREY, PAGE, Look, colour_scale, entry, few_ticks, legend_below, new_panels
+from ..style import (
+    BLACK,
+    GREY,
+    PAGE,
+    Look,
+    colour_scale,
+    entry,
+    few_ticks,
+    legend_below,
+    new_panels,
+)
 
 SYMBOLS = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
 # What varies beside the level: column, and its symbol.
@@ -16,14 +26,29 @@ OTHER = {"displacement": ("gamma", r"$\gamma$"), "stress": ("width", r"$W$")}
 LEVEL = {"displacement": ("tau_0", r"$\tau_0$"), "stress": ("tau_l", r"$\tau_{0,l}$")}
 # Of figures 10 and 11: how many levels, and values of gamma or W, are drawn.
 MARKERS, DRAWN = "os^Dv", 3
-NEAR, FAR = np.arange(0.5, 1.5, 0.05), np.array([0.5, 0.7, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0])
+NEAR, FAR = (
+    np.arange(0.5, 1.5, 0.05),
+    np.array([0.5, 0.7, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0]),
+)
 
 
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """One row a run: parameters, length and time as measured, by the paper, and exact."""
     runs = pd.concat(tables.values(), ignore_index=True)
-    kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "run_flags"]
-    kept += [f"{source}transition_{name}" for name in SYMBOLS for source in ("", "paper_", "exact_")]
+    kept = [
+        "boundary",
+        "left",
+        "right",
+        "width",
+        "gamma",
+        "damping_ratio",
+        "beta",
+        "dx",
+        "run_flags",
+    ]
+    kept += [
+        f"{source}transition_{name}" for name in SYMBOLS for source in ("", "paper_", "exact_")
+    ]
     return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
 
 
@@ -39,13 +64,23 @@ def colours(runs: pd.DataFrame, column: str) -> np.ndarray:
     return colour_scale(quantity).to_rgba(runs[column].to_numpy())
 
 
-def draw_ratio(axes: Axes, runs: pd.DataFrame, quantity: str, across: str, colour: str, marker: str) -> None:
+def draw_ratio(
+    axes: Axes, runs: pd.DataFrame, quantity: str, across: str, colour: str, marker: str
+) -> None:
     """Length or time over the predicted one across a column: exact theory as lines, runs as markers."""
     for _, group in runs.groupby(colour):
         group = group.sort_values(across)
         exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
         axes.plot(group[across], exact, color=colours(group, colour)[0], linewidth=0.8)
-    _scatter(axes, runs, runs[across], runs[quantity] / runs[f"paper_{quantity}"], marker, colour, zorder=3)
+    _scatter(
+        axes,
+        runs,
+        runs[across],
+        runs[quantity] / runs[f"paper_{quantity}"],
+        marker,
+        colour,
+        zorder=3,
+    )
 
 
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
@@ -59,7 +94,14 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
 
 
 def _scatter(
-    axes: Axes, runs: pd.DataFrame, x: pd.Series, y: pd.Series, marker: str, face: str, rim: str = "", **look
+    axes: Axes,
+    runs: pd.DataFrame,
+    x: pd.Series,
+    y: pd.Series,
+    marker: str,
+    face: str,
+    rim: str = "",
+    **look,
 ) -> None:
     """Runs with their colours, flagged ones open and grey."""
     flagged = runs["run_flags"].notna()
@@ -72,7 +114,9 @@ def _scatter(
     axes.scatter(x[~flagged], y[~flagged], gid="runs", **own)
 
 
-def colour_bar(figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any) -> None:
+def colour_bar(
+    figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any
+) -> None:
     """The colours of the levels, or of gamma or W, as a column of runs."""
     quantity, label = LEVEL[boundary] if column == "left" else OTHER[boundary]
     # Its scale is stretched, and ticks at equal distances would overlap.
@@ -105,7 +149,9 @@ def damping_figure(runs: pd.DataFrame) -> Figure:
         axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}")
     colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
     looks = zip(MARKERS, values, strict=False)
-    handles = [entry(f"simulation, {symbol} = {value:g}", marker=mark, color=GREY) for mark, value in looks]
+    handles = [
+        entry(f"simulation, {symbol} = {value:g}", marker=mark, color=GREY) for mark, value in looks
+    ]
     handles.append(entry(r"exact, $\Delta x\to0$", color=GREY, linewidth=0.8))
     legend_below(figure, handles, len(handles))
     return figure

@@ -34,7 +34,9 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
 def description(roles: dict[str, pd.DataFrame]) -> str:
     """Boundary, pre-stress and damping of a run, and its flags."""
     value = roles["parameter"].set_index("series")["value"]
-    parts = [rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$" if value["gamma"] > 0.0 else r"$\Gamma = 0$"]
+    parts = [
+        rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$" if value["gamma"] > 0.0 else r"$\Gamma = 0$"
+    ]
     if value["left"] == value["right"]:
         parts.append(rf"$\tau_0 = {value['left']:g}$")
     else:
@@ -67,7 +69,9 @@ def thin(size: int, most: int) -> np.ndarray:
 def velocity_map(run: xr.Dataset) -> pd.DataFrame:
     """Sampled slip velocity where it is not 0, role "map", and the largest sample, role "largest"."""
     lower, upper = limits(run)
-    x, times, velocity = (run[name].values for name in ("sample_position", "sample_time", "sample_velocity"))
+    x, times, velocity = (
+        run[name].values for name in ("sample_position", "sample_time", "sample_velocity")
+    )
     inside = np.flatnonzero((x >= lower) & (x <= upper))
     columns, rows = inside[thin(inside.size, MAP_SAMPLES)], thin(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
@@ -116,7 +120,9 @@ def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set_xticks(ticks, [setting(value) for value in ticks])
     # Two that are near each other have their labels on their outer sides.
     near = [abs(one - other) < LABEL * (upper - lower) for one, other in pairwise(ticks)]
-    for label, after, before in zip(axes.get_xticklabels(), [*near, False], [False, *near], strict=True):
+    for label, after, before in zip(
+        axes.get_xticklabels(), [*near, False], [False, *near], strict=True
+    ):
         label.set_horizontalalignment("center" if after == before else "right" if after else "left")
     axes.set(xlabel=r"$\tau$", xlim=(lower - 0.15, upper + 0.15))
     axes.set(ylabel=r"position $x$", ylim=(rows["position"].min(), rows["position"].max()))
@@ -128,8 +134,15 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
     times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
     dt, dx = np.diff(times)[0], np.diff(positions)[0]
     extent = (times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2)
-    look: Look = {"origin": "lower", "extent": extent, "interpolation": "bilinear", "aspect": "auto"}
-    image = axes.imshow(grid, VELOCITY_MAP, vmin=0.0, vmax=roles["largest"]["value"].iloc[0], **look)
+    look: Look = {
+        "origin": "lower",
+        "extent": extent,
+        "interpolation": "bilinear",
+        "aspect": "auto",
+    }
+    image = axes.imshow(
+        grid, VELOCITY_MAP, vmin=0.0, vmax=roles["largest"]["value"].iloc[0], **look
+    )
     draw_edges(axes, roles, times[-1])
     return image
 
@@ -137,14 +150,19 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
 def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     """The front and the trailing edge, known to a block and a fraction of a step; what is stuck is hidden."""
     beyond = 0.01 * end
-    front, trailing = roles["front"].sort_values("position"), roles["trailing"].sort_values("position")
+    front, trailing = (
+        roles["front"].sort_values("position"),
+        roles["trailing"].sort_values("position"),
+    )
     x, release = front["position"].to_numpy(), front["time"].to_numpy()
     axes.set(xlim=(0.0, end), xlabel=r"time $t$")
     axes.tick_params(labelleft=False)
     if not x.size:
         return
     around = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
-    around = np.clip(around, roles["prestress"]["position"].min(), roles["prestress"]["position"].max())
+    around = np.clip(
+        around, roles["prestress"]["position"].min(), roles["prestress"]["position"].max()
+    )
     before = np.concatenate([[end, end], release, [end, end]])
     axes.fill_betweenx(around, -beyond, before, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(release, x, color=BLACK, linewidth=0.8, zorder=2.0, label="front")
@@ -152,4 +170,6 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
         axes.fill_betweenx(x, stick, end + beyond, color=STUCK, linewidth=0.0, zorder=1.4)
-        axes.plot(stick, x, color=BLACK, linewidth=0.8, linestyle=(0, (3, 1.5)), label="trailing edge")
+        axes.plot(
+            stick, x, color=BLACK, linewidth=0.8, linestyle=(0, (3, 1.5)), label="trailing edge"
+        )
