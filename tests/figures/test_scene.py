@@ -16,8 +16,8 @@ from slippulse.configuration.schema import Model, NamedScene
 from slippulse.data.points import point
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.figures import own_sweep
 from slippulse.figures import scene as figure
+from slippulse.figures import user_defined_sweep
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
 from slippulse.predict.measured import measured_table
 from slippulse.simulation.simulate import run_sweep
@@ -141,8 +141,10 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
     measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
     predicted = predict.predictions(predict.TOPICS, scenes, config["measure"])
-    save_table(own_sweep.table({}, {name: measured.join(predicted)}, {}), tmp_path / "sweep.csv")
-    drawn = own_sweep.plot(load_table(tmp_path / "sweep.csv"))
+    save_table(
+        user_defined_sweep.table({}, {name: measured.join(predicted)}, {}), tmp_path / "sweep.csv"
+    )
+    drawn = user_defined_sweep.plot(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
     # Of each line, theory and markers full and open.
     assert len(speeds.lines) == 3 * lines

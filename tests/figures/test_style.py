@@ -99,3 +99,11 @@ def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp
     pdf = PdfReader(tmp_path / "figure.pdf")
     assert dict(pdf.metadata or {}) == ({"/Keywords": said} if said else {})
     assert "pre-stress AVATAR" in pdf.pages[0].extract_text()
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (1, 3), (2, 1), (2, 3)])
+def test_every_panel_has_a_letter_in_the_order_of_reading(rows, columns):
+    figure, panels = style.new_panels(COLUMN, 2.0, rows, columns)
+    assert panels == figure.axes
+    letters = [f"({letter})" for letter in "abcdef"[: rows * columns]]
+    assert [axes.get_title(loc="left") for axes in panels] == letters

@@ -142,7 +142,7 @@ def test_every_figure_has_one_position_and_a_caption(source, captions, project, 
     placed = NAMED.findall(source)
     modules = (project / "src/slippulse/figures").glob("*.py")
     figures = {path.stem for path in modules if path.stem.startswith(("fig", "study"))}
-    assert sorted([*placed, "own_sweep"]) == sorted(captions)
+    assert sorted([*placed, "user_defined_sweep"]) == sorted(captions)
     assert len(figures) >= 17 and figures <= set(placed)
     assert sum(name.startswith("fig") for name in figures) == 11
     assert read(manuscript / "summary.yaml")["picture"] in figures
@@ -157,9 +157,12 @@ def test_every_figure_has_one_position_and_a_caption(source, captions, project, 
             < len(re.findall(r"[^\W\d_][\w'-]+", MATH.sub(" ", EXPRESSION.sub(" ", text))))
             <= 120
         ), name
-        assert "runs(" in text or r"\Gamma=" in text or "no run" in text or name == "own_sweep", (
-            name
-        )
+        assert (
+            "runs(" in text
+            or r"\Gamma=" in text
+            or "no run" in text
+            or name == "user_defined_sweep"
+        ), name
 
 
 def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_path):

@@ -50,7 +50,7 @@ MODULES = {
     **{step: [f"steps.{step}"] for step in STEPS},
     **{name: ["steps.draw_figure", f"figures.{name}"] for name in DRAWN},
     **{rule: ["steps.run_study", f"studies.{study}"] for rule, study in STUDIED.items()},
-    "sweep_mine": ["steps.draw_figure", "figures.own_sweep"],
+    "sweep_mine": ["steps.draw_figure", "figures.user_defined_sweep"],
     "predict": ["steps.predict", *(f"predict.{topic}" for topic in TOPICS)],
 }
 RULES = {*MODULES}

@@ -87,7 +87,7 @@ def halved_spacing(table, path):
     assert table["beta"][0] == pytest.approx(0.002)
 
 
-def own_sweep(table, path):
+def user_defined_sweep(table, path):
     """It is the product of its lists."""
     assert len(table) == 12
     assert np.isfinite(table["pulse_slip"]).all()
@@ -133,7 +133,7 @@ TARGETS = {
     elastic_release: "measurements/space_time_displacement.csv",
     fixed_beta: "measurements/continuum_fixed_ratio.csv",
     halved_spacing: "measurements/space_time_displacement.csv",
-    own_sweep: "measurements/own_sweep.csv",
+    user_defined_sweep: "measurements/user_defined_sweep.csv",
     chunked_sweep: "measurements/chunked_sweep.csv",
     target_error: "uncertainties/target_error.csv",
 }
@@ -158,8 +158,8 @@ def test_an_example_does_what_it_promises(make, see):
 
 @pytest.mark.slow
 def test_without_a_target_error_a_grid_study_says_nothing_of_it(make):
-    path = make("own_sweep", "results/uncertainties/own_sweep.csv")
+    path = make("user_defined_sweep", "results/uncertainties/user_defined_sweep.csv")
     last = ["quantity", "value", "extrapolated", "observed_order", "uncertainty"]
     assert list(pd.read_csv(path).columns[-5:]) == last
-    log = path.parents[1] / "logs/study_grid/own_sweep.log"
+    log = path.parents[1] / "logs/study_grid/user_defined_sweep.log"
     assert "accuracy" not in log.read_text(encoding="utf-8")

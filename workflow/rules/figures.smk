@@ -46,7 +46,7 @@ for figure, needs in (NEEDS | SWEEPS).items():
         priority: 1
         params:
             step="draw_figure",
-            figure=figure if figure in NEEDS else "own_sweep",
+            figure=figure if figure in NEEDS else "user_defined_sweep",
             values=selected(config, needs.get("settings", ()), config["figures"].get(figure, {})),
         message:
             f"Drawing {figure}"

@@ -99,7 +99,7 @@ def new_panels(
 ) -> tuple[Figure, list[Axes]]:
     """An empty figure with lettered panels in the order of reading."""
     figure = new_figure(width, height)
-    panels = list(figure.subplots(rows, columns, **options).flat)
+    panels = list(figure.subplots(rows, columns, squeeze=False, **options).flat)
     for axes, letter in zip(panels, "abcdef", strict=False):
         panel_letter(axes, letter)
     return figure, panels

@@ -58,7 +58,7 @@ def index_page(
     figures = {
         # A user-defined sweep has no caption but its name.
         name: captions.get(name)
-        or captions["own_sweep"]._replace(title=name.removeprefix("sweep_"))
+        or captions["user_defined_sweep"]._replace(title=name.removeprefix("sweep_"))
         for name in chain.from_iterable(galleries.values())
     }
     written = [text for line in lines for text in (line.topic, line.text)]
