@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .checks import check_kind, check_number, short_repr
+from .roots import root_to_last_bit
 
 
 @dataclass(frozen=True)
@@ -183,10 +184,7 @@ def _balance_position(prestress: Prestress) -> float:
         lower *= 2.0
     if not prestress.integral(lower, far) <= 0.0 <= prestress.integral(upper, far):
         raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
-    # By bisection, to the last bit: what needs fewer steps is slow to load.
-    while lower < (middle := 0.5 * (lower + upper)) < upper:
-        lower, upper = (middle, upper) if prestress.integral(middle, far) < 0.0 else (lower, middle)
-    return upper
+    return root_to_last_bit(lambda x: prestress.integral(x, far), lower, upper)
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:

@@ -7,10 +7,10 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
+from ..model.roots import roots_between
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, slip_velocity
 from ..theory.front_law import front_speed
-from ..theory.part import roots_between
 from ..theory.pulse import paper_transition_displacement
 
 NEEDS = {

@@ -9,6 +9,7 @@ wider than the layer of damped or lattice waves at its tip, a few blocks unless 
 import numpy as np
 
 from ..model.checks import check_choice, check_number, check_runaway
+from ..model.roots import increasing_roots
 from ..model.scene import RELEASES
 from .domains import DOMAINS, check_domains, of_one_shape
 from .pulse import SteadyPulse, front_speed_undamped, pulse_behind_front
@@ -219,43 +220,24 @@ def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
 
 
 def root(
-    tau: np.ndarray, ratio: np.ndarray, springs: float, release: str, slowest: float = SLOWEST,
+    tau: np.ndarray,
+    ratio: np.ndarray,
+    springs: float,
+    release: str,
+    slowest: float = SLOWEST,
     drag: float = 0.0,
-) -> np.ndarray:  # fmt: skip
-    """x = ln(v - 1) from the slowest on where the pre-stress is tau, by secants in ln(tau/(1 - tau)).
+) -> np.ndarray:
+    """ln(v - 1), from the slowest on, where the pre-stress is tau, with ln(tau/(1 - tau)) compared.
 
-    Monotone and nearly linear in x, hence bracketed: a secant that leaves the bracket is replaced by its middle.
+    That is monotone and nearly linear in ln(v - 1).
     """
-    low, high = np.full(tau.size, slowest), np.full(tau.size, FASTEST)
     target = np.log(tau) - np.log1p(-tau)
 
-    def mismatch(x: np.ndarray, alive: np.ndarray) -> np.ndarray:
-        level = log_prestress(np.exp(x), ratio[alive], springs, release, drag)
+    def mismatch(x: np.ndarray, which: np.ndarray) -> np.ndarray:
+        level = log_prestress(np.exp(x), ratio[which], springs, release, drag)
         # Beyond the floating range below 1 the stress is faster than any target.
-        return level - np.log(np.maximum(-np.expm1(level), 1e-17)) - target[alive]
+        return level - np.log(np.maximum(-np.expm1(level), 1e-17)) - target[which]
 
-    alive = np.arange(tau.size)
-    x = np.clip(first_guess(tau, ratio, release), low + 0.1, high - 1.0)
-    before, value_before = x.copy(), mismatch(x, alive)
-    x = np.clip(x - np.clip(value_before, -2.0, 2.0), low, high)
-    for _ in range(200):
-        value = mismatch(x[alive], alive)
-        high[alive] = np.where(value > 0.0, np.minimum(high[alive], x[alive]), high[alive])
-        low[alive] = np.where(value < 0.0, np.maximum(low[alive], x[alive]), low[alive])
-        change = value - value_before[alive]
-        flat = change == 0.0
-        step = np.where(
-            flat, 0.0, -value * (x[alive] - before[alive]) / np.where(flat, 1.0, change)
-        )
-        following = x[alive] + step
-        outside = (following <= low[alive]) | (following >= high[alive])
-        # A secant's error is the product of the last two, up to a factor of order 1.
-        last = np.abs(x[alive] - before[alive])
-        tiny = np.abs(step) * np.minimum(last, 1.0) <= 1e-15 * (1.0 + np.abs(x[alive]))
-        following = np.where(outside & ~tiny, 0.5 * (low[alive] + high[alive]), following)
-        before[alive], value_before[alive], x[alive] = x[alive], value, following
-        narrow = high[alive] - low[alive] <= 1e-13 * (1.0 + np.abs(x[alive]))
-        alive = alive[~(tiny | narrow | (value == 0.0))]
-        if alive.size == 0:
-            return x
-    raise ArithmeticError(f"the front speed did not converge at tau0 = {tau[alive[0]]!r}")
+    low, high = np.full(tau.size, slowest), np.full(tau.size, FASTEST)
+    guess = np.clip(first_guess(tau, ratio, release), low + 0.1, high - 1.0)
+    return increasing_roots(mismatch, guess, low, high)
