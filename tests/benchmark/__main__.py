@@ -25,8 +25,8 @@ from slippulse.simulation.simulate import simulate
 from slippulse.solver.fixed_step import FixedStepLattice
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.run import run_scene
-from slippulse.theory.front_law import front_speed as exact_speed
-from slippulse.theory.front_law import steady_pulse
+from slippulse.theory.front_speeds import front_speed as exact_speed
+from slippulse.theory.front_speeds import steady_pulse
 
 from . import stencils
 

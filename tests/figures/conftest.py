@@ -10,7 +10,7 @@ from selection import small_sweep
 from slippulse.configuration.expand import expand
 from slippulse.data.store import load_dataset, save_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.predict.measured import measured_table
+from slippulse.predict.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 from slippulse.steps.predict import predictions
 from slippulse.steps.reach import declared

@@ -19,7 +19,7 @@ from slippulse.data.tables import load_table, save_table
 from slippulse.figures import scene as figure
 from slippulse.figures import user_defined_sweep
 from slippulse.figures.scene_animation import FRAMES, animate, save_animation
-from slippulse.predict.measured import measured_table
+from slippulse.predict.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 from slippulse.steps import draw_scene, measure, predict, simulate, study_grid
 

@@ -11,7 +11,7 @@ from slippulse.measure.table import far_field, half_width, lattice_noise, slidin
 from slippulse.measure.transition import STALL, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.predict.measured import pulse_state
+from slippulse.predict.comparison import pulse_state
 from slippulse.simulation.simulate import Samples, simulate
 from slippulse.theory import ArrestingCrack, front_speed
 
@@ -201,7 +201,7 @@ def test_the_longest_wait_on_the_way():
 )  # fmt: skip
 def test_a_stalled_front_is_late_and_a_resolved_one_is_not(level, dx, ratio, state, paper_accuracy):
     profile = Prestress(level, 0.0)
-    exact = ArrestingCrack(profile, ratio).share_time(0.95)
+    exact = ArrestingCrack(profile, ratio).time_at_fraction(0.95)
     run = simulate(Scene("stress", profile, 1.6 * exact, dx, beta=ratio * dx, **paper_accuracy))
     found = transition_stress(run, 0.95)
     assert found["transition_state"] == state

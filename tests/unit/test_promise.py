@@ -11,7 +11,7 @@ from slippulse.figures.shared.numbers import scene_numbers
 from slippulse.measure.promise import COVERED, covers, judged, summary
 from slippulse.measure.table import PARAMETERS
 from slippulse.measure.uncertainty import grid_study, grid_tables
-from slippulse.predict.measured import measured_table
+from slippulse.predict.comparison import measured_table
 from slippulse.report.scene_page import scene_page
 
 SHARE = 0.95

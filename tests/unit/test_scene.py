@@ -11,7 +11,7 @@ import slippulse as sp
 from slippulse.data.points import point
 from slippulse.data.store import load_dataset, save_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.predict.measured import measured_table
+from slippulse.predict.comparison import measured_table
 
 STRESS = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.0), "duration": 5.0, "dx": 0.01}
 DISPLACEMENT = STRESS | {"boundary": "displacement", "gamma": 0.65, "beta": 1e-3}

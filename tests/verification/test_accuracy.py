@@ -7,7 +7,7 @@ import tolerances as tol
 import slippulse as sp
 from slippulse import theory
 from slippulse.measure.promise import covers
-from slippulse.predict.measured import measured_table
+from slippulse.predict.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 
 SHARE = 0.95
@@ -54,9 +54,9 @@ def pulse(accuracy, level, gamma, ratio, width, release):
 def crack(accuracy, level, ratio, width):
     profile = sp.Prestress(level, 0.0, width)
     exact = theory.ArrestingCrack(profile, ratio)
-    duration = 1.15 * exact.share_time(SHARE)
+    duration = 1.15 * exact.time_at_fraction(SHARE)
     return scene_of(accuracy, ratio, duration, boundary="stress", prestress=profile), {
-        "transition_time": exact.share_time(SHARE), "transition_length": exact.share_length(SHARE),
+        "transition_time": exact.time_at_fraction(SHARE), "transition_length": exact.length_at_fraction(SHARE),
         "largest_velocity": exact.peak_velocity,
     }  # fmt: skip
 

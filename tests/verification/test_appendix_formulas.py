@@ -94,7 +94,7 @@ def test_the_left_front_takes_for_ever():
     """Each tenth part of the way left takes more time than the one before, and the time exceeds the entry point."""
     crack = theory.ArrestingCrack(Prestress(-0.75, 0.0, width=5.0), 0.1)
     shares = 1.0 - 10.0 ** -np.arange(1.0, 6.0)
-    times = np.array([crack.share_time(float(share)) for share in shares])
+    times = np.array([crack.time_at_fraction(float(share)) for share in shares])
     entries = np.array([crack.entry_for(float(share * crack.balance_position)) for share in shares])
     assert np.all(np.diff(times) > 0.0)
     assert np.all(times > entries - shares * crack.balance_position)

@@ -117,8 +117,10 @@ def test_share_times_and_peak_under_stress_as_tabulated_to_first_order(left, wid
         0.0, abs=tol.QUADRATURE
     )
     for share, known in zip((0.9, 0.95, 0.99), table, strict=False):
-        assert undamped.share_time(share) / distance == pytest.approx(known, rel=tol.SHARE_TABLE)
-    exact, errors = np.array([crack.share_time(share) for share in shares]), []
+        assert undamped.time_at_fraction(share) / distance == pytest.approx(
+            known, rel=tol.SHARE_TABLE
+        )
+    exact, errors = np.array([crack.time_at_fraction(share) for share in shares]), []
     for dx in np.array([4.0, 2.0, 1.0]) * min(0.01, 0.005 * width):
         values = {
             "dx": dx,

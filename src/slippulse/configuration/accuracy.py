@@ -15,7 +15,7 @@ from ..model.checks import check_choice, check_kind, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
 from ..model.stability import MARGIN, largest_step
-from ..theory.front_law import front_speed
+from ..theory.front_speeds import front_speed
 from ..theory.pulse import pulse_behind_front
 from .expand import promise_of, runs
 from .problems import ConfigError

@@ -14,7 +14,7 @@ import numpy as np
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..theory.front_law import LARGEST_RATIO, front_speed
+from ..theory.front_speeds import LARGEST_RATIO, front_speed
 from ..theory.pulse import pulse_behind_front
 from .accuracy import ORDER, STEP, promised
 from .expand import expand, run_count

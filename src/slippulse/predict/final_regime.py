@@ -6,7 +6,7 @@ import pandas as pd
 from ..measure.regime import UNDECIDED
 from ..model.checks import check_number
 from ..model.scene import Scene
-from ..theory.front_law import front_speed
+from ..theory.front_speeds import front_speed
 from .numbers import level, ratio
 
 

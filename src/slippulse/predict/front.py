@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.scene import Scene
-from ..theory.front_law import front_speed, front_speed_undamped, lattice_front_speed
+from ..theory.front_speeds import front_speed, front_speed_undamped, lattice_front_speed
 from .numbers import NAN, SIDES, level, or_nan, ratio
 
 # Where blocks are smaller, gamma dx^2 below this, leaf springs hardly change the speed of a damped front, and finding

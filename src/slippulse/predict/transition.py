@@ -59,8 +59,8 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
     return {
         "exact_largest_velocity": crack.peak_velocity,
         "exact_half_width": or_nan(lambda: _half_width(crack)),
-        "exact_transition_time": or_nan(lambda: crack.share_time(fraction)),
-        "exact_transition_length": or_nan(lambda: crack.share_length(fraction)),
+        "exact_transition_time": or_nan(lambda: crack.time_at_fraction(fraction)),
+        "exact_transition_length": or_nan(lambda: crack.length_at_fraction(fraction)),
     }
 
 

@@ -2,7 +2,7 @@
 
 from ..data.store import load_dataset
 from ..data.tables import save_table
-from ..predict.measured import measured_table
+from ..predict.comparison import measured_table
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:

@@ -11,7 +11,7 @@ from ..data.tables import load_table, save_table
 from ..measure.promise import judged, summary
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import grid_tables
-from ..predict.measured import measured_table
+from ..predict.comparison import measured_table
 from ..simulation.runs import run_all
 from ..solver.run import run_scene
 

@@ -20,8 +20,8 @@ from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_law import front_speed as exact_speed
-from ..theory.front_law import front_speed_undamped, steady_pulse
+from ..theory.front_speeds import front_speed as exact_speed
+from ..theory.front_speeds import front_speed_undamped, steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
@@ -107,7 +107,7 @@ def errors(scheme: str, order: int, step: float, dx: float, window: float) -> di
             costs(data) | dict(zip(QUANTITIES, np.abs(np.array(ratios) - 1.0), strict=False))
         )
     crack = crack_of(UNEVEN, max(DAMPING_RATIOS))
-    time, distance = crack.share_time(FRACTION), abs(crack.balance_position)
+    time, distance = crack.time_at_fraction(FRACTION), abs(crack.balance_position)
     data = run(UNEVEN, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
     late, short = (
         arrival(data, FRACTION * distance, "left")[0] / time,

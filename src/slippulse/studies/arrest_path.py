@@ -20,7 +20,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         if scene.damping_ratio not in parts:
             crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
             time = (
-                np.array([crack.share_time(1.0 - left) for left in TO_GO]) / -crack.balance_position
+                np.array([crack.time_at_fraction(1.0 - left) for left in TO_GO])
+                / -crack.balance_position
             )
             parts[scene.damping_ratio] = pd.DataFrame({"time": time, "to_go": TO_GO})
     return pd.concat(parts, names=["damping_ratio"]).reset_index("damping_ratio")

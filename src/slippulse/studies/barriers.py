@@ -10,7 +10,7 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.run import run_scene
-from ..theory.front_law import steady_pulse
+from ..theory.front_speeds import steady_pulse
 from ..theory.pulse import SteadyPulse
 from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 

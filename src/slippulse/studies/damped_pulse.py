@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..theory.front_law import front_speed, steady_pulse
+from ..theory.front_speeds import front_speed, steady_pulse
 from ..theory.pulse import paper_pulse
 
 # Simulations whose parameters the curves have.

@@ -12,8 +12,8 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES
 from ..predict.exact_rupture import exact_rupture
 from ..predict.numbers import or_nan
-from ..theory.front_law import front_speed, steady_pulse
 from ..theory.front_motion import admissibility_table
+from ..theory.front_speeds import front_speed, steady_pulse
 from ..theory.rupture import Rupture
 from ..theory.slow_front import barrier_depth, barrier_depth_estimate
 from .gaussian_transition import over_paper

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.scene import RELEASES
-from ..theory.front_law import prestress_for_speed
+from ..theory.front_speeds import prestress_for_speed
 
 NEEDS = {"sweeps": ()}
 

@@ -14,14 +14,14 @@ from ..measure.table import measure_run
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
-from ..predict.measured import pulse_state
+from ..predict.comparison import pulse_state
 from ..simulation.runs import simulate_on_lattice
 from ..solver.lattice import UnstableRun
 from ..solver.run import run_scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, exact_transition_displacement
-from ..theory.front_law import front_speed as exact_speed
-from ..theory.front_law import lattice_front_speed
+from ..theory.front_speeds import front_speed as exact_speed
+from ..theory.front_speeds import lattice_front_speed
 from ..theory.pulse import pulse_behind_front
 
 NEEDS = {"settings": ["measure.front_window"]}
@@ -141,7 +141,7 @@ def edges() -> Iterator[Edge]:
         (-10.0, 0.004, 5.0, 0.1, "right"), (-30.0, 0.002, 5.0, 0.1, "flagged"), (-30.0, 0.002, 60.0, 0.1, "right"),
         (-100.0, 0.05, 60.0, 0.1, "flagged"), (-100.0, 0.001, 60.0, 0.1, "right"),
     ):  # fmt: skip
-        time = ArrestingCrack(Prestress(level, 0.0), ratio).share_time(FRACTION)
+        time = ArrestingCrack(Prestress(level, 0.0), ratio).time_at_fraction(FRACTION)
         of = {
             "level": level,
             "right": 0.0,

@@ -5,7 +5,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..predict.numbers import or_nan
-from ..theory.front_law import continuum_front_speed, lattice_front_speed, prestress_for_speed
+from ..theory.front_speeds import continuum_front_speed, lattice_front_speed, prestress_for_speed
 
 # Simulations whose parameters the curves have.
 NEEDS = {

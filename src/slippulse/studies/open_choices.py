@@ -10,7 +10,7 @@ from ..model.prestress import Prestress
 from ..model.roots import roots_between
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, slip_velocity
-from ..theory.front_law import front_speed
+from ..theory.front_speeds import front_speed
 from ..theory.pulse import paper_transition_displacement
 
 NEEDS = {
@@ -81,7 +81,8 @@ def stress(
         crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
         way = -crack.balance_position
         found = [
-            ("Gaussian", f, crack.share_time(f), crack.share_length(f), way) for f in fractions
+            ("Gaussian", f, crack.time_at_fraction(f), crack.length_at_fraction(f), way)
+            for f in fractions
         ]
         way = 1.0 + (1.0 + 0.5 * left) / -left
         found.append(("tent", 1.0, way + 1.0 + crossing, 2.0 * way + 2.0, way))

@@ -5,7 +5,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..predict.exact_rupture import exact_rupture
-from ..theory.front_law import steady_pulse
+from ..theory.front_speeds import steady_pulse
 
 # The simulation whose parameters the curves have.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}

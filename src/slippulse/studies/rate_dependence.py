@@ -10,7 +10,7 @@ from ..model.prestress import Prestress, prestress_balance_position
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.runs import simulate_on_lattice
-from ..theory.front_law import front_speed
+from ..theory.front_speeds import front_speed
 from ..theory.pulse import critical_rate_strengthening, pulse_behind_front
 from ..theory.rupture import Rupture
 

@@ -6,7 +6,7 @@ _NAMES = {
     "arrest": "ArrestingCrack",
     "dimensional": "Layer damage_zone_stress_drop",
     "exact_transition": "ExactTransition Fronts exact_transition_displacement slip_velocity uniform_transition_time",
-    "front_law": "continuum_front_speed front_speed lattice_front_speed prestress_for_speed steady_pulse",
+    "front_speeds": "continuum_front_speed front_speed lattice_front_speed prestress_for_speed steady_pulse",
     "front_motion": "SteadyFront admissibility_table steady_front",
     "pulse": "SteadyPulse critical_rate_strengthening front_speed_undamped paper_pulse paper_transition_displacement"
     " paper_transition_stress prestress_balance_position",

@@ -58,14 +58,14 @@ class ArrestingCrack:
         entry = self.entry_for(position)
         return entry + float(self.fronts.arrival(entry)) - position
 
-    def share_time(self, share: float) -> float:
+    def time_at_fraction(self, share: float) -> float:
         """When the left front has covered a share of |x_minus|, in (0, 1)."""
         check_number("share", share, above=0.0, below=1.0)
         return self.time_at(share * self.balance_position)
 
-    def share_length(self, share: float) -> float:
+    def length_at_fraction(self, share: float) -> float:
         """Distance between the fronts then."""
-        time = self.share_time(share)
+        time = self.time_at_fraction(share)
         last, last_time = (
             float(self.fronts.curve.edges[-1]),
             float(self.fronts.curve.edge_times[-1]),

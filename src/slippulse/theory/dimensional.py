@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..model.checks import check_choice, check_number
-from .domains import check_domains, of_one_shape
+from .domains import broadcast_numbers, check_domains
 
 # So that no product overflows.
 LARGEST = 1e100
@@ -123,5 +123,5 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     given = {"slip": slip, "shear_modulus": shear_modulus, "rock_shear_modulus": rock_shear_modulus}
     given |= {"thickness": thickness, "rock_thickness": rock_thickness}
     domains = {key: POSITIVE | ({"at_least": least[key]} if key in least else {}) for key in given}
-    slip, zone, rock, thickness, beyond = of_one_shape(domains, **given)
+    slip, zone, rock, thickness, beyond = broadcast_numbers(domains, **given)
     return zone * slip / (thickness + zone / rock * beyond)

@@ -23,7 +23,9 @@ def check_domains(**values: Any) -> None:
         check_number(key, value, **DOMAINS[key])
 
 
-def of_one_shape(domains: Mapping[str, dict] = DOMAINS, **values: Any) -> tuple[np.ndarray, ...]:
+def broadcast_numbers(
+    domains: Mapping[str, dict] = DOMAINS, **values: Any
+) -> tuple[np.ndarray, ...]:
     """Arrays of the values, broadcast to each other; refused outside their domains."""
     arrays = {key: as_numbers(key, value, **domains.get(key, {})) for key, value in values.items()}
     try:

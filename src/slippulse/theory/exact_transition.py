@@ -8,8 +8,8 @@ import numpy as np
 from ..model.checks import as_numbers, check_choice, check_kind, check_number
 from ..model.prestress import Prestress
 from .curve import Curve, seen
-from .domains import check_domains, of_one_shape
-from .front_law import front_speed
+from .domains import broadcast_numbers, check_domains
+from .front_speeds import front_speed
 from .fronts import NARROWEST, FrontLaw, nucleations, straight_panel
 from .part import Part
 from .riemann import Past
@@ -79,7 +79,9 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
-    stiffness, y, time = of_one_shape({"gamma": {"at_least": 0.0}}, gamma=gamma, y=y, time=time)
+    stiffness, y, time = broadcast_numbers(
+        {"gamma": {"at_least": 0.0}}, gamma=gamma, y=y, time=time
+    )
     released = fronts.curve.arrival(y) < time
     past = Past(fronts.curve, stiffness[released], y[released], time[released])
     if not np.all(past.left.known & past.right.known):

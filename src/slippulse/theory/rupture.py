@@ -15,7 +15,7 @@ from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.roots import root_between
 from .curve import SAME
-from .domains import of_one_shape
+from .domains import broadcast_numbers
 from .fronts import NARROWEST, FrontLaw
 from .part import Part
 from .spreading import Stretch, spread
@@ -217,7 +217,7 @@ class Rupture:
         return self._points(tuple(fields), x[None, :], time[:, None])
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
-        x, time = of_one_shape(x=x, time=time)
+        x, time = broadcast_numbers(x=x, time=time)
         if np.any(time > self.duration * (1.0 + SAME)):
             raise ValueError(
                 f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}"

@@ -20,7 +20,7 @@ from ..model.checks import check_number
 from ..model.prestress import Prestress
 from .curve import AT_ENDS, COUNT, CUMULATIVE, NODES, SLOPE, TO_SERIES, WEIGHTS, Curve, Panel
 from .domains import check_domains
-from .front_law import front_speed
+from .front_speeds import front_speed
 from .fronts import analytic, straight_panel
 from .pulse import pulse_behind_front
 from .riemann import decay, kernel_of, partial_weights

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from .curve import power_basis, value_and_slope, with_slopes
-from .front_law import in_chunks, slowest
+from .front_speeds import in_chunks, slowest
 
 # Nodes on a panel, and the largest last coefficients of the pre-stress on it.
 COUNT = 14

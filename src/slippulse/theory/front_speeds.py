@@ -11,7 +11,7 @@ import numpy as np
 from ..model.checks import check_choice, check_number, check_runaway
 from ..model.roots import increasing_roots
 from ..model.scene import RELEASES
-from .domains import DOMAINS, check_domains, of_one_shape
+from .domains import DOMAINS, broadcast_numbers, check_domains
 from .pulse import SteadyPulse, front_speed_undamped, pulse_behind_front
 from .wiener_hopf import log_prestress
 
@@ -43,7 +43,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     1/sqrt(1 - tau_0^2) for any dx. Relative error below 1e-12 in tau_0.
     """
     check_choice("release", release, RELEASES)
-    tau, ratio = of_one_shape(tau0=tau0, damping_ratio=damping_ratio)
+    tau, ratio = broadcast_numbers(tau0=tau0, damping_ratio=damping_ratio)
     out = np.array(front_speed_undamped(tau))
     damped = ratio > 0.0
     near = damped & (1.0 - tau < NEARLY_ONE[release]) & ((release == "total") | (ratio < 1e3))
@@ -66,7 +66,7 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     Raises ValueError: for a speed (wave speeds) outside 1 to 1e100, or as `front_speed`.
     """
     check_choice("release", release, RELEASES)
-    speeds, ratio = of_one_shape(speed=speed, damping_ratio=damping_ratio)
+    speeds, ratio = broadcast_numbers(speed=speed, damping_ratio=damping_ratio)
     excess = speeds - 1.0
     out = np.array(np.sqrt(excess * (1.0 + speeds)) / speeds)
     damped = ratio > 0.0
