@@ -1,7 +1,7 @@
-"""Claims: the rule of each kind on made-up numbers, claims from invented tables, what texts say of them."""
+"""Claims: the rule of each kind on invented numbers, claims from invented tables, their texts."""
 
 import json
-from functools import partial
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,76 +10,150 @@ import pytest
 import yaml
 
 from slippulse.claims import reading, rules
+from slippulse.claims.choices import Combination, over_choices
 from slippulse.claims.evidence import Evidence, agreeing
-from slippulse.claims.paper import SIMULATIONS, findings, written
+from slippulse.claims.findings import findings
+from slippulse.claims.kinds import Approximate, Existence, Qualitative
+from slippulse.claims.paper import SIMULATIONS, all_claims, written
 from slippulse.claims.reading import read_entries
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
-from slippulse.claims.transition import over_choices
 from slippulse.measure.uncertainty import grid_tables
 from slippulse.model.quantities import QUANTITIES
 
 YES, CAVEAT, DEPENDS, NO, OPEN, NONE = VERDICTS
 NAN = float("nan")
-# By rule and verdict the arguments that lead to it, with a tolerance where the rule takes one.
-CASES = {
-    # A formula has no uncertainty; what is known too badly to tell is open, unless even so it is too far off.
-    rules.within: {
-        YES: [(0.001, 0.0001, 0.01), (2e-16, 0.0, 1e-12)], CAVEAT: [(0.0095, 0.001, 0.01), (0.0105, 0.001, 0.01)],
-        NO: [(0.02, 0.001, 0.01), (0.05, 0.02, 0.01), (0.5, 0.0, 1e-12)],
-        OPEN: [(0.001, 0.02, 0.01), (0.025, 0.02, 0.01)], NONE: [(NAN, 0.001, 0.01), (0.001, NAN, 0.01)],
-    },
-    # An equation leaves no run out, and says which decides; a run that is known badly does not hide one that fails.
-    rules.exact: {
-        (NO, 2): [([0.001, 0.02, 0.03], [1e-4] * 3, 0.01)], (NO, 1): [([0.001, 0.02], [0.5, 1e-4], 0.01)],
-        (OPEN, 0): [([0.001, 0.002], [0.02, 1e-4], 0.01)], (YES, 1): [([NAN, 0.002], [1e-4, 1e-4], 0.01)],
-        (NONE, None): [([NAN], [1e-4], 0.01)],
-    },
-    # Median and exponent, each with its uncertainty.
-    rules.approximate: {
-        YES: [((0.1, 0.01), 0.2, (1.05, 0.02), 0.1), ((0.1, 0.01), 0.2, None, 0.1)],
-        CAVEAT: [((0.19, 0.02), 0.2, (1.0, 0.01), 0.1), ((0.1, 0.01), 0.2, (0.91, 0.02), 0.1)],
-        NO: [((0.3, 0.01), 0.2, (1.0, 0.01), 0.1), ((0.1, 0.01), 0.2, (1.2, 0.02), 0.1)],
-        OPEN: [((0.1, 0.25), 0.2, (1.0, 0.01), 0.1), ((0.1, 0.01), 0.2, (1.0, 0.2), 0.1)],
-        NONE: [((NAN, NAN), 0.2, (1.0, 0.01), 0.1)],
-    },
-    # At every admissible combination of what the paper leaves open.
-    rules.over_choices: {
-        YES: [([YES, YES, YES],)], CAVEAT: [([YES, CAVEAT, NONE],)], OPEN: [([OPEN, YES],)],
-        DEPENDS: [([YES, YES, NO],), ([CAVEAT, NO, OPEN],)], NO: [([NO, NO, OPEN],)], NONE: [([NONE, NONE],)],
-    },
-    # Runs that hold, fail and are undecided, and whether under a condition: one decided run contradicts every.
-    rules.qualitative: {
-        YES: [(40, 0, 0, False)], CAVEAT: [(40, 0, 0, True), (36, 0, 4, False)], NONE: [(0, 0, 0, False)],
-        OPEN: [(35, 0, 5, False), (0, 0, 3, False)], NO: [(39, 1, 0, False), (10, 1, 29, False)],
-    },
-    rules.reading: {
-        YES: [(0.5, 7, 0.05)], CAVEAT: [(0.04, 7, 0.05)], NO: [(0.001, 7, 0.05)], OPEN: [(0.5, 1, 0.05)],
-        NONE: [(NAN, 7, 0.05)],
-    },
-    rules.worst: {OPEN: [([YES, OPEN, CAVEAT],)], NO: [([YES, NO, OPEN],)], NONE: [([],)]},
-}  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    ("rule", "arguments", "verdict"),
+    ("deviation", "uncertainty", "tolerance", "verdict"),
     [
-        (rule, case, verdict)
-        for rule in CASES
-        for verdict, cases in CASES[rule].items()
-        for case in cases
+        pytest.param(0.001, 0.0001, 0.01, YES, id="well within"),
+        # A formula has no uncertainty.
+        pytest.param(2e-16, 0.0, 1e-12, YES, id="formula within rounding"),
+        pytest.param(0.5, 0.0, 1e-12, NO, id="formula off"),
+        pytest.param(0.0095, 0.001, 0.01, CAVEAT, id="just within"),
+        pytest.param(0.0105, 0.001, 0.01, CAVEAT, id="just outside"),
+        pytest.param(0.02, 0.001, 0.01, NO, id="well outside"),
+        pytest.param(0.05, 0.02, 0.01, NO, id="badly known, but too far off even so"),
+        pytest.param(0.001, 0.02, 0.01, OPEN, id="badly known, within"),
+        pytest.param(0.025, 0.02, 0.01, OPEN, id="badly known, outside"),
+        pytest.param(NAN, 0.001, 0.01, NONE, id="no deviation"),
+        pytest.param(0.001, NAN, 0.01, NONE, id="no uncertainty"),
     ],
 )
-def test_the_verdict_of_each_rule(rule, arguments, verdict):
-    assert rule(*arguments) == verdict
+def test_one_number(deviation, uncertainty, tolerance, verdict):
+    assert rules.within(deviation, uncertainty, tolerance) == verdict
 
 
-def judged(deviation: float, uncertainty: float = 0.0) -> dict:
-    at = partial(rules.within, deviation, uncertainty)
-    return {"verdict": at(0.2), "at": at, "deviation": deviation}
+@pytest.mark.parametrize(
+    ("deviations", "uncertainties", "verdict", "run"),
+    [
+        pytest.param([0.001, 0.02, 0.03], [1e-4] * 3, NO, 2, id="the farthest off decides"),
+        pytest.param([0.001, 0.02], [0.5, 1e-4], NO, 1, id="a badly known run hides no failure"),
+        pytest.param([0.001, 0.002], [0.02, 1e-4], OPEN, 0, id="the badly known run decides"),
+        pytest.param([NAN, 0.002], [1e-4, 1e-4], YES, 1, id="a run without a number"),
+        pytest.param([NAN], [1e-4], NONE, None, id="no number"),
+    ],
+)
+def test_an_equation_is_judged_by_its_worst_run(deviations, uncertainties, verdict, run):
+    assert rules.exact(deviations, uncertainties, 0.01) == (verdict, run)
 
 
-def at(release: str, ratio: float) -> dict:
-    return {"release": release, "damping_ratio": ratio, "solution": "exact"}
+@pytest.mark.parametrize(
+    ("median", "exponent", "verdict"),
+    [
+        pytest.param((0.1, 0.01), (1.05, 0.02), YES, id="both within"),
+        pytest.param((0.1, 0.01), None, YES, id="no exponent"),
+        pytest.param((0.19, 0.02), (1.0, 0.01), CAVEAT, id="median just within"),
+        pytest.param((0.1, 0.01), (0.91, 0.02), CAVEAT, id="exponent just within"),
+        pytest.param((0.3, 0.01), (1.0, 0.01), NO, id="median off"),
+        pytest.param((0.1, 0.01), (1.2, 0.02), NO, id="exponent off"),
+        pytest.param((0.1, 0.25), (1.0, 0.01), OPEN, id="median badly known"),
+        pytest.param((0.1, 0.01), (1.0, 0.2), OPEN, id="exponent badly known"),
+        pytest.param((NAN, NAN), (1.0, 0.01), NONE, id="no median"),
+    ],
+)
+def test_an_estimate_is_judged_by_median_and_exponent(median, exponent, verdict):
+    assert rules.approximate(median, 0.2, exponent, 0.1) == verdict
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "verdict"),
+    [
+        pytest.param([YES, YES, YES], YES, id="all hold"),
+        pytest.param([YES, CAVEAT, NONE], CAVEAT, id="a caveat, and one without numbers"),
+        pytest.param([OPEN, YES], OPEN, id="one open"),
+        pytest.param([YES, YES, NO], DEPENDS, id="one fails"),
+        pytest.param([CAVEAT, NO, OPEN], DEPENDS, id="one of each"),
+        pytest.param([NO, NO, OPEN], NO, id="none holds"),
+        pytest.param([NONE, NONE], NONE, id="no numbers"),
+    ],
+)
+def test_verdicts_over_choices(verdicts, verdict):
+    assert rules.over_choices(verdicts) == verdict
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "verdict"),
+    [
+        pytest.param([YES, OPEN, CAVEAT], OPEN, id="open"),
+        pytest.param([YES, NO, OPEN], NO, id="failed"),
+        pytest.param([], NONE, id="none"),
+    ],
+)
+def test_the_worst_verdict(verdicts, verdict):
+    assert rules.worst(verdicts) == verdict
+
+
+@pytest.mark.parametrize(
+    ("held", "failed", "undecided", "condition", "verdict"),
+    [
+        pytest.param(40, 0, 0, False, YES, id="all hold"),
+        pytest.param(40, 0, 0, True, CAVEAT, id="under a condition"),
+        pytest.param(36, 0, 4, False, CAVEAT, id="few undecided"),
+        pytest.param(35, 0, 5, False, OPEN, id="many undecided"),
+        pytest.param(0, 0, 3, False, OPEN, id="all undecided"),
+        pytest.param(39, 1, 0, False, NO, id="one against"),
+        pytest.param(10, 1, 29, False, NO, id="one against, many undecided"),
+        pytest.param(0, 0, 0, False, NONE, id="no runs"),
+    ],
+)
+def test_one_decided_run_contradicts_every(held, failed, undecided, condition, verdict):
+    assert rules.qualitative(held, failed, undecided, condition) == verdict
+
+
+@pytest.mark.parametrize(
+    ("p", "degrees_of_freedom", "verdict"),
+    [
+        pytest.param(0.5, 7, YES, id="likely"),
+        pytest.param(0.04, 7, CAVEAT, id="unlikely"),
+        pytest.param(0.001, 7, NO, id="excluded"),
+        pytest.param(0.5, 1, OPEN, id="too few readings"),
+        pytest.param(NAN, 7, NONE, id="no fit"),
+    ],
+)
+def test_a_reading_is_judged_by_p(p, degrees_of_freedom, verdict):
+    assert rules.reading(p, degrees_of_freedom, 0.05) == verdict
+
+
+@pytest.mark.parametrize(
+    ("cases", "condition", "verdict"),
+    [
+        pytest.param({"a": 2, "b": 1}, False, YES, id="one of each"),
+        pytest.param({"a": 2, "b": 1}, True, CAVEAT, id="one of each, under a condition"),
+        pytest.param({"a": 2, "b": 0}, True, OPEN, id="one case missing"),
+    ],
+)
+def test_one_run_of_each_case_shows_that_there_are_some(cases, condition, verdict):
+    assert Existence.shown(cases, {}, condition=condition).verdict() == verdict
+
+
+def at(release: str, ratio: float, deviation: float, uncertainty: float = 0.0) -> Combination:
+    """An estimate at one release rule and damping ratio, by the exact solution."""
+    choice = {"release": release, "damping_ratio": ratio, "solution": "exact"}
+    median = deviation, uncertainty
+    claim = Approximate(tolerance=0.2, deviations=np.array([0.0]), left_out=0, median=median)
+    return Combination(choice, claim)
 
 
 # Measured of every run.
@@ -88,39 +162,41 @@ OF_RUNS = ("regime", "min_velocity", "friction_ratio_needed", "min_stuck_stress"
 LATTICE_STUDIES = ("studies.rate_dependence",)
 # The length of the transition under leaf springs, as the exact theory has it.
 LENGTHS = [
-    (at("total", 0.1), judged(0.235)), (at("total", 0.0), judged(0.136)), (at("total", 0.058), judged(0.204)),
-    (at("elastic", 0.1), judged(0.156)),
-]  # fmt: skip
+    at("total", 0.1, 0.235),
+    at("total", 0.0, 0.136),
+    at("total", 0.058, 0.204),
+    at("elastic", 0.1, 0.156),
+]
 
 
 def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_most():
-    claim = over_choices(LENGTHS)
+    claim = over_choices(LENGTHS).written()
     assert (claim["verdict"], claim["choice"]) == (DEPENDS, "damping_ratio")
     assert (claim["holds_at"], claim["combinations"]) == (2, 4)
     assert claim["why"].startswith("It holds at 2 of 4 combinations.")
-    sides = (
-        "holds at 0 (13.6 %)",
-        "fails at 0.058 (20.4 %)",
-        "holds at elastic (15.6 %)",
-        "total (23.5 %)",
-    )
-    assert all(side in claim["why"] for side in sides)
-    found = rules.flips(claim["at"], 0.2)
-    assert [(flip["below"], flip["above"]) for flip in found] == [
-        ("not reproduced", DEPENDS), (DEPENDS, "reproduced")
-    ]  # fmt: skip
-    assert [flip["tolerance"] for flip in found] == pytest.approx([0.136, 0.235], rel=1e-3)
+    for side in ("holds at 0 (13.6 %)", "fails at 0.058 (20.4 %)", "holds at elastic (15.6 %)"):
+        assert side in claim["why"]
+    assert "total (23.5 %)" in claim["why"]
+    below, above = claim["flips_at"]
+    assert (below["below"], below["above"]) == ("not reproduced", DEPENDS)
+    assert (above["below"], above["above"]) == (DEPENDS, "reproduced")
+    assert below["tolerance"] == pytest.approx(0.136, rel=1e-3)
+    assert above["tolerance"] == pytest.approx(0.235, rel=1e-3)
 
 
 def test_one_verdict_at_every_choice_is_the_verdict():
     assert sorted(WORST_FIRST) == sorted(VERDICTS)
-    assert over_choices(LENGTHS[1::2])["verdict"] == "reproduced" and "why" not in over_choices(
-        LENGTHS[1::2]
-    )
-    assert over_choices(LENGTHS[0::2])["verdict"] == "not reproduced"
-    unsure = over_choices([(at("total", 0.0), judged(0.19, 0.05)), *LENGTHS[3:]])
+    held = over_choices(LENGTHS[1::2]).written()
+    assert held["verdict"] == "reproduced" and held["why"] == ""
+    assert over_choices(LENGTHS[0::2]).verdict() == "not reproduced"
+    unsure = over_choices([at("total", 0.0, 0.19, 0.05), *LENGTHS[3:]]).written()
     assert unsure["verdict"] == "reproduced with caveat" and "0" in unsure["why"]
-    assert rules.flips(judged(0.1)["at"], 0.0) == []
+    assert rules.flips(LENGTHS[0].claim.verdict_at, 0.0) == []
+
+
+def test_each_claim_of_the_texts_has_a_judge_and_each_judge_a_text():
+    with pytest.raises(ValueError, match=r"claims: .*estimate, .*pulse_slip.*; allowed: the same"):
+        all_claims(evidence(), [])
 
 
 def test_no_claim_compares_a_function_with_itself(project):
@@ -148,10 +224,13 @@ def test_no_claim_compares_a_function_with_itself(project):
 ENTRIES = {
     "equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]},
     "estimate": {
-        "kind": "approximate", "tolerance": 0.2, "tolerance_exponent": 0.1, "sentences": [],
+        "kind": "approximate",
+        "tolerance": 0.2,
+        "tolerance_exponent": 0.1,
+        "sentences": [],
         "follows_from": ["equation"],
     },
-}  # fmt: skip
+}
 LEVELS = [0.2, 0.4, 0.6, 0.8]
 
 
@@ -177,26 +256,31 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
     return Evidence(found, ENTRIES, 0.02)
 
 
-def exact(found: Evidence):
-    return found.exact("equation", found.lattices("sweep")[0], "number", "paper")
+def exact(evidence: Evidence) -> dict:
+    claim = evidence.exact("equation", evidence.finest("sweep"), "number", "paper")
+    return claim.fields()
 
 
-def test_an_equation_is_judged_at_spacing_zero_and_one_run_that_is_off_fails_it_unless_it_is_flagged():
+def test_an_equation_is_judged_at_spacing_zero_and_fails_by_one_run_that_is_not_flagged():
     claim = exact(evidence(lambda level, factor: level * (1.0 + 0.002 * factor)))
     assert claim == claim | {"verdict": YES, "runs": 4, "left_out": 0}
     assert claim["deviation"] < 1e-9 and claim["uncertainty"] / claim["predicted"] == pytest.approx(
         0.002
     )
-    off = lambda level, factor: level * (1.0 + 1e-4 * factor + 0.05 * (level == 0.6))
-    claim = exact(evidence(off))
+
+    def one_off(level, factor):
+        return level * (1.05 if level == 0.6 else 1.0) + 1e-4 * factor * level
+
+    claim = exact(evidence(one_off))
     assert claim["verdict"] == NO and claim["predicted"] == 0.6
     assert claim["deviation"] == pytest.approx(0.05, rel=0.01)
-    assert exact(evidence(off, flagged=2))["verdict"] == YES
+    assert exact(evidence(one_off, flagged=2))["verdict"] == YES
 
 
 def estimate(measure):
-    found = evidence(measure)
-    return found.approximate("estimate", found.lattices("sweep"), "number", "paper", "left")
+    sweep = evidence(measure)
+    claim = sweep.approximate("estimate", sweep.lattices("sweep"), "number", "paper", ["left"])
+    return claim.fields()
 
 
 def test_an_estimate_is_judged_by_its_median_and_its_exponent_not_by_the_worst_run():
@@ -213,41 +297,41 @@ def test_an_estimate_is_judged_by_its_median_and_its_exponent_not_by_the_worst_r
 
 
 def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
-    found = evidence(lambda level, factor: level if factor == 1.0 or level != 0.6 else 0.0)
-    assert found.agreed("sweep", "left > 0.3", "number > 0.5") == [False, None, True]
-    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["arrested"]) == [
-        False,
-        True,
-        True,
-    ]
-    assert found.agreed("sweep", "left > 0.3", "number > 0.5", ends=["other"]) == [
-        False,
-        False,
-        True,
-    ]
+    sweep = evidence(lambda level, factor: level if factor == 1.0 or level != 0.6 else 0.0)
+    runs = "sweep", "left > 0.3", "number > 0.5"
+    assert sweep.agreed(*runs) == [False, None, True]
+    assert sweep.agreed(*runs, ends=["arrested"]) == [False, True, True]
+    assert sweep.agreed(*runs, ends=["other"]) == [False, False, True]
     # Where a lattice has not run long enough it is not asked.
-    assert found.agreed("sweep", "left > 0.3", "number > 0.5", "left < 0.7") == [False, None, None]
-    assert found.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
+    assert sweep.agreed(*runs, "left < 0.7") == [False, None, None]
+    assert sweep.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
     assert agreeing([True, None, False], [True, None, True]) == [True, None, None]
-    # A qualitative claim counts them.
-    claim = evidence().qualitative([True] * 38 + [None] * 2)
+
+
+def test_a_qualitative_claim_counts_runs():
+    claim = Qualitative.counted([True] * 38 + [None] * 2).fields()
     assert claim == claim | {"runs": 40, "held": 38, "failed": 0, "undecided": 2, "verdict": CAVEAT}
-    assert evidence().qualitative([np.bool_(True), np.bool_(False)])["verdict"] == NO
-    assert evidence().qualitative([])["verdict"] == NONE
+    assert Qualitative.counted([np.bool_(True), np.bool_(False)]).verdict() == NO
+    assert Qualitative.counted([]).verdict() == NONE
 
 
 def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
-    claim = exact(evidence()) | evidence().compared("sweep", "number")
-    found = written("equation", claim, ENTRIES["equation"], "III A")
-    assert found["exact_median"] == found["exact_largest"] == pytest.approx(0.1)
+    sweep = evidence()
+    claim = sweep.exact("equation", sweep.finest("sweep"), "number", "paper")
+    entry = written("equation", claim, ENTRIES["equation"], "III A")
     expected = {"id": "equation", "counted": True, "follows_from": [], "tolerance": 0.01}
-    assert found == found | expected | {"figure_or_section": "III A", "why": ""}
-    nothing = evidence().approximate(
-        "estimate", [pd.DataFrame({"a": [np.nan], "b": 1.0})], "a", "b"
-    )
-    found = written("estimate", nothing, ENTRIES["estimate"], "")
-    assert found["verdict"] == NONE and found["measured"] is None and not found["counted"]
-    json.dumps(found, allow_nan=False)
+    assert entry == entry | expected | {"figure_or_section": "III A", "why": ""}
+    failing = replace(claim, consequence=Qualitative.counted([True, False]))
+    entry = written("equation", failing, ENTRIES["equation"], "III A")
+    assert (entry["verdict"], entry["held"], entry["failed"]) == (NO, 1, 1)
+    beside = sweep.from_exact("sweep", "number")
+    assert beside == pytest.approx((0.1, 0.1))
+    table = pd.DataFrame({"a": [np.nan], "b": 1.0})
+    nothing = replace(sweep.approximate("estimate", [table], "a", "b"), from_exact=beside)
+    entry = written("estimate", nothing, ENTRIES["estimate"], "")
+    assert entry["verdict"] == NONE and entry["measured"] is None and not entry["counted"]
+    assert (entry["exact_median"], entry["exact_largest"]) == beside
+    json.dumps(entry, allow_nan=False)
 
 
 def test_what_is_missing_is_named(tmp_path):

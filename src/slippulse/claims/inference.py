@@ -1,4 +1,4 @@
-"""The published space-time figure as one inference: which parameters its readings make likely."""
+"""The parameters that the readings of the published space-time figure make likely."""
 
 from typing import Any
 
@@ -7,66 +7,66 @@ import pandas as pd
 from scipy.interpolate import CubicSpline
 from scipy.special import chdtrc, chdtri
 
-# Points of a curve over the damping ratio.
+# The number of points of a curve over the damping ratio.
 FINE = 4001
 CONFIDENCE = (0.68, 0.95)
 
 
 def curve(profile: pd.DataFrame) -> pd.DataFrame:
-    """Best trials of one release rule, from its rows, over the damping ratio, cubic in its logarithm.
+    """Best trials of one release rule over the damping ratio, cubic in its logarithm.
 
-    With dx, tau0, gamma, their errors, chi2, and of each reading the pull, (predicted - drawn)/reading_error.
+    Columns are dx, tau0, gamma, their errors, chi2, and the pull of each reading,
+    (predicted - drawn)/reading_error.
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     numbers = profile.groupby("damping_ratio")[
         ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
     ].first()
     nodes = pd.concat([pulls, numbers], axis=1)
-    at = np.log(nodes.index.to_numpy())
-    fine = np.linspace(at[0], at[-1], FINE)
-    out = pd.DataFrame(CubicSpline(at, nodes.to_numpy())(fine), columns=nodes.columns)
+    log_ratio = np.log(nodes.index.to_numpy())
+    fine = np.linspace(log_ratio[0], log_ratio[-1], FINE)
+    out = pd.DataFrame(CubicSpline(log_ratio, nodes.to_numpy())(fine), columns=nodes.columns)
     fitted = profile.loc[profile["weight"] > 0.0, "reading"].unique()
     return out.assign(chi2=(out[fitted] ** 2).sum(axis=1), damping_ratio=np.exp(fine))
 
 
 def likely(level: float, parameters: int = 1) -> float:
-    """How far chi-square may lie above its smallest value inside a confidence region of that many parameters."""
+    """The rise of chi-square above its smallest value at the edge of a confidence region."""
     return float(chdtri(parameters, 1.0 - level))
 
 
 def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
-    """What the study of the published figure says of its parameters, per release rule and for the "best" one.
+    """The parameters of the published figure, by release rule, and those of the "best" rule.
 
-    Of each rule chi2, dof, p_value, damping_ratio, dx, tau0, gamma, pulls by reading, and regions of parameters;
-    of the part "profile", or of "arrows" for the fit of the drawn arrows too.
+    Each has chi2, dof, p_value, damping_ratio, dx, tau0, gamma, pulls by reading, and confidence
+    regions. The part "profile" is without the drawn arrows, the part "arrows" with them.
     Source: profile likelihood; the readings have independent Gaussian errors.
     """
-    found: dict[str, Any] = {}
+    fits: dict[str, Any] = {}
     for release, rows in table[table["part"] == part].groupby("release"):
         line = curve(rows)
         best = line.loc[line["chi2"].idxmin()]
-        # tau_0, gamma and the damping ratio.
+        # Three parameters are fitted: tau_0, gamma and the damping ratio.
         dof = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
         one: dict[str, Any] = {
             name: float(best[name]) for name in ("chi2", "damping_ratio", "dx", "tau0", "gamma")
         }
         one |= {"release": release, "dof": dof, "p_value": float(chdtrc(dof, best["chi2"]))}
         one["regions"] = {level: _regions(line, level) for level in CONFIDENCE}
-        found[str(release)] = one | {
-            "pulls": {name: float(best[name]) for name in rows["reading"].unique()}
-        }
-    order = sorted(found.values(), key=lambda entry: entry["chi2"])
-    return found | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
+        one["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
+        fits[str(release)] = one
+    order = sorted(fits.values(), key=lambda entry: entry["chi2"])
+    return fits | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
 
 
 def right_panel(table: pd.DataFrame) -> dict[str, Any]:
-    """chi2, dof and p_value of the right panel's largest velocity, without a fit: of the run that fits worst."""
+    """chi2, dof and p_value of the right panel's largest velocity, by the run that fits worst."""
     chi2 = float((table.loc[table["part"] == "stress", "pull"] ** 2).max())
     return {"chi2": chi2, "dof": 1, "p_value": float(chdtrc(1, chi2))}
 
 
 def _regions(line: pd.DataFrame, level: float) -> dict[str, tuple[float, float]]:
-    """Regions of each parameter, the others being what fits best; NaN for an end that was not reached."""
+    """Confidence region of each parameter, the others at their best fit; NaN for an open end."""
     room = likely(level) - (line["chi2"] - line["chi2"].min())
     inside = line[room >= 0.0]
     ratios = inside["damping_ratio"].iloc[[0, -1]]

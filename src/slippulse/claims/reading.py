@@ -1,5 +1,6 @@
-"""Entries of manuscript/claims.yaml with the sentences that they test; those of claims.json as texts ask for them."""
+"""Claims as texts ask for them: from manuscript/claims.yaml and from claims.json."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -12,13 +13,13 @@ from ..configuration.problems import nearest
 from ..data.numerals import number, percent, rounded, setting, with_uncertainty
 from .rules import VERDICTS
 
-# Why a sentence has no claim of its own; a repetition names the sentence that it repeats.
+# Reasons for a sentence to have no claim; a repetition names the sentence that it repeats.
 WHY_NONE = ("background", "definition", "other work", "no model")
-# Whether a sentence that is tested holds itself, whatever the claim that it led to.
+# The verdict on a tested sentence as it is printed, apart from that on its claim.
 AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold")
 # A tolerance below this is for rounding alone.
 SLIGHT = 1e-6
-# Whether a tolerance that is this much larger or smaller would change a verdict is said with the claim.
+# A claim says at which tolerances its verdict changes, up to this factor from its own.
 BAND = 1.5
 
 
@@ -28,7 +29,10 @@ def read_text(path: str | Path):
 
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
-    """Claims, algebra and findings, the claims with tolerances of the configuration; ValueError for an unknown one."""
+    """Claims, algebra and findings, with tolerances of the configuration.
+
+    A ValueError names an unknown claim.
+    """
     texts = read_text(path)
     claims = texts["claims"]
     for id, other in tolerances.items():
@@ -46,23 +50,26 @@ def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
-    """How many sentences there are, how many are tested, and how many are not for each reason."""
-    why = [str(sentence.get("why_none", "tested")) for sentence in sentences]
-    counts = Counter("repeats" if reason.startswith("repeats") else reason for reason in why)
+    """Numbers of sentences: all, tested, and not tested for each reason."""
+    reasons = [str(sentence.get("why_none", "tested")) for sentence in sentences]
+    # A repetition is "repeats ID".
+    counts = Counter(re.sub("^repeats .*", "repeats", reason) for reason in reasons)
     return {"all": len(sentences), **{key: counts[key] for key in ("tested", "repeats", *WHY_NONE)}}
 
 
 def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
-    """Per claim the sections, appendices and figures whose sentences it tests."""
-    where = [(sentence["id"], sentence["place"].split(",")[0]) for sentence in sentences]
-    return {
-        name: "; ".join(dict.fromkeys(place for id, place in where if id in entry["sentences"]))
-        for name, entry in entries.items()
-    }
+    """Sections, appendices and figures with the sentences that each claim tests."""
+    place = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
+    out = {}
+    for name, entry in entries.items():
+        # In the order of the sentences in the paper.
+        places = [place[id] for id in place if id in entry["sentences"]]
+        out[name] = "; ".join(dict.fromkeys(places))
+    return out
 
 
 class Ledger:
-    """The claims of claims.json by id, each with its fields as attributes, and the findings of findings.json."""
+    """Claims of claims.json by id, with fields as attributes, and findings of findings.json."""
 
     def __init__(self, claims: Iterable[Mapping], findings: Iterable[Mapping] = ()) -> None:
         self.claims = {claim["id"]: SimpleNamespace(**claim) for claim in claims}
@@ -72,11 +79,11 @@ class Ledger:
         return iter(self.claims.values())
 
     def __call__(self, id: str) -> SimpleNamespace:
-        """One claim; of an unknown name a ValueError says which there are, here and in `found`."""
+        """One claim; a ValueError for an unknown name lists those that there are."""
         return _known("claim", id, self.claims)
 
     def found(self, id: str) -> SimpleNamespace | None:
-        """The numbers of one finding by name; None if this run has no runs for them."""
+        """The numbers of one finding by name; None without runs for them."""
         numbers = _known("finding", id, self.findings)["numbers"]
         return SimpleNamespace(**numbers) if numbers else None
 
@@ -85,36 +92,35 @@ class Ledger:
         return measured_text(self(id))
 
     def deviation_at(self, id: str, **chosen: float | str) -> float | None:
-        """The deviation of a claim at a combination of choices; None where it was not judged at it."""
+        """The deviation of a claim at a combination of choices; None without such a combination."""
         rows = (row["deviation"] for row in self(id).choices if chosen.items() <= row.items())
         return next(rows, None)
 
     def listed(self, id: str, words: str) -> str:
-        """The further numbers of a claim whose name has these words before its colon, each with what is behind it."""
-        found = [
-            (*name.split(": ", 1), value)
-            for name, value in self(id).further.items()
-            if ": " in name
-        ]
-        return "; ".join(
-            f"{number(value)} {name}" for before, name, value in found if words in before
-        )
+        """The further numbers of a claim that are named "WORDS: NAME", each with its name."""
+        parts = []
+        for key, value in self(id).further.items():
+            start, colon, name = key.partition(": ")
+            if colon and words in start:
+                parts.append(f"{number(value)} {name}")
+        return "; ".join(parts)
 
     def count(self, *verdicts: str) -> int:
-        """How many counted claims have one of these verdicts; all of them if none is named."""
+        """The number of counted claims with one of these verdicts, or of all of them."""
         return sum(claim.counted and (not verdicts or claim.verdict in verdicts) for claim in self)
 
     def following(self) -> int:
-        """How many claims follow from others."""
+        """The number of claims that follow from others."""
         return len(self.claims) - self.count()
 
     def summary(self) -> str:
-        """How many claims there are of each verdict, in words."""
-        counts = {name: count for name in VERDICTS if (count := self.count(name))}
-        listed = [
-            f"{n} {name.replace('depends', 'depend') if n > 1 else name}"
-            for name, n in counts.items()
-        ]
+        """The number of claims of each verdict, in words."""
+        listed = []
+        for verdict in VERDICTS:
+            count = self.count(verdict)
+            words = verdict.replace("depends", "depend") if count > 1 else verdict
+            if count:
+                listed.append(f"{count} {words}")
         rest = f" {self.following()} more follow from these." if self.following() else ""
         return f"{self.count()} claims: {', '.join(listed)}.{rest}"
 
@@ -126,18 +132,19 @@ def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
 
 
 def predicted_text(claim: SimpleNamespace) -> str:
-    """What the paper has, as its kind says it."""
+    """The prediction of the paper, in the form of its kind."""
     if claim.predicted is None:
         return number(None)
     if claim.kind == "qualitative":
         return f"all of {claim.predicted:.0f}"
     if claim.kind == "reading":
-        return f"{claim.predicted:.0f} degree{'s' * (claim.predicted != 1)} of freedom"
+        degrees = "degree" if claim.predicted == 1 else "degrees"
+        return f"{claim.predicted:.0f} {degrees} of freedom"
     return number(claim.predicted, 5)
 
 
 def measured_text(claim: SimpleNamespace) -> str:
-    """What was measured, with its uncertainty; of a qualitative claim whole numbers of runs."""
+    """The measured value with its uncertainty; for a qualitative claim numbers of runs."""
     if claim.kind == "qualitative":
         counts = {"against": claim.failed, "undecided": claim.undecided}
         rest = [f"{count} {name}" for name, count in counts.items() if count]
@@ -150,16 +157,14 @@ def measured_text(claim: SimpleNamespace) -> str:
 
 
 def compared_text(claim: SimpleNamespace) -> str:
-    """What stands beside the tolerance, and the tolerance, in words."""
+    """The deviation and the tolerance, in words."""
     if claim.deviation is None:
         return number(None)
     if claim.kind == "qualitative":
-        equal = (
-            f" (equal within {setting(100.0 * claim.tolerance)} %)"
-            if claim.tolerance > SLIGHT
-            else ""
-        )
-        return f"no run may contradict{equal}"
+        text = "no run may contradict"
+        if claim.tolerance > SLIGHT:
+            text += f" (equal within {setting(100.0 * claim.tolerance)} %)"
+        return text
     if claim.kind == "reading":
         return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"
     if claim.kind == "arithmetic" or claim.predicted == 0.0:
@@ -181,32 +186,33 @@ def why_text(claim: SimpleNamespace) -> str:
         return "This run leaves no number to judge by."
     if claim.kind == "qualitative":
         held, _, rest = measured_text(claim).partition(", ")
+        condition = claim.note.partition("condition: ")[2]
         if rest:
             return f"It holds in {held} cases, with {rest}."
-        condition = claim.note.partition("condition: ")[2]
-        return f"It needs a condition that the paper does not state{condition and ': '}{condition}."
+        text = "It needs a condition that the paper does not state"
+        return f"{text}: {condition}." if condition else f"{text}."
     if claim.kind == "arithmetic":
         return f"The printed formula gives {measured_text(claim)} of the derived value."
     if claim.kind == "reading":
         return f"At the best fit {compared_text(claim)} is asked."
-    write, scale = (percent, abs(claim.predicted)) if claim.predicted else (number, 1.0)
-    blur = write(claim.uncertainty / (1.0 if claim.kind == "approximate" else scale))
-    return f"It is off by {compared_text(claim)}; its uncertainty is {blur}."
+    return f"It is off by {compared_text(claim)}; its uncertainty is {uncertainty_text(claim)}."
+
+
+def uncertainty_text(claim: SimpleNamespace) -> str:
+    """The uncertainty in the unit of the deviation: relative, or absolute where 0 is predicted."""
+    if not claim.predicted:
+        return number(claim.uncertainty)
+    scale = 1.0 if claim.kind == "approximate" else abs(claim.predicted)
+    return percent(claim.uncertainty / scale)
 
 
 def evidence_text(claim: SimpleNamespace) -> str:
-    """What the verdict rests on besides the numbers shown, as Markdown."""
-    counted, estimate = claim.kind in ("exact", "approximate"), claim.kind == "approximate"
+    """The evidence for the verdict besides the numbers shown, as Markdown."""
     parts = [claim.note]
-    if counted and claim.runs:
-        parts.append(f"{claim.runs} runs")
-    if estimate and claim.largest is not None:
-        ninety, largest = percent(claim.ninety), percent(claim.largest)
-        parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
-    if counted and claim.left_out:
-        parts.append(f"left out, without numbers: {claim.left_out}")
+    if claim.kind in ("exact", "approximate"):
+        parts += spread_texts(claim)
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
-    if estimate and claim.exact_largest is not None:
+    if claim.kind == "approximate" and claim.exact_largest is not None:
         median, largest = percent(claim.exact_median), percent(claim.exact_largest)
         parts.append(f"runs off the exact theory by {median} (median) to {largest}")
     for flip in claim.flips_at:
@@ -217,3 +223,14 @@ def evidence_text(claim: SimpleNamespace) -> str:
         names = ", ".join(f"`{id}`" for id in claim.follows_from)
         parts.append(f"follows from {names} and is not counted again")
     return "; ".join(filter(None, parts))
+
+
+def spread_texts(claim: SimpleNamespace) -> list[str]:
+    """The runs behind a number: how many, their spread, and how many are left out."""
+    parts = [f"{claim.runs} runs"] if claim.runs else []
+    if claim.kind == "approximate" and claim.largest is not None:
+        ninety, largest = percent(claim.ninety), percent(claim.largest)
+        parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
+    if claim.left_out:
+        parts.append(f"left out, without numbers: {claim.left_out}")
+    return parts

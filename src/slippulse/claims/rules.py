@@ -1,111 +1,132 @@
-"""From deviation and uncertainty to a verdict: one rule for each kind of claim."""
+"""Rules that turn deviation and uncertainty into a verdict: one for each kind of claim."""
 
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 KINDS = ("exact", "approximate", "qualitative", "reading", "arithmetic")
+REPRODUCED = "reproduced"
+CAVEAT = "reproduced with caveat"
 DEPENDS = "depends on an open choice"
-VERDICTS = (
-    "reproduced", "reproduced with caveat", DEPENDS, "not reproduced", "inconclusive", "not testable"
-)  # fmt: skip
-# Of several verdicts the first of these counts; and what a reader looks for first.
-WORST_FIRST = (
-    "not reproduced", DEPENDS, "inconclusive", "not testable", "reproduced with caveat", "reproduced"
-)  # fmt: skip
-HOLDS = {"reproduced": True, "reproduced with caveat": True, "not reproduced": False}
-# Tolerances at which a verdict is looked at for where it changes, and halvings of what lies between two of them.
+FAILED = "not reproduced"
+INCONCLUSIVE = "inconclusive"
+NOT_TESTABLE = "not testable"
+VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, FAILED, INCONCLUSIVE, NOT_TESTABLE)
+# The first of these decides among several verdicts; readers look for it first, too.
+WORST_FIRST = (FAILED, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, CAVEAT, REPRODUCED)
+HOLDS = {REPRODUCED: True, CAVEAT: True, FAILED: False}
+# The number of tolerances at which a verdict is computed, and of halvings where it changes.
 SCANNED, BISECTED = 41, 12
-# More undecided runs than this fraction leave a qualitative claim open.
+# A qualitative claim stays open if a larger fraction of its runs is undecided.
 UNDECIDED = 0.1
-# A number with its uncertainty.
-Known = tuple[float, float]
 # Below this p the readings exclude every parameter, not only most.
 EXCLUDED = 0.003
+# A number and its uncertainty.
+Known = tuple[float, float]
 
 
 def within(deviation: float, uncertainty: float, tolerance: float) -> str:
-    """Verdict on one number: how far it is from its prediction, how sure that is, and how far it may be."""
+    """Verdict on one number by its deviation from the prediction and by its uncertainty."""
     if not np.isfinite([deviation, uncertainty]).all():
-        return "not testable"
+        return NOT_TESTABLE
     if deviation - uncertainty > tolerance:
-        return "not reproduced"
+        return FAILED
     if uncertainty > tolerance:
-        return "inconclusive"
-    return "reproduced with caveat" if deviation + uncertainty > tolerance else "reproduced"
+        return INCONCLUSIVE
+    return CAVEAT if deviation + uncertainty > tolerance else REPRODUCED
 
 
 def worst(verdicts: Iterable[str]) -> str:
     """The worst of several verdicts; "not testable" of none."""
-    return min(verdicts, key=WORST_FIRST.index, default="not testable")
+    return min(verdicts, key=WORST_FIRST.index, default=NOT_TESTABLE)
 
 
 def worst_tested(verdicts: Iterable[str]) -> str:
     """The worst of those that have numbers."""
-    return worst(verdict for verdict in verdicts if verdict != "not testable")
+    return worst(verdict for verdict in verdicts if verdict != NOT_TESTABLE)
 
 
 def exact(
     deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float
 ) -> tuple[str, int | None]:
-    """Verdict on an equation, the worst of the runs that have numbers, and of the runs with it the farthest off."""
+    """Verdict on an equation, the worst of all runs, and the run that decides.
+
+    Runs without numbers do not count; of the runs with the verdict the one with the largest
+    deviation decides, None if no run has numbers.
+    """
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
-    if (found := worst_tested(verdicts)) == "not testable":
-        return found, None
-    return found, max(
-        (i for i in range(len(verdicts)) if verdicts[i] == found), key=deviations.__getitem__
-    )
+    verdict = worst_tested(verdicts)
+    if verdict == NOT_TESTABLE:
+        return verdict, None
+    deciding = [run for run, its_verdict in enumerate(verdicts) if its_verdict == verdict]
+    return verdict, max(deciding, key=deviations.__getitem__)
 
 
 def approximate(
     median: Known, tolerance: float, exponent: Known | None = None, allowed: float = 0.0
 ) -> str:
-    """Verdict on an estimate: the worse of those on its median deviation and, if one is claimed, on its exponent."""
-    found = within(*median, tolerance)
+    """Verdict on an estimate: the worse of those on its median deviation and on its exponent.
+
+    The exponent, if one is claimed, may differ from 1 by ``allowed``.
+    """
+    verdict = within(*median, tolerance)
     if exponent is None:
-        return found
-    return worst([found, within(abs(exponent[0] - 1.0), exponent[1], allowed)])
+        return verdict
+    return worst([verdict, within(abs(exponent[0] - 1.0), exponent[1], allowed)])
 
 
 def over_choices(verdicts: Sequence[str]) -> str:
-    """Verdict on a claim from those at every admissible combination of what the paper leaves open."""
+    """Verdict on a claim from those at every admissible combination of open choices."""
     held = {HOLDS.get(verdict) for verdict in verdicts}
     return DEPENDS if {True, False} <= held else worst_tested(verdicts)
 
 
-def flips(at: Callable[[float], str], tolerance: float) -> list[dict]:
-    """Tolerances, from a tenth to ten times its own, at which a verdict changes, each with what is on both sides."""
+def flips(verdict_at: Callable[[float], str], tolerance: float) -> list[dict]:
+    """Tolerances at which the verdict changes, with the verdicts below and above.
+
+    The search covers a tenth to ten times the tolerance of the claim.
+    """
     if not tolerance:
         return []
     factors = np.geomspace(0.1, 10.0, SCANNED)
-    found = [at(tolerance * factor) for factor in factors]
+    verdicts = [verdict_at(tolerance * factor) for factor in factors]
     out = []
-    for low, high, below, above in zip(factors, factors[1:], found, found[1:], strict=False):
-        for _ in range(BISECTED if below != above else 0):
+    for low, high, below, above in zip(factors, factors[1:], verdicts, verdicts[1:], strict=False):
+        if below == above:
+            continue
+        for _ in range(BISECTED):
             middle = np.sqrt(low * high)
-            low, high = (middle, high) if at(tolerance * middle) == below else (low, middle)
-        if below != above:
-            out.append({"tolerance": float(tolerance * high), "below": below, "above": above})
+            if verdict_at(tolerance * middle) == below:
+                low = middle
+            else:
+                high = middle
+        out.append({"tolerance": float(tolerance * high), "below": below, "above": above})
     return out
 
 
 def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:
-    """Verdict on an always, never or every; ``condition``: whether it needs one that the paper does not state."""
+    """Verdict on an always, never or every.
+
+    ``condition`` is true if the claim needs a condition that the paper does not state.
+    """
     if not held + failed + undecided:
-        return "not testable"
+        return NOT_TESTABLE
     if failed:
-        return "not reproduced"
+        return FAILED
     if undecided > UNDECIDED * (held + undecided):
-        return "inconclusive"
-    return "reproduced with caveat" if undecided or condition else "reproduced"
+        return INCONCLUSIVE
+    return CAVEAT if undecided or condition else REPRODUCED
 
 
 def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
-    """Verdict on a figure read off, by p of the best fit; degrees of freedom: readings less fitted parameters."""
+    """Verdict on a figure read off, by p of the best fit.
+
+    The degrees of freedom are the readings less the fitted parameters.
+    """
     if not np.isfinite(p):
-        return "not testable"
+        return NOT_TESTABLE
     if degrees_of_freedom < 2:
-        return "inconclusive"
+        return INCONCLUSIVE
     if p < EXCLUDED:
-        return "not reproduced"
-    return "reproduced with caveat" if p < tolerance else "reproduced"
+        return FAILED
+    return CAVEAT if p < tolerance else REPRODUCED

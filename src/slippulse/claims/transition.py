@@ -1,325 +1,299 @@
-"""Claims about the transition from crack to pulse, and where a front ends, at every choice the paper leaves open."""
+"""Claims about the transition from crack to pulse, and about where a front ends.
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+Each is judged at every choice that the paper leaves open.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from functools import cache
-from itertools import permutations
-from typing import Any
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
 
-from ..data.numerals import percent, setting
 from ..measure.fronts import straight_line
 from . import rules
-from .evidence import NAN, Claim, Evidence, agreeing, ratios
+from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
+from .evidence import Evidence, agreeing, ratios, studied
+from .kinds import NAN, Approximate, Claim, Qualitative
 
-# A combination of choices, by name.
-Chosen = dict[str, float | str]
-# The fraction of the path where a lattice has no criterion of arrest.
-LAST = "last release"
-# What a combination has beside its choices.
-FOUND = ("deviation", "exponent", "verdict", "holds")
-# What each choice is called in a sentence.
-NAMES = {
-    "fraction": "the fraction of the path that counts as arrest",
-    "release": "the release rule",
-    "damping_ratio": r"the damping ratio $\beta/\Delta x$",
-    "nucleation": "the nucleation",
-}
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
-# A front that ends within this of x_minus, in units of H, is within the smallest length of the model.
+# A front that ends within this of x_minus, in units of H, is within the smallest length of the
+# model.
 GAP = 1.0
-# What each is called, and what the paper estimates it by under a stress boundary.
-ESTIMATES = {"T": ("time", "distance"), "L": ("length", "2 * distance")}
 # Fraction of the way whose numbers stand with a claim.
 SHOWN = 0.95
-
-# What is compared of the exact solution, and of lattices.
+# Columns of the exact solution and of lattices, by their names in `arrests`.
 SOLVED = {
     "paper_transition_time": "distance",
     "transition_time": "time",
     "transition_length": "length",
 }
-SIMULATED = {"balance_distance": "distance", "last_release_distance": "covered"}
-SIMULATED |= {f"last_release_{name}": name for name in ("time", "length")}
-# One table, or one a lattice, by combination of choices.
-Tables = list[tuple[Chosen, list[pd.DataFrame]]]
+SIMULATED = {
+    "balance_distance": "distance",
+    "last_release_distance": "covered",
+    "last_release_time": "time",
+    "last_release_length": "length",
+}
 
 
-def over_choices(pairs: Sequence[tuple[Chosen, Claim]], shown: Claim | None = None) -> Claim:
-    """One claim from those at all combinations of choices, with the numbers of the first one, or of ``shown``."""
-    claims = [claim for _, claim in pairs]
-    rows: list[dict[str, Any]] = [
-        choice
-        | {name: claim.get(name) for name in FOUND}
-        | {"holds": rules.HOLDS.get(claim["verdict"])}
-        for choice, claim in pairs
-    ]
-    verdict, decided = rules.over_choices([row["verdict"] for row in rows]), decisive(rows)
-    found = (shown or claims[0]) | {
-        "choices": rows, "choice": next(iter(decided), ""), "verdict": verdict,
-        "combinations": len(rows), "holds_at": sum(row["holds"] is True for row in rows),
-    }  # fmt: skip
-    if all("at" in claim for claim in claims):
-        found["at"] = lambda tolerance: rules.over_choices(
-            [claim["at"](tolerance) for claim in claims]
-        )
-    if verdict == rules.DEPENDS:
-        pairs_of = [sides(name, pair, "held" in found) for name, pair in decided.items()]
-        found["why"] = f"It holds at {found['holds_at']} of {len(rows)} combinations."
-        found["why"] += f" It depends on {'; on '.join(pairs_of)}."
-    elif verdict == "reproduced with caveat":
-        unsure = next(row for row in rows if row["verdict"] == verdict)
-        at = [f"{words} {named(unsure[name])}" for name, words in NAMES.items() if name in unsure]
-        found["why"] = (
-            f"With {' and '.join(at)} it is within the tolerance, but not together with its uncertainty."
-        )
-    return found
+class Estimate(NamedTuple):
+    """A quantity of the transition, and the expression for it under held stress."""
+
+    symbol: str
+    quantity: str
+    predicted: str
 
 
-def sides(name: str, pair: Iterable[Mapping], counted: bool) -> str:
-    """What combinations say of a claim, by their value of one choice; ``counted``: by runs, not by a deviation."""
-    parts = []
-    for row in pair:
-        size = percent(row["deviation"], 3) + (" of the runs against" if counted else "")
-        size += (
-            ", at the last release" if name != "fraction" and row.get("fraction") == LAST else ""
-        )
-        parts.append(f"it {'holds' if row['holds'] else 'fails'} at {named(row[name])} ({size})")
-    return f"{NAMES[name]}: {' and '.join(parts)}"
+DURATION = Estimate("T", "time", "distance")
+LENGTH = Estimate("L", "length", "2 * distance")
 
 
-def named(value: float | str) -> str:
-    """A value of a choice."""
-    return value if isinstance(value, str) else setting(value)
+class Runs(NamedTuple):
+    """Runs at one combination of choices: a table for each lattice, or one of exact solutions."""
+
+    choice: Chosen
+    tables: list[pd.DataFrame]
 
 
-def decisive(choices: Sequence[Mapping]) -> dict[str, Sequence[Mapping]]:
-    """Choices that, changed alone, decide whether a claim holds, first the one that moves the deviation most.
-
-    Each with the closest combinations of which one holds and one fails; where none decides, that one choice.
-    """
-    moves: dict[str, list[tuple[tuple[bool, float], Mapping, Mapping]]] = {}
-    for one, other in permutations(choices, 2):
-        apart = [name for name in {*one, *other} - {*FOUND} if one.get(name) != other.get(name)]
-        if (
-            len(apart) == 1
-            and apart[0] in NAMES
-            and None not in (one["deviation"], other["deviation"])
-        ):
-            # A lattice is a corner; the exact solution has every combination.
-            move = one.get("solution") == "exact", abs(one["deviation"] - other["deviation"])
-            moves.setdefault(apart[0], []).append((move, one, other))
-    order = sorted(moves, key=lambda name: max(move for move, *_ in moves[name]))
-    closest: dict[str, Sequence[Mapping]] = {}
-    for name in reversed(order):
-        if pairs := [
-            each for each in moves[name] if each[1]["holds"] and each[2]["holds"] is False
-        ]:
-            closest[name] = min(pairs, key=lambda each: each[0][1])[1:]
-    return closest or dict.fromkeys(order[-1:], ())
+AtChoice = TypeVar("AtChoice", Runs, Combination)
 
 
-# What claims are judged by
+def shared(tables: list[pd.DataFrame]) -> Chosen:
+    """The release rule and the damping ratio that runs have in common."""
+    return {name: tables[0][name].iloc[0] for name in ("release", "damping_ratio")}
 
 
-def chosen(tables: list[pd.DataFrame], **more: float | str) -> Chosen:
-    """The release rule and the damping ratio of runs that have them in common."""
-    return {name: tables[0][name].iloc[0] for name in ("release", "damping_ratio")} | more
-
-
-def simulated(evidence: Evidence, boundary: str, where: str = "") -> Tables:
-    """Runs of figure 5, and those of the figures with more damping that are undamped, on three lattices."""
-    undamped = " and ".join(filter(None, [where, "damping_ratio == 0"]))
+def simulated(evidence: Evidence, boundary: str, where: str = "") -> list[Runs]:
+    """Runs of figure 5, and the undamped ones of the figures with more damping."""
+    undamped = f"{where} and damping_ratio == 0" if where else "damping_ratio == 0"
     sweeps = {f"scaling_{boundary}": where, f"damping_{boundary}": undamped}
-    runs = [evidence.lattices(name, where=where) for name, where in sweeps.items()]
-    return [(chosen(tables, solution="lattice"), tables) for tables in runs if len(tables[0])]
-
-
-def solved(evidence: Evidence, boundary: str) -> Tables:
-    """The exact solution at each combination; ours first, by the damping of figure 5."""
-    names = [
-        "release",
-        "damping_ratio",
-        *(["nucleation", "fraction"] if boundary == "stress" else []),
+    runs = [evidence.lattices(name, where=condition) for name, condition in sweeps.items()]
+    return [
+        Runs(shared(tables) | {"solution": "lattice"}, tables) for tables in runs if len(tables[0])
     ]
+
+
+def solved(evidence: Evidence, boundary: str) -> list[Runs]:
+    """The exact solution at each combination of choices; first ours, with the damping of figure 5.
+
+    Under held stress ours is at the fraction `SHOWN` of the way.
+    """
+    names = ["release", "damping_ratio"]
+    if boundary == "stress":
+        names += ["nucleation", "fraction"]
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
-    # Under a stress boundary the estimate of the time is the whole way.
+    # Under held stress the estimate of the time is for the whole way.
     table = table.assign(covered=table["fraction"] * table["paper_transition_time"])
-    found: Tables = []
+    combinations = []
     for values, rows in table.groupby(names):
-        found.append((dict(zip(names, values, strict=True)) | {"solution": "exact"}, [rows]))
-    ours = chosen(evidence.lattices(f"scaling_{boundary}"), fraction=SHOWN)
-    return sorted(
-        found, key=lambda pair: any(pair[0].get(name, ours[name]) != ours[name] for name in ours)
-    )
+        choice: Chosen = dict(zip(names, values, strict=True))
+        combinations.append(Runs(choice | {"solution": "exact"}, [rows]))
+    ours = shared(evidence.lattices(f"scaling_{boundary}")) | {"fraction": SHOWN}
+
+    def differs(runs: Runs) -> bool:
+        return any(runs.choice.get(name, value) != value for name, value in ours.items())
+
+    return sorted(combinations, key=differs)
 
 
 @cache
-def arrests(evidence: Evidence) -> Tables:
-    """When the left front has covered fractions of |x_minus| by the exact solution, and its last release on lattices.
+def arrests(evidence: Evidence) -> list[Runs]:
+    """Runs of the left front under held stress, with the same columns for theory and lattices.
 
-    Columns are distance (|x_minus|), covered, time, length (between the fronts).
+    The exact solution is at several fractions of the way to x_minus, lattices at the last release.
+    Columns are distance (|x_minus|), covered, time and length (between the fronts).
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    exact, lattices = solved(evidence, "stress"), simulated(evidence, "stress", INSIDE)
-    return [
-        (choice, [rows.rename(columns=SOLVED) for rows in tables]) for choice, tables in exact
-    ] + [
-        (choice | last, [rows.rename(columns=SIMULATED) for rows in tables])
-        for choice, tables in lattices
-    ]
+    out = []
+    for choice, (table,) in solved(evidence, "stress"):
+        out.append(Runs(choice, [table.rename(columns=SOLVED)]))
+    for choice, tables in simulated(evidence, "stress", INSIDE):
+        out.append(Runs(choice | last, [table.rename(columns=SIMULATED) for table in tables]))
+    return out
 
 
-def at_ours(tables: Sequence[tuple[Chosen, Any]]) -> list[tuple[Chosen, Any]]:
-    """Those of our own release rule and damping, by the exact solution and on lattices."""
-    ours = {name: tables[0][0][name] for name in ("release", "damping_ratio", "nucleation")}
-    return [pair for pair in tables if ours.items() <= pair[0].items()]
+def ours(combinations: Sequence[AtChoice]) -> list[AtChoice]:
+    """The combinations with our own release rule, damping and nucleation."""
+    first = combinations[0].choice
+    choice = {name: first[name] for name in ("release", "damping_ratio", "nucleation")}
+    return [one for one in combinations if choice.items() <= one.choice.items()]
 
 
-def medians(evidence: Evidence, measured: str, predicted: str) -> dict[float, float]:
-    """Median ratio at each fraction of the way, by the exact solution at our release rule and damping."""
-    return {
-        float(choice["fraction"]): float(ratios(tables[0], measured, predicted).median())
-        for choice, tables in at_ours(arrests(evidence))
-        if choice["fraction"] != LAST
-    }
+def medians(evidence: Evidence, estimate: Estimate) -> dict[float, float]:
+    """Median ratio of measured to predicted at each fraction of the way, by the exact solution."""
+    out = {}
+    for choice, tables in ours(arrests(evidence)):
+        if choice["fraction"] != LAST:
+            ratio = ratios(tables[0], estimate.quantity, estimate.predicted)
+            out[float(choice["fraction"])] = float(ratio.median())
+    return out
 
 
-def T_trans_displacement(evidence: Evidence, id: str) -> Claim:
+def judged(
+    combinations: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]
+) -> list[Combination]:
+    """A claim judged at each combination."""
+    return [Combination(choice, judge(tables)) for choice, tables in combinations]
+
+
+def held_displacement(evidence: Evidence, id: str, estimate: Estimate) -> OverChoices:
     """An estimate under a displacement boundary, at the first stick."""
-    quantity = f"transition_{ESTIMATES[id[0]][0]}"
-    pairs = [
-        (choice, evidence.approximate(id, found, quantity, f"paper_{quantity}", "left", "gamma"))
-        for choice, found in simulated(evidence, "displacement") + solved(evidence, "displacement")
-    ]
-    return over_choices(pairs) | evidence.compared("scaling_displacement", quantity)
+    quantity = f"transition_{estimate.quantity}"
+
+    def judge(tables: list[pd.DataFrame]) -> Approximate:
+        return evidence.approximate(id, tables, quantity, f"paper_{quantity}", ("left", "gamma"))
+
+    runs = simulated(evidence, "displacement") + solved(evidence, "displacement")
+    combinations = judged(runs, judge)
+    exact = evidence.from_exact("scaling_displacement", quantity)
+    first = judge(runs[0].tables)
+    return over_choices(combinations, replace(first, from_exact=exact))
 
 
-def at_fractions(evidence: Evidence, judge: Callable[[list[pd.DataFrame]], Claim]) -> Claim:
-    """A claim judged at each combination; beside its numbers the medians at each fraction, the rest being ours."""
-    pairs = [(choice, judge(found)) for choice, found in arrests(evidence)]
-    ours = {
-        f"median ratio: at {named(choice['fraction'])}": found["measured"]
-        for choice, found in at_ours(pairs)
-    }
-    return over_choices(pairs) | {"further": dict(sorted(ours.items()))}
+def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
+    """The median ratio at each fraction of the way, the other choices being ours."""
+    numbers = {}
+    for combination in ours(combinations):
+        words = f"median ratio: at {named(combination.choice['fraction'])}"
+        numbers[words] = combination.claim.fields().get("measured", NAN)
+    return dict(sorted(numbers.items()))
 
 
-def T_trans_stress(evidence: Evidence, id: str) -> Claim:
-    """An estimate under a stress boundary, at each fraction and at the last release."""
-    estimate = ESTIMATES[id[0]]
-    claim = at_fractions(
-        evidence, lambda found: evidence.approximate(id, found, *estimate, "left", "width")
+def held_stress(evidence: Evidence, id: str, estimate: Estimate) -> OverChoices:
+    """An estimate under a stress boundary, at each fraction of the way and at the last release."""
+
+    def judge(tables: list[pd.DataFrame]) -> Approximate:
+        levels = ("left", "width")
+        return evidence.approximate(id, tables, estimate.quantity, estimate.predicted, levels)
+
+    runs = arrests(evidence)
+    combinations = judged(runs, judge)
+    first = judge(runs[0].tables)
+    leaves = leaves_tolerance(medians(evidence, estimate), evidence.tolerance(id))
+    shown = replace(
+        first,
+        from_exact=evidence.from_exact("scaling_stress", f"transition_{estimate.quantity}"),
+        further=fraction_medians(combinations)
+        | {"fraction of the way at which the median ratio leaves the tolerance": leaves},
     )
-    claim |= evidence.compared("scaling_stress", f"transition_{estimate[0]}")
-    fractions, ratio = zip(*sorted(medians(evidence, *estimate).items()), strict=True)
-    over = np.array(ratio) - 1.0
-    left = np.interp(evidence.tolerance(id), over, fractions, left=NAN, right=NAN)
-    claim["further"]["fraction of the way at which the median ratio leaves the tolerance"] = float(
-        left
-    )
-    return claim
+    return over_choices(combinations, shown)
 
 
-def stress_front_speeds_near_one(evidence: Evidence, id: str) -> Claim:
-    """Mean speeds of both fronts; the front that is farther off counts."""
-    ways = {"left": "covered", "right": "(length - covered)"}
-
-    def judge(tables: list[pd.DataFrame]) -> Claim:
-        fronts = {
-            side: evidence.approximate(id, tables, f"{way} / time", "1")
-            for side, way in ways.items()
-        }
-        side = max(fronts, key=lambda name: fronts[name].get("deviation", NAN))
-        return fronts[side] | {"note": f"mean speed of the {side} front, which is the farther off"}
-
-    return at_fractions(evidence, judge)
+def leaves_tolerance(ratio_at: dict[float, float], tolerance: float) -> float:
+    """The fraction of the way at which a ratio is above 1 by the tolerance; NaN if none is."""
+    fractions = sorted(ratio_at)
+    excess = [ratio_at[fraction] - 1.0 for fraction in fractions]
+    return float(np.interp(tolerance, excess, fractions, left=NAN, right=NAN))
 
 
-def T_trans_stress_underestimate(evidence: Evidence, id: str) -> Claim:
+def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
+    """Mean speeds of both fronts; the front with the larger deviation counts."""
+
+    def judge(tables: list[pd.DataFrame]) -> Approximate:
+        left = evidence.approximate(id, tables, "covered / time", "1")
+        right = evidence.approximate(id, tables, "(length - covered) / time", "1")
+        side, front = ("right", right) if right.median[0] > left.median[0] else ("left", left)
+        return replace(front, note=f"mean speed of the {side} front, which is the farther off")
+
+    combinations = judged(arrests(evidence), judge)
+    first = combinations[0].claim
+    return over_choices(combinations, replace(first, further=fraction_medians(combinations)))
+
+
+def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """T_trans is longer than |x_minus|, in every run."""
-    pairs = []
-    for choice, tables in arrests(evidence):
+
+    def judge(tables: list[pd.DataFrame]) -> Qualitative:
         longer = [table["time"] > table["distance"] for table in tables[:2]]
-        pairs.append((choice, evidence.qualitative(agreeing(longer[0], longer[-1]))))
-    return over_choices(pairs)
+        return Qualitative.counted(agreeing(longer[0], longer[-1]))
+
+    return over_choices(judged(arrests(evidence), judge))
 
 
-def front_arrest_position(evidence: Evidence, id: str) -> Claim:
-    """The last release on the left over |x_minus|, for every profile and damping; and the gap in units of H."""
-    what = "last_release_distance", "balance_distance"
+def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
+    """The last release on the left over |x_minus|, for every profile and damping.
+
+    The distance between the two, in units of H, must be small besides.
+    """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
+    covered, predicted = "last_release_distance", "balance_distance"
 
-    def judge(tables: list[pd.DataFrame]) -> Claim:
-        claim = evidence.approximate(id, tables, *what, "left", "width")
-        gap = evidence.studied(tables, [(t[what[1]] - t[what[0]]).abs().median() for t in tables])
-        far = rules.within(gap.value, gap.uncertainty, GAP)
-        further = {"median gap in H, over all sweeps": gap.value}
-        return claim | {"verdict": rules.worst([claim["verdict"], far]), "further": further}
+    def judge(tables: list[pd.DataFrame]) -> Approximate:
+        claim = evidence.approximate(id, tables, covered, predicted, ("left", "width"))
+        gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
+        gap = studied(tables, gaps)
+        further = {"median gap in H, over all sweeps": gap[0]}
+        return replace(claim, besides=rules.within(*gap, GAP), further=further)
 
-    whole = evidence.lattices(*sweeps, where=INSIDE)
-    shown, ratio = judge(whole), ratios(whole[0], *what)
-    shown["further"] |= {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
-    pairs = []
-    for damping in sorted(
-        {*evidence.tables["open_choices"]["damping_ratio"]} & {*whole[0]["damping_ratio"]}
-    ):
-        tables = evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {damping}")
-        pairs.append((chosen(tables, solution="lattice"), judge(tables)))
-    return over_choices(pairs, shown)
+    tables = evidence.lattices(*sweeps, where=INSIDE)
+    shown, ratio = judge(tables), ratios(tables[0], covered, predicted)
+    extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
+    shown = replace(shown, further={**shown.further, **extremes})
+    runs = []
+    studied_damping = {*evidence.tables["open_choices"]["damping_ratio"]}
+    for damping in sorted(studied_damping & {*tables[0]["damping_ratio"]}):
+        where = f"{INSIDE} and damping_ratio == {damping}"
+        damped = evidence.lattices(*sweeps, where=where)
+        runs.append(Runs(shared(damped) | {"solution": "lattice"}, damped))
+    return over_choices(judged(runs, judge), shown)
 
 
-def transition_diverges(evidence: Evidence, id: str) -> Claim:
-    """T_trans and L_trans grow at every step down in gamma, with exponents below zero at the smallest three."""
-    quantities, decided, slopes = ["transition_time", "transition_length"], [], []
+def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
+    """T_trans and L_trans grow at every step down in gamma.
+
+    Their exponents at the three smallest gamma are below zero by three standard errors.
+    """
+    answers, exponents = [], []
     for table in evidence.lattices("scaling_displacement")[:2]:
-        found: list[bool | None] = []
-        for _, rows in table.sort_values("gamma").groupby("left"):
-            smallest = np.log(rows[["gamma", *quantities]].head(3))
-            lines = [
-                straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities
-            ]
-            falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
-            grows = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
-            found.append(grows if len(rows) >= 3 else None)
-            slopes.append([slope for slope, *_ in lines])
-        decided.append(found)
-    means = np.mean(slopes[: len(decided[0])], axis=0)
+        sequences = table.sort_values("gamma").groupby("left")
+        levels = [divergence(rows) for _, rows in sequences]
+        answers.append([grows for grows, _ in levels])
+        exponents.append([pair for _, pair in levels])
+    means = np.mean(exponents[0], axis=0)
     further = {
-        rf"mean exponent of $\gamma$ in ${name}_\mathrm{{trans}}$": float(mean)
-        for name, mean in zip(ESTIMATES, means, strict=True)
+        rf"mean exponent of $\gamma$ in ${estimate.symbol}_\mathrm{{trans}}$": float(mean)
+        for estimate, mean in zip((DURATION, LENGTH), means, strict=True)
     }
-    return evidence.qualitative(agreeing(*decided)) | {"further": further}
+    return Qualitative.counted(agreeing(*answers), further=further)
 
 
-def rises(evidence: Evidence, table: pd.DataFrame, quantity: str) -> Claim:
-    """Whether each step up in the pre-stress, at each gamma, makes a number larger; undecided within uncertainties."""
-    decided: list[bool | None] = []
+def divergence(rows: pd.DataFrame) -> tuple[bool | None, list[float]]:
+    """The answer to whether runs in order of gamma diverge, and the exponents of T and L.
+
+    The answer is None with fewer than three runs.
+    """
+    quantities = [f"transition_{estimate.quantity}" for estimate in (DURATION, LENGTH)]
+    smallest = np.log(rows[["gamma", *quantities]].head(3))
+    lines = [straight_line(smallest["gamma"], smallest[quantity]) for quantity in quantities]
+    falls = (rows[quantities].diff()[1:] < 0.0).all(axis=None)
+    grows = bool(falls and all(slope + 3.0 * error < 0.0 for slope, _, error in lines))
+    return grows if len(rows) >= 3 else None, [slope for slope, *_ in lines]
+
+
+def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
+    """At each gamma every step up in the pre-stress makes a quantity larger.
+
+    A step within the uncertainties is undecided.
+    """
     unsure = f"uncertainty_{quantity}"
-    for _, rows in (
-        table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left").groupby("gamma")
-    ):
-        change, blur = rows[quantity].diff()[1:], rows[unsure].rolling(2).sum()[1:]
-        decided += [
-            bool(c > 0.0) if abs(c) > b else None for c, b in zip(change, blur, strict=True)
-        ]
-    return evidence.qualitative(decided)
+    table = table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left")
+    decided: list[bool | None] = []
+    for _, rows in table.groupby("gamma"):
+        steps = rows[quantity].diff()[1:]
+        uncertainties = rows[unsure].rolling(2).sum()[1:]
+        for step, uncertainty in zip(steps, uncertainties, strict=True):
+            decided.append(bool(step > 0.0) if abs(step) > uncertainty else None)
+    return Qualitative.counted(decided)
 
 
-def shorter_transition_low_prestress(evidence: Evidence, id: str) -> Claim:
+def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:
     """The transition gets longer with the pre-stress."""
-    both = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(
-        [(each, rises(evidence, found[0], "transition_length")) for each, found in both]
-    )
+    runs = simulated(evidence, "displacement") + solved(evidence, "displacement")
+    return over_choices(judged(runs, lambda tables: rises(tables[0], "transition_length")))
 
 
-def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Claim:
+def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Qualitative:
     """The pulse gets wider with the pre-stress."""
-    return rises(evidence, evidence.lattices("any_prestress")[0], "pulse_width")
-
-
-# Times and lengths are judged alike.
-L_trans_displacement, L_trans_stress = T_trans_displacement, T_trans_stress
+    return rises(evidence.finest("any_prestress"), "pulse_width")

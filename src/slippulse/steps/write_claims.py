@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from ..claims.evidence import Evidence
-from ..claims.paper import all_claims, findings, finite
+from ..claims.findings import findings
+from ..claims.paper import all_claims, finite
 from ..claims.reading import read_entries, read_text
 from ..data.files import write_json, write_text
 from ..report.claims_page import claims_page
@@ -19,8 +20,10 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]
-    evidence = Evidence(given(files)[1], texts["claims"], settings["measure"]["steady_tolerance"])
-    claims = all_claims(evidence, settings["published"], sentences)
+    _, tables = given(files)
+    steady = settings["measure"]["steady_tolerance"]
+    evidence = Evidence(tables, texts["claims"], steady, settings["published"])
+    claims = all_claims(evidence, sentences)
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])
     write_json(beside, outputs["findings"])

@@ -1,0 +1,111 @@
+"""Findings: numbers of our own that stand beside the claims, without a verdict."""
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from types import SimpleNamespace
+
+import numpy as np
+
+from ..data.prose import fill
+from . import transition
+from .evidence import Evidence, evaluated
+from .inference import inference
+
+
+class NoRuns(Exception):
+    """An altered configuration has left no runs to take a number from."""
+
+
+def findings(
+    evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]
+) -> list[dict]:
+    """Each finding with its id, its numbers by name, its text and the tables it is from.
+
+    There are no numbers where an altered configuration left no runs.
+    """
+    out = []
+    for id, entry in entries.items():
+        rows = entry.get("numbers", [])
+        values: dict = {}
+        with suppress(NoRuns):
+            values = _values(evidence, damping_ratio, id, rows)
+        text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
+        source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
+        out.append({"id": id, "numbers": values, "text": text, "source": source})
+    return out
+
+
+def _values(evidence: Evidence, damping_ratio: float, id: str, rows: list[Mapping]) -> dict:
+    """All numbers of one finding by name."""
+    values: dict = {}
+    for row in rows:
+        values |= numbers(evidence, damping_ratio, **row)
+    if id in COMPUTED:
+        values |= COMPUTED[id](evidence)
+    return values
+
+
+def numbers(
+    evidence: Evidence, ratio: float, table: str, take: Mapping, where: str = ""
+) -> dict[str, float]:
+    """Expressions over columns of the chosen rows of one table; `NoRuns` without rows."""
+    rows = evidence.finest(table) if table in evidence.swept else evidence.tables[table]
+    rows = rows.assign(figures=ratio)
+    rows = rows[evaluated(rows, where)]
+    if rows.empty:
+        raise NoRuns(table)
+    return {
+        name: float(rows.eval(expression, engine="python")) for name, expression in take.items()
+    }
+
+
+def collapse(evidence: Evidence) -> dict[str, float]:
+    """Median change of L_trans between no damping and the largest ratio, over scenes with both."""
+    out: dict[str, float] = {}
+    for boundary in ("displacement", "stress"):
+        table = evidence.finest(f"damping_{boundary}").fillna({"gamma": 0.0})
+        table = table.set_index(["left", "width", "gamma", "damping_ratio"])
+        lengths = table["transition_length"].unstack()
+        if lengths.empty:
+            raise NoRuns(boundary)
+        change = lengths.iloc[:, -1] / lengths.iloc[:, 0]
+        out[f"{boundary}_change"] = float(change.median())
+        out[f"{boundary}_runs"] = float(change.count())
+        out[f"{boundary}_scenes"] = float(len(change))
+    return out | {"ratio": float(lengths.columns[-1])}
+
+
+def best_fit(evidence: Evidence) -> dict[str, float | str]:
+    """The parameters of the published figure: best fit, confidence region, the other rule."""
+    fits = inference(evidence.tables["published_figure"])
+    best = fits["best"]
+    low, high = best["regions"][0.95]["damping_ratio"]
+    return {
+        "release": best["release"],
+        "chi_square": best["chi2"],
+        "degrees": float(best["dof"]),
+        "ratio": best["damping_ratio"],
+        "low": low,
+        "high": high,
+        "difference": fits["difference"],
+    }
+
+
+def never_arrives(evidence: Evidence) -> dict[str, float]:
+    """Median ratio of the exact time at each fraction of the way to the predicted one."""
+    medians = transition.medians(evidence, transition.DURATION)
+    return {f"median_{100.0 * fraction:.0f}": ratio for fraction, ratio in medians.items()}
+
+
+def duration_factor(evidence: Evidence) -> dict[str, float]:
+    """The factor between the two criteria of the duration."""
+    return {"factor": float(np.pi / np.sqrt(2.0))}
+
+
+# Findings with numbers that are no expression over the columns of one table.
+COMPUTED: dict[str, Callable[[Evidence], dict]] = {
+    "collapse_against_damping": collapse,
+    "front_never_arrives": never_arrives,
+    "published_figure_made_with": best_fit,
+    "duration_criterion": duration_factor,
+}

@@ -1,0 +1,216 @@
+"""Results about a claim of the paper: a dataclass for each kind of claim."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+import numpy as np
+
+from . import rules
+from .rules import Known
+
+NAN = float("nan")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim(ABC):
+    """The result about one claim; every kind may have further numbers by name, and two texts.
+
+    ``why`` is one sentence on the verdict, ``note`` replaces that in manuscript/claims.yaml.
+    """
+
+    further: Mapping[str, float] = field(default_factory=dict)
+    why: str = ""
+    note: str = ""
+
+    @abstractmethod
+    def verdict(self) -> str:
+        """The verdict at the tolerance of the claim."""
+
+    @abstractmethod
+    def fields(self) -> dict[str, Any]:
+        """The verdict and the numbers of the kind, as claims.json names them."""
+
+    def flips(self) -> list[dict]:
+        """Tolerances at which the verdict changes; none if no number is compared with one."""
+        return []
+
+    def written(self) -> dict[str, Any]:
+        """All fields in claims.json that the result sets."""
+        rest = {"further": dict(self.further), "why": self.why, "flips_at": self.flips()}
+        return self.fields() | rest | ({"note": self.note} if self.note else {})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Qualitative(Claim):
+    """An always, never or every, by the numbers of runs in which it holds, fails or is open.
+
+    ``condition`` is true if it needs a condition that the paper does not state.
+    """
+
+    held: int
+    failed: int = 0
+    undecided: int = 0
+    condition: bool = False
+
+    @classmethod
+    def counted(cls, decided: Iterable[bool | None], **fields: Any) -> Self:
+        """The claim from whether it holds in each run, None where that is undecided."""
+        decided = list(decided)
+        held = sum(bool(answer) for answer in decided)
+        undecided = sum(answer is None for answer in decided)
+        failed = len(decided) - held - undecided
+        return cls(held=held, failed=failed, undecided=undecided, **fields)
+
+    def verdict(self) -> str:
+        return rules.qualitative(self.held, self.failed, self.undecided, self.condition)
+
+    def fields(self) -> dict[str, Any]:
+        runs, counts = self.held + self.failed + self.undecided, {"held": self.held}
+        counts |= {"failed": self.failed, "undecided": self.undecided}
+        out = {"verdict": self.verdict(), "predicted": runs, "measured": self.held}
+        out |= {"uncertainty": self.undecided, "deviation": self.failed / runs if runs else None}
+        return out | {"runs": runs} | counts
+
+
+@dataclass(frozen=True, kw_only=True)
+class Existence(Qualitative):
+    """A claim that there are runs of some cases: one of each is enough."""
+
+    cases: Mapping[str, int]
+
+    @classmethod
+    def shown(cls, cases: Mapping[str, int], further: Mapping[str, float], **fields: Any) -> Self:
+        """The claim from the number of runs of each case."""
+        numbers = {name: float(value) for name, value in {**cases, **further}.items()}
+        return cls(held=sum(cases.values()), cases=cases, further=numbers, **fields)
+
+    def verdict(self) -> str:
+        if not all(self.cases.values()):
+            return rules.INCONCLUSIVE
+        return rules.CAVEAT if self.condition else rules.REPRODUCED
+
+
+@dataclass(frozen=True, kw_only=True)
+class ByNumber(Claim):
+    """A claim that compares a number with a tolerance."""
+
+    tolerance: float
+
+    @abstractmethod
+    def verdict_at(self, tolerance: float) -> str:
+        """The verdict on the number if the tolerance were this one."""
+
+    def verdict(self) -> str:
+        return self.verdict_at(self.tolerance)
+
+    def flips(self) -> list[dict]:
+        return rules.flips(self.verdict_at, self.tolerance)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exact(ByNumber):
+    """An equation, by the values of its runs at spacing 0; arrays are [run], NaN without a value.
+
+    A consequence of the equation may have to hold too.
+    """
+
+    predicted: np.ndarray
+    measured: np.ndarray
+    uncertainty: np.ndarray
+    consequence: Qualitative | None = None
+
+    def relative(self) -> tuple[np.ndarray, np.ndarray]:
+        """Deviation and uncertainty over what is predicted, absolute where that is 0, [run]."""
+        scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
+        return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
+
+    def verdict_at(self, tolerance: float) -> str:
+        return rules.exact(*self.relative(), tolerance)[0]
+
+    def verdict(self) -> str:
+        parts = [self.verdict_at(self.tolerance)]
+        return rules.worst(parts + ([self.consequence.verdict()] if self.consequence else []))
+
+    def fields(self) -> dict[str, Any]:
+        """The numbers of the run that decides, and how many runs have numbers."""
+        deviation, uncertainty = self.relative()
+        usable = int(np.isfinite(deviation + uncertainty).sum())
+        out = self.consequence.fields() if self.consequence else {}
+        out |= {"verdict": self.verdict(), "runs": usable, "left_out": len(deviation) - usable}
+        run = rules.exact(deviation, uncertainty, self.tolerance)[1]
+        if run is not None:
+            out |= {"predicted": float(self.predicted[run]), "measured": float(self.measured[run])}
+            out |= {"uncertainty": float(self.uncertainty[run]), "deviation": float(deviation[run])}
+        return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class Approximate(ByNumber):
+    """An estimate, by the median deviation of its runs and, if one is claimed, by its exponent."""
+
+    # |measured/predicted - 1| of the runs that have numbers, on the finest lattice.
+    deviations: np.ndarray
+    left_out: int
+    # The medians of the deviation and of measured/predicted, with numerical uncertainties.
+    median: Known = (NAN, NAN)
+    ratio: Known = (NAN, NAN)
+    exponent: Known | None = None
+    tolerance_exponent: float = 0.0
+    # The median and largest deviation of runs at spacing 0 from the exact theory.
+    from_exact: Known | None = None
+    # The verdict on what must hold besides.
+    besides: str = rules.REPRODUCED
+
+    def verdict_at(self, tolerance: float) -> str:
+        return rules.approximate(self.median, tolerance, self.exponent, self.tolerance_exponent)
+
+    def verdict(self) -> str:
+        return rules.worst([self.verdict_at(self.tolerance), self.besides])
+
+    def fields(self) -> dict[str, Any]:
+        """The medians, the spread of the runs and the exponent; only counts without runs."""
+        runs = self.deviations.size
+        out = {"runs": runs, "left_out": self.left_out, "verdict": self.verdict()}
+        if self.from_exact is not None:
+            out["exact_median"], out["exact_largest"] = self.from_exact
+        if runs:
+            if self.exponent is not None:
+                out["exponent"], out["exponent_uncertainty"] = self.exponent
+            out["measured"], out["uncertainty"] = self.ratio
+            out |= {"predicted": 1.0, "deviation": self.median[0]}
+            out["ninety"] = float(np.percentile(self.deviations, 90.0))
+            out["largest"] = float(self.deviations.max())
+        return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading(ByNumber):
+    """A figure that was read off, by chi-square of its readings at the best fit."""
+
+    chi_square: float
+    degrees_of_freedom: int
+    p_value: float
+
+    def verdict_at(self, tolerance: float) -> str:
+        return rules.reading(self.p_value, self.degrees_of_freedom, tolerance)
+
+    def fields(self) -> dict[str, Any]:
+        out = {"verdict": self.verdict(), "predicted": float(self.degrees_of_freedom)}
+        return out | {"measured": self.chi_square, "deviation": self.p_value}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arithmetic(ByNumber):
+    """A printed formula, by its ratio to the derived one; only rounding is allowed for."""
+
+    ratio: float
+
+    def verdict_at(self, tolerance: float) -> str:
+        return rules.within(abs(self.ratio - 1.0), 0.0, tolerance)
+
+    def fields(self) -> dict[str, Any]:
+        out = {"verdict": self.verdict(), "predicted": 1.0, "measured": self.ratio}
+        rounding = 8.0 * float(np.finfo(float).eps)
+        return out | {"uncertainty": rounding, "deviation": abs(self.ratio - 1.0)}
