@@ -11,7 +11,8 @@ from typing import Any
 
 import yaml
 
-from slippulse.configuration.read import json_schema, read_overlay, resolved, words
+from slippulse.configuration.read import read_overlay
+from slippulse.configuration.refusals import json_schema, resolved, words
 
 README, SCHEMA, SHIPPED = (
     "config/README.md",

@@ -6,15 +6,10 @@ import warnings
 import pytest
 
 from slippulse.configuration.expand import expand
+from slippulse.configuration.limits import HOW_TO_GO_ON, bound_of_sweep
 from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import LARGEST_FILE, main, read_config, read_overlay
-from slippulse.configuration.resolve import (
-    HOW_TO_GO_ON,
-    accuracy_of,
-    all_simulations,
-    bound_of_sweep,
-    resolve,
-)
+from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 
 # Enough of the shipped simulations for every case, so that a refusal of scenes is quick.
 KEPT = (

@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from slippulse.configuration.resolve import HOW_TO_GO_ON
+from slippulse.configuration.limits import HOW_TO_GO_ON
 
 STEADY = "simulations: {steady_displacement: "
 

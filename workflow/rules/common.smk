@@ -13,7 +13,8 @@ from slippulse.configuration.accuracy import promised
 from slippulse.configuration.expand import run_count
 from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import read_config, read_overlay
-from slippulse.configuration.resolve import accuracy_of, all_simulations, bound_of_sweep, resolve
+from slippulse.configuration.limits import bound_of_sweep
+from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.steps.job import Jobs, end_with
 from slippulse.steps.reach import below, declared, needs_of, sources
 from slippulse.steps.targets import selected

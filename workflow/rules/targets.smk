@@ -3,7 +3,7 @@
 import shlex
 import threading
 
-from slippulse.configuration.read import format_problems
+from slippulse.configuration.refusals import format_problems
 from slippulse.data.files import write_json
 from slippulse.data.records import Tree
 from slippulse.steps.reach import jobs_of

@@ -1,15 +1,16 @@
 """Spacing, step and order of a scene for a largest relative error of its numbers.
 
-The error of each number is a constant times dx over a length of the scene, in the continuum limit at fixed beta/dx.
-The constants below stand here once. Where no derivation is given they are upper bounds over runs at two or three
-spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1, gamma W^2 = 0.001 to 64 under a displacement boundary; levels -0.1 to
--10 under a stress boundary. What is promised, and what is not, is in `slippulse.measure.promise`.
+The error of each number is a constant times dx over a length of the scene, in the continuum limit
+at fixed beta/dx. Each constant stands below once. Where no derivation is given, a constant is an
+upper bound over runs at two or three spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1 and
+gamma W^2 = 0.001 to 64 under a displacement boundary; levels -0.1 to -10 under a stress boundary.
+`slippulse.measure.promise` says which numbers are promised.
 """
 
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..model.checks import check_choice, check_kind, check_number, short_repr
 from ..model.prestress import Prestress
@@ -20,34 +21,57 @@ from ..theory.pulse import pulse_behind_front
 from .expand import promise_of, runs
 from .problems import ConfigError
 
-# At beta/dx = 10 the longest stable step alone errs by 3e-3 in the front speed, at any spacing, which a grid study does
-# not see; the constants below were found up to 1.
+# The constants below were found for beta/dx up to 1. At 10 the longest stable step alone errs by
+# 3e-3 in the front speed at any spacing, and a grid study does not see that.
 STRONGEST_DAMPING = 1.0
-# Fraction of the promise that the spacing may take; the rest is left to the step and to the scatter of a grid study,
-# which with factors of 1.5 and 2 finds up to a third more than the error is.
-FRACTION = 0.7
-# Blocks across the narrowest length at the least, so that a lattice four times coarser still has 8.
+# The spacing may take this fraction of the promise. The step takes a part of the rest, and so does
+# the scatter of a grid study: with factors of 1.5 and 2 it finds up to a third more than the error.
+SPACING_FRACTION = 0.7
+# Blocks across the narrowest length, at least: a lattice four times coarser still has 8.
 BLOCKS = 32
-# Largest step in units of dx, and order: `studies.accuracy_cost` finds errors of 4e-6 by them at any spacing, in the
-# worst of its numbers, and by the next cheaper ones 2e-5.
+# The largest step in units of dx, and the order. `studies.accuracy_cost` finds errors of 4e-6 with
+# them at any spacing, in the worst of its numbers, and 2e-5 with the next cheaper pair.
 STEP, ORDER = 1.0, 8
 
-# Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its fraction of the width from slip and peak
-# (steady pulse to first order in beta). The front takes blocks from the width: at most 1/(2 tau_0 v^2).
+# Pulse: the damped layer, (beta/dx) v/(v^2 - 1) blocks, takes pi^2/4 times its fraction of the
+# width from slip and peak velocity (steady pulse to first order in beta). The front takes blocks
+# from the width: at most 1/(2 tau_0 v^2).
 LAYER, FRONT_BLOCKS = 0.25 * math.pi**2, 0.5
-# Front speed over leaf springs, second order in dx over the pulse width: transient, and layer times v.
+# Front speed with leaf springs, second order in dx over the pulse width: transient, layer times v.
 SPEED, SPEED_LAYER = 7.0, 4.0
-# T_trans and L_trans under a displacement boundary: blocks of the nucleation, a front slow to start.
+# T_trans and L_trans under a displacement boundary: blocks of the nucleation, a slow first front.
 NUCLEATION, SLOW_FRONT = 0.1, 0.2
-# Share time and pulse under a stress boundary with level 0 on the right, over the distance to where the pre-stress
-# falls to 0 on the left; for each, undamped and what beta/dx adds.
-SHARE_TIME, SHARE_TIME_DAMPED = 2.2, 1.0
+# T_trans and slip velocity under a stress boundary with level 0 on the right, over the distance to
+# where the pre-stress falls to 0 on the left: without damping, and what beta/dx adds.
+TRANSITION, TRANSITION_DAMPED = 2.2, 1.0
 VELOCITY, VELOCITY_DAMPED = 0.6, 0.6
 # Front speed without leaf springs, over the width of the Gaussian.
 FREE_SPEED = 0.25
 
-# Runs of a sweep have it in common, and it takes milliseconds.
-speed_of = lru_cache(maxsize=4096)(front_speed)
+# The runs of a sweep share their speeds, and one speed takes milliseconds.
+cached_front_speed = lru_cache(maxsize=4096)(front_speed)
+
+
+class Demand(NamedTuple):
+    """A largest relative error, and the scene whose numbers must keep it."""
+
+    error: float
+    prestress: Prestress
+    gamma: float
+    damping_ratio: float
+    release: str
+    fields: bool
+
+    @property
+    def levels(self) -> list[float]:
+        """Every level of the pre-stress."""
+        steps = [level for _, level in self.prestress.steps]
+        return [self.prestress.left, self.prestress.right, *steps]
+
+    @property
+    def peak_width(self) -> float:
+        """The width of the narrowest Gaussian."""
+        return min([self.prestress.width, *(width for *_, width in self.prestress.bumps)])
 
 
 def settings_for(
@@ -62,14 +86,43 @@ def settings_for(
 ) -> dict[str, Any]:
     """Spacing, step and order that keep a scene's numbers within a largest relative error.
 
-    accuracy : largest relative numerical error, 1e-4 to 0.1
-    boundary, prestress, gamma, release : of the scene, as in `Scene`
-    damping_ratio : beta/dx, which stays as the spacing changes, 0 to 1
-    fields : whether the numbers of the pulse at the end (width, slip, peak velocity) are wanted too
+    Parameters
+    ----------
+    accuracy : float
+        Largest relative numerical error, from 1e-4 to 0.1.
+    boundary : {"displacement", "stress"}
+        Condition at the top of the layer.
+    prestress : Prestress
+        Pre-stress of the scene.
+    gamma : float
+        Elasticity ratio 2G/(lambda + 2G): > 0 under "displacement", 0 under "stress".
+    damping_ratio : float
+        beta/dx, from 0 to 1; it stays the same when the spacing changes.
+    release : {"total", "elastic"}
+        Release rule, as in `Scene`.
+    fields : bool
+        Whether width, slip and peak velocity of the pulse at the end must keep the error, too.
 
-    Returns a dict of dx, beta, max_step and order, to be passed on: ``Scene(..., **settings)``
-    Raises ValueError: one line naming the key, the value and what is allowed.
-    Source: module docstring; the numbers that are covered are listed in `slippulse.measure.promise`.
+    Returns
+    -------
+    dict
+        dx (units of H), beta (units of H), max_step (units of dx) and order, for `Scene`.
+
+    Raises
+    ------
+    ValueError
+        One line that names the key, the value and what is allowed.
+
+    Notes
+    -----
+    Source: `slippulse.configuration.accuracy`, where each constant is derived or measured; the
+    paper promises no error. `slippulse.measure.promise` lists the numbers that are covered.
+
+    Examples
+    --------
+    >>> scene = {"boundary": "displacement", "prestress": Prestress(0.5, 0.5), "gamma": 0.65}
+    >>> settings_for(1e-2, **scene)["order"]
+    8
     """
     check_number("accuracy", accuracy, at_least=1e-4, at_most=0.1)
     check_choice("release", release, RELEASES)
@@ -78,83 +131,80 @@ def settings_for(
         raise ValueError(f"fields: {short_repr(fields)}; allowed: true or false")
     check_number("gamma", gamma, at_least=0.0)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=STRONGEST_DAMPING)
-    spacings = _spacings(FRACTION * accuracy, prestress, gamma, damping_ratio, release, fields)
+    error = SPACING_FRACTION * accuracy
+    demand = Demand(error, prestress, gamma, damping_ratio, release, fields)
+    spacings = _spacings_with_springs(demand) if gamma else _spacings_without_springs(demand)
     dx = float(f"{min(1.0, *spacings):.3g}")
     step = min(STEP, MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2))
-    settings: dict[str, Any] = {
-        "dx": dx,
-        "beta": damping_ratio * dx,
-        "max_step": step,
-        "order": ORDER,
-    }
-    # Refuses what is left to refuse.
-    Scene(
-        boundary=boundary,
-        prestress=prestress,
-        gamma=gamma,
-        release=release,
-        duration=1.0,
-        **settings,
-    )
+    settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx}
+    settings |= {"max_step": step, "order": ORDER}
+    # The scene refuses a wrong boundary, and a gamma that does not go with it.
+    Scene(boundary, prestress, duration=1.0, gamma=gamma, release=release, **settings)
     return settings
 
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
-    """A resolved simulation, with the spacing of each run where an accuracy is promised; raises ConfigError."""
+    """Add the spacing of each run where an accuracy is promised, or raise ConfigError."""
     promise = promise_of(simulation)
-    if promise is not None and simulation["scheme"] != "localised":
-        # The error of another scheme's step is not seen by a grid study.
+    if promise is None:
+        return simulation
+    if simulation["scheme"] != "localised":
+        # A grid study does not see the error of another scheme's step.
         raise ConfigError(
             f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given"
         )
-    if promise is None or math.isnan(promise):
+    if math.isnan(promise):
         return simulation
-    if any(alphas := simulation.get("rate_strengthening", [])):
-        # The constants above are those without it; beyond alpha_c no pulse has a width, near -alpha_c slip diverges.
+    strengthening = simulation.get("rate_strengthening", [])
+    if any(strengthening):
+        # The constants hold without it: beyond alpha_c no pulse has a width, and near -alpha_c the
+        # slip diverges.
         allowed = "0 where accuracy is given, or a dx of its own"
-        raise ConfigError(f"rate_strengthening: {short_repr(alphas)}; allowed: {allowed}")
+        raise ConfigError(f"rate_strengthening: {short_repr(strengthening)}; allowed: {allowed}")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
-    settings = [
-        settings_for(
-            promise, prestress=profile, gamma=gamma, damping_ratio=ratio, release=release, **common
-        )
-        for release, profile, gamma, _, ratio, _ in runs(simulation)
-    ]
-    return {**simulation, "spacings": [found["dx"] for found in settings]}
+    spacings = []
+    for run in runs(simulation):
+        common |= {"release": run.release, "gamma": run.gamma, "damping_ratio": run.damping}
+        spacings.append(settings_for(promise, prestress=run.profile, **common)["dx"])
+    return {**simulation, "spacings": spacings}
 
 
-def _spacings(
-    error: float, prestress: Prestress, gamma: float, ratio: float, release: str, fields: bool
-) -> list[float]:
-    """Spacings that each number allows, with leaf springs or (gamma = 0) under a stress boundary."""
-    levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
-    peak = min(prestress.width, *(width for *_, width in prestress.bumps), math.inf)
-    if gamma:
-        nucleation = min(peak, 1.0 / math.sqrt(gamma))
-        start = NUCLEATION * (1.0 + ratio) / nucleation
-        spacings = [nucleation / BLOCKS, error / start]
-        for level in (level for level in levels if level > 0.0):
-            speed = speed_of(level, ratio, release)
-            # In the limit dx -> 0 damping acts through the speed alone.
-            width = pulse_behind_front(level, gamma, 0.0, speed).width
-            layer = ratio * speed / ((speed - 1.0) * (speed + 1.0))
-            of_speed = math.sqrt(error / (SPEED + SPEED_LAYER * layer * speed))
-            spacings += [width / BLOCKS, width * of_speed, error / (start + SLOW_FRONT / width)]
-            if fields:
-                spacings.append(
-                    error * width / max(FRONT_BLOCKS / (level * speed**2), LAYER * layer)
-                )
-        return spacings
-    negative = [level for level in levels if level < 0.0 < prestress.peak]
-    reaches = [
-        prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level)) for level in negative
+def _spacings_with_springs(demand: Demand) -> list[float]:
+    """Spacings that the numbers of a scene with leaf springs allow, one for each number."""
+    nucleation = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
+    start = NUCLEATION * (1.0 + demand.damping_ratio) / nucleation
+    spacings = [nucleation / BLOCKS, demand.error / start]
+    for level in demand.levels:
+        if level <= 0.0:
+            continue
+        speed = cached_front_speed(level, demand.damping_ratio, demand.release)
+        # In the limit dx -> 0 damping acts through the speed alone.
+        width = pulse_behind_front(level, demand.gamma, 0.0, speed).width
+        layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
+        speed_error = math.sqrt(demand.error / (SPEED + SPEED_LAYER * layer * speed))
+        spacings += [width / BLOCKS, width * speed_error]
+        spacings.append(demand.error / (start + SLOW_FRONT / width))
+        if demand.fields:
+            loss = max(FRONT_BLOCKS / (level * speed**2), LAYER * layer)
+            spacings.append(demand.error * width / loss)
+    return spacings
+
+
+def _spacings_without_springs(demand: Demand) -> list[float]:
+    """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
+    error, prestress, ratio = demand.error, demand.prestress, demand.damping_ratio
+    # Distances to where the Gaussian falls to 0, towards each negative level.
+    distances = [
+        prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level))
+        for level in demand.levels
+        if level < 0.0 < prestress.peak
     ]
-    spacings = [length / BLOCKS for length in (peak, *reaches)]
-    if max(levels) > 0.0:
-        spacings.append(error * peak / FREE_SPEED)
-    if prestress.left < 0.0 == prestress.right and reaches:
+    spacings = [length / BLOCKS for length in (demand.peak_width, *distances)]
+    if max(demand.levels) > 0.0:
+        spacings.append(error * demand.peak_width / FREE_SPEED)
+    if prestress.left < 0.0 == prestress.right and distances:
         if not prestress.steps:
-            spacings.append(error * reaches[0] / (SHARE_TIME + SHARE_TIME_DAMPED * ratio))
-        if fields:
-            spacings.append(error * reaches[0] / (VELOCITY + VELOCITY_DAMPED * ratio))
+            spacings.append(error * distances[0] / (TRANSITION + TRANSITION_DAMPED * ratio))
+        if demand.fields:
+            spacings.append(error * distances[0] / (VELOCITY + VELOCITY_DAMPED * ratio))
     return spacings

@@ -1,4 +1,4 @@
-"""Resolved simulations, expanded into scenes. Plain builtins in, scenes out; every job imports this, and no more."""
+"""Resolved simulations, plain builtins, expanded into scenes. Every job imports this module."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,7 +15,7 @@ from ..model.stability import MARGIN, largest_step
 
 
 class Run(NamedTuple):
-    """One entry of each list of a simulation: what a run is, but for its spacing."""
+    """One run of a simulation: one entry of each of its lists."""
 
     release: str
     profile: Prestress
@@ -26,81 +26,53 @@ class Run(NamedTuple):
 
 
 def promise_of(simulation: Mapping) -> float | None:
-    """The relative uncertainty that a resolved simulation promises: None unasked, NaN with a spacing of its own."""
+    """The relative error that a resolved simulation promises.
+
+    It is None if no accuracy is asked for, and NaN if the simulation sets its spacing itself.
+    """
     promise = simulation["accuracy"].get("promise")
-    own = "dx" in simulation or "fixed" in simulation["spacing"] or any(simulation.get("beta", []))
-    return math.nan if promise is not None and own else promise
+    sets_spacing = (
+        "dx" in simulation or "fixed" in simulation["spacing"] or any(simulation.get("beta", []))
+    )
+    return math.nan if promise is not None and sets_spacing else promise
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
-    """Scenes of a resolved simulation, or of a chunk, and what each records; a ValueError names what is refused."""
-    scenes, accuracy, order = [], simulation["accuracy"], simulation["accuracy"]["order"]
-    for place, run in enumerate(runs(simulation)):
-        dx = _spacing(simulation, run, place)
-        beta = run.damping if "beta" in simulation else run.damping * dx
-        of = (simulation["scheme"], order, beta / dx, run.gamma * dx**2, run.alpha * dx)
-        bound = largest_step(*of, enough=accuracy["max_step"] / MARGIN)
-        # The simulation's own step, or the preset's, or a safe fraction of the bound where damping allows less.
-        step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
-        if "promise" in accuracy:
-            step = min(step, accuracy["max_step"])
-        if "fixed" in simulation["spacing"]:
-            step *= simulation["coarser"]
-        time = _duration(simulation["duration"], run.profile, run.gamma)
-        own = {
-            key: simulation[key]
-            for key in ("boundary", "scheme", "friction_ratio", "resolved_blocks")
-        }
-        own |= {
-            "order": order,
-            "max_step": step,
-            "release": run.release,
-            "rate_strengthening": run.alpha,
-        }
-        scenes.append(
-            Scene(prestress=run.profile, duration=time, dx=dx, gamma=run.gamma, beta=beta, **own)
-        )
+    """Scenes of a resolved simulation, or of a chunk, and what each samples; or ValueError."""
+    scenes = [_scene(simulation, run, index) for index, run in enumerate(runs(simulation))]
     return scenes, [_samples(simulation.get("samples"), scene.duration) for scene in scenes]
 
 
 def runs(simulation: Mapping) -> Iterator[Run]:
-    """The runs of a resolved simulation or of a chunk of it, one after the other."""
+    """The runs of a resolved simulation, or of a chunk of it, one after the other."""
     chunk = simulation.get("chunk")
     wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
-    for number, (release, *shape, gamma, dx, damping, alpha) in enumerate(
-        product(*_axes(simulation))
-    ):
+    for number, entries in enumerate(product(*_axes(simulation))):
         if wanted is None or number in wanted:
+            release, *shape, gamma, dx, damping, alpha = entries
             yield Run(release, _profile(*shape), gamma, dx, damping, alpha)
 
 
 def run_count(simulation: Mapping) -> int:
-    """How many runs a resolved simulation is the product of."""
+    """Number of runs of a resolved simulation, the product of the lengths of its lists."""
     return math.prod(map(len, _axes(simulation)))
 
 
 def _axes(simulation: Mapping) -> list[Sequence]:
     """The lists whose product the runs are."""
-    release, right, rule = simulation["release"], simulation.get("right"), simulation.get("beyond")
+    release = simulation["release"]
+    releases = [release] if isinstance(release, str) else release
     if "profiles" in simulation:
         shapes = [simulation["profiles"]]
     else:
-        # One step a level, at the position from which the level holds.
+        right, rule = simulation["right"], simulation.get("beyond")
+        # Each level is one step, at the position from which the level holds.
         steps = [((rule["position"], level),) for level in rule["levels"]] if rule else [()]
-        shapes = [
-            simulation["left"],
-            [None] if right == "same" else right,
-            simulation["width"],
-            steps,
-        ]
-    defaults = {
-        "gamma": [0.0],
-        "dx": [None],
-        "beta": simulation["damping_ratio"],
-        "rate_strengthening": [0.0],
-    }
-    others = [simulation.get(key, default) for key, default in defaults.items()]
-    return [[release] if isinstance(release, str) else release, *shapes, *others]
+        rights = [None] if right == "same" else right
+        shapes = [simulation["left"], rights, simulation["width"], steps]
+    gamma, dx = simulation.get("gamma", [0.0]), simulation.get("dx", [None])
+    damping = simulation.get("beta", simulation["damping_ratio"])
+    return [releases, *shapes, gamma, dx, damping, simulation.get("rate_strengthening", [0.0])]
 
 
 def _profile(left, right=None, width=1.0, steps=()) -> Prestress:
@@ -109,16 +81,53 @@ def _profile(left, right=None, width=1.0, steps=()) -> Prestress:
     return Prestress(left=left, right=left if right is None else right, width=width, steps=steps)
 
 
-def _spacing(simulation: Mapping, run: Run, place: int) -> float:
-    """Of twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label."""
+def _scene(simulation: Mapping, run: Run, index: int) -> Scene:
+    dx = _spacing(simulation, run, index)
+    beta = run.damping if "beta" in simulation else run.damping * dx
+    common = ("boundary", "scheme", "friction_ratio", "resolved_blocks")
+    return Scene(
+        prestress=run.profile,
+        duration=_duration(simulation["duration"], run.profile, run.gamma),
+        dx=dx,
+        gamma=run.gamma,
+        beta=beta,
+        release=run.release,
+        max_step=_max_step(simulation, run, dx, beta),
+        order=simulation["accuracy"]["order"],
+        rate_strengthening=run.alpha,
+        **{key: simulation[key] for key in common},
+    )
+
+
+def _spacing(simulation: Mapping, run: Run, index: int) -> float:
+    """Spacing of twelve digits, so that a spacing of 0.02 is 0.02 in the data and on a label."""
     rule = simulation["spacing"]
     if "fixed" in rule:
         return float(rule["fixed"])
-    dx = simulation["spacings"][place] if "spacings" in simulation else run.dx
+    dx = simulation["spacings"][index] if "spacings" in simulation else run.dx
     if dx is None:
         dx = simulation["accuracy"]["dx"] * rule["scale"]
         dx *= run.profile.width ** rule["width_power"] * run.gamma ** rule["gamma_power"]
     return float(f"{simulation['coarser'] * dx:.12g}")
+
+
+def _max_step(simulation: Mapping, run: Run, dx: float, beta: float) -> float:
+    """The simulation's own step, or the preset's, cut to a safe fraction of the stability bound."""
+    accuracy = simulation["accuracy"]
+    bound = largest_step(
+        simulation["scheme"],
+        accuracy["order"],
+        beta / dx,
+        run.gamma * dx**2,
+        run.alpha * dx,
+        enough=accuracy["max_step"] / MARGIN,
+    )
+    step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
+    if "promise" in accuracy:
+        step = min(step, accuracy["max_step"])
+    if "fixed" in simulation["spacing"]:
+        step *= simulation["coarser"]
+    return step
 
 
 def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
@@ -129,7 +138,7 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
         try:
             value *= abs(prestress_balance_position(profile))
         except ValueError as error:
-            # In the words of the configuration, whose keys are levels or profiles.
+            # The configuration names levels or profiles, and not `prestress`.
             reason = str(error).removeprefix("prestress.")
             raise ValueError(
                 f"duration.balance_distances: {value} times |x_minus|, but {reason}"

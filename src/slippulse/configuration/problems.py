@@ -1,11 +1,11 @@
-"""What is wrong with a configuration, and what was probably meant."""
+"""Errors of a configuration, and hints at what was probably meant."""
 
 import difflib
 from collections.abc import Iterable
 
 
 class ConfigError(ValueError):
-    """What is wrong with a configuration: one line a problem, each naming the key, the value and what is allowed."""
+    """Refusal of a configuration: one line a problem, with key, value and what is allowed."""
 
 
 def nearest(name: object, known: Iterable[str]) -> str:
