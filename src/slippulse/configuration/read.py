@@ -48,7 +48,7 @@ def read_config(
         merged = _merge(merged, overlay)
     sweeps = merged.get("simulations")
     missing = {*shipped["simulations"]} - {*sweeps} if isinstance(sweeps, Mapping) else ()
-    for name in missing:
+    for name in sorted(missing):
         allowed = "what is shipped stays, since figures and verdicts need it"
         raise ConfigError(f"simulations.{name}: null; allowed: {allowed}")
     try:

@@ -1,4 +1,4 @@
-"""Whether two trees of results agree within their uncertainties.
+"""Comparison of two trees of results: whether their numbers agree within their uncertainties.
 
 python -m slippulse.report.compare results other/results
 """
@@ -17,20 +17,20 @@ from ..data.alterations import changes
 from ..data.files import UnreadableFile
 from ..data.tables import load_table
 
-# What makes a run the same run in another tree, whatever its lattice.
-SAME = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
-TEXTS = ("boundary", "release", "quantity")
-# What a number without uncertainty depends on besides.
+# These columns make a run the same run in another tree, whatever its lattice.
+RUN = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "duration", "release"]
+# A number without uncertainty depends on these, too.
 LATTICE = ["scheme", "dx", "order", "max_step"]
-# Numbers that agree to this need no uncertainty: tables have nine digits. On one lattice those without agree to so much
-# of themselves, or of 1.
+TEXTS = ("boundary", "release", "quantity")
+# Numbers that agree to DIGITS need no uncertainty, since tables have nine digits. Numbers without
+# uncertainty, from one lattice, agree to ROUNDING of themselves or of 1.
 DIGITS, ROUNDING = 1e-8, 1e-6
 SHOWN = 10
 
 
 @dataclass
 class Comparison:
-    """How many numbers there are, agree, and are unknown; lines on those apart, and on what is not comparable."""
+    """Numbers compared, agreeing and unknown; lines on numbers apart, and on the incomparable."""
 
     compared: int = 0
     agree: int = 0
@@ -40,68 +40,102 @@ class Comparison:
 
 
 def compare(here: Path, there: Path) -> Comparison:
-    """Compare measured tables, configurations and verdicts; ValueError for one without tables or a broken file."""
-    found, trees = Comparison(), (here, there)
-    names = [{path.name for path in (tree / "measurements").glob("*.csv")} for tree in trees]
-    for tree, tables in zip(trees, names, strict=True):
-        if not tables:
+    """Compare measured tables, configurations and verdicts; ValueError for a broken tree."""
+    result, trees = Comparison(), (here, there)
+    names = []
+    for tree in trees:
+        names.append({path.name for path in (tree / "measurements").glob("*.csv")})
+        if not names[-1]:
             raise ValueError(f"{tree}/measurements: no tables; allowed: a finished tree of results")
-    found.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
-    # But for the preset, whose lattices the uncertainties cover.
-    for name, what, line in (
-        ("provenance.json", "configurations", "configuration: {key}: {here!r} against {shipped!r}"),
-        ("claims.json", "verdicts", "{key}: verdict {here!r} against {shipped!r}"),
-    ):
-        contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
-        if len(contents) < 2:
-            found.other.append(f"{name}: missing in one tree; {what} not compared")
-        else:
-            found.other += [line.format(**change) for change in changes(contents[1], contents[0])]
+    result.other += [f"{name}: in one tree only" for name in sorted(names[0] ^ names[1])]
+    line = "configuration: {key}: {here!r} against {shipped!r}"
+    _compare_contents(result, trees, "provenance.json", "configurations", line)
+    line = "{key}: verdict {here!r} against {shipped!r}"
+    _compare_contents(result, trees, "claims.json", "verdicts", line)
     for name in sorted(names[0] & names[1]):
-        _compare_tables(found, trees, name)
-    return found
+        _compare_tables(result, trees, name)
+    return result
 
 
-def _compare_tables(found: Comparison, trees: tuple[Path, Path], name: str) -> None:
-    """One table of measured numbers, with the grid studies of both."""
-    one, two = (_table(tree / "measurements" / name, SAME) for tree in trees)
-    if not one[SAME].equals(two[SAME]):
-        found.other.append(f"{name}: other runs")
+def _compare_contents(
+    result: Comparison, trees: Sequence[Path], name: str, subject: str, line: str
+) -> None:
+    """Compare one JSON file of both trees; `line` formats each difference."""
+    contents = [_content(tree / name) for tree in trees if (tree / name).exists()]
+    if len(contents) < 2:
+        result.other.append(f"{name}: missing in one tree; {subject} not compared")
+    else:
+        result.other += [line.format(**change) for change in changes(contents[1], contents[0])]
+
+
+def _compare_tables(result: Comparison, trees: Sequence[Path], name: str) -> None:
+    """Compare one table of measured numbers, with the grid studies of both trees."""
+    tables = [_table(tree / "measurements" / name, RUN) for tree in trees]
+    ours, theirs = tables
+    if not ours[RUN].equals(theirs[RUN]):
+        result.other.append(f"{name}: other runs")
         return
-    found.other += [
-        f"{name}: columns in one tree only: {column}" for column in sorted({*one} ^ {*two})
-    ]
+    for column in sorted({*ours} ^ {*theirs}):
+        result.other.append(f"{name}: columns in one tree only: {column}")
     studies = [tree / "uncertainties" / name for tree in trees]
     if len({path.exists() for path in studies}) > 1:
-        found.other.append(f"{name}: uncertainties in one tree only")
-    both = [column for column in one if column in two and column not in SAME]
-    lattice = [column for column in both if column in LATTICE]
-    alike = (one[lattice] == two[lattice]).all(axis=1).to_numpy()[:, None]
-    texts = [column for column in both if "O" in (one[column].dtype.kind, two[column].dtype.kind)]
-    numbers = [column for column in both if column not in texts + LATTICE]
-    ours, theirs = (table[numbers].astype(float) for table in (one, two))
-    bars = [*map(_uncertainties, studies, (ours, theirs))]
-    bar = bars[0].add(bars[1], fill_value=0.0)
-    allowed = bar.fillna(0.0) + DIGITS * ours.abs()
-    allowed = allowed.mask(bar.isna() & alike, ROUNDING * ours.abs().clip(lower=1.0))
-    counted = (ours.notna() & theirs.notna()) | ((ours.notna() | theirs.notna()) & alike)
-    off = counted & ~((ours - theirs).abs() <= allowed)
-    unknown = off & bar.isna() & ~alike
-    compared, differ, unsure = (int(cells.to_numpy().sum()) for cells in (counted, off, unknown))
-    found.compared, found.agree = found.compared + compared, found.agree + compared - differ
-    found.unknown += unsure
-    for point, quantity in np.argwhere((off & ~unknown).to_numpy()):
-        values = f"{ours.iat[point, quantity]:.6g} against {theirs.iat[point, quantity]:.6g}"
-        most = f"allowed: a difference of {allowed.iat[point, quantity]:.2g}"
-        found.apart.append(f"{name}: point {point}, {numbers[quantity]}: {values}; {most}")
-    ours, theirs = (table[texts].astype(object).fillna("") for table in (one, two))
-    for point, text in np.argwhere(((ours != theirs) & alike).to_numpy()):
-        values = f"{ours.iat[point, text]!r} against {theirs.iat[point, text]!r}"
-        found.apart.append(f"{name}: point {point}, {texts[text]}: {values}")
+        result.other.append(f"{name}: uncertainties in one tree only")
+    common = [column for column in ours if column in theirs and column not in RUN]
+    lattice = [column for column in common if column in LATTICE]
+    same_lattice = (ours[lattice] == theirs[lattice]).all(axis=1).to_numpy()[:, None]
+    texts, numbers = [], []
+    for column in common:
+        if "O" in (ours[column].dtype.kind, theirs[column].dtype.kind):
+            texts.append(column)
+        elif column not in LATTICE:
+            numbers.append(column)
+    values = [table[numbers].astype(float) for table in tables]
+    uncertainties = [*map(_uncertainties, studies, values)]
+    uncertainty = uncertainties[0].add(uncertainties[1], fill_value=0.0)
+    _compare_numbers(result, name, values, uncertainty, same_lattice)
+    _compare_texts(result, name, [table[texts] for table in tables], same_lattice)
+
+
+def _compare_numbers(
+    result: Comparison,
+    name: str,
+    values: Sequence[pd.DataFrame],
+    uncertainty: pd.DataFrame,
+    same_lattice: np.ndarray,
+) -> None:
+    """Compare numbers; a difference is unknown where lattices differ and no study was made."""
+    ours, theirs = values
+    no_study = uncertainty.isna()
+    allowed = uncertainty.fillna(0.0) + DIGITS * ours.abs()
+    allowed = allowed.mask(no_study & same_lattice, ROUNDING * ours.abs().clip(lower=1.0))
+    in_both, in_one = ours.notna() & theirs.notna(), ours.notna() | theirs.notna()
+    compared = in_both | (in_one & same_lattice)
+    differs = compared & ~((ours - theirs).abs() <= allowed)
+    unknown = differs & no_study & ~same_lattice
+    result.compared += _count(compared)
+    result.agree += _count(compared & ~differs)
+    result.unknown += _count(unknown)
+    for row, column in np.argwhere((differs & ~unknown).to_numpy()):
+        pair = f"{ours.iat[row, column]:.6g} against {theirs.iat[row, column]:.6g}"
+        limit = f"allowed: a difference of {allowed.iat[row, column]:.2g}"
+        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}; {limit}")
+
+
+def _compare_texts(
+    result: Comparison, name: str, texts: Sequence[pd.DataFrame], same_lattice: np.ndarray
+) -> None:
+    ours, theirs = (table.astype(object).fillna("") for table in texts)
+    for row, column in np.argwhere(((ours != theirs) & same_lattice).to_numpy()):
+        pair = f"{ours.iat[row, column]!r} against {theirs.iat[row, column]!r}"
+        result.apart.append(f"{name}: point {row}, {ours.columns[column]}: {pair}")
+
+
+def _count(cells: pd.DataFrame) -> int:
+    return int(cells.to_numpy().sum())
 
 
 def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
-    """A table with these columns, and with no text in a column of numbers."""
+    """Read a table with these columns, and with no text in a column of numbers."""
     with _readable(path):
         table = load_table(path)
         for column in needed:
@@ -113,20 +147,19 @@ def _table(path: Path, needed: Iterable[str]) -> pd.DataFrame:
 
 
 def _uncertainties(path: Path, values: pd.DataFrame) -> pd.DataFrame:
-    """Uncertainty of every number; NaN where it is not known, as where the study was of another value."""
+    """Uncertainty of every number; NaN where there is no study, or one of another value."""
     if not path.exists():
         return values * np.nan
     table = _table(path, ["point", "quantity", "value", "uncertainty"])
+    parts = ["value", "uncertainty"]
     with _readable(path):
-        study = table.pivot(
-            index="point", columns="quantity", values=["value", "uncertainty"]
-        ).astype(float)
-        studied, found = (study[part].reindex_like(values) for part in ("value", "uncertainty"))
-    return found.mask((values - studied).abs() > DIGITS * values.abs())
+        study = table.pivot(index="point", columns="quantity", values=parts).astype(float)
+        studied, uncertainty = (study[part].reindex_like(values) for part in parts)
+    return uncertainty.mask((values - studied).abs() > DIGITS * values.abs())
 
 
 def _content(path: Path) -> dict:
-    """The configuration but for the preset, or the verdicts by claim."""
+    """The configuration without the preset, whose lattices the uncertainties cover; or verdicts."""
     with _readable(path):
         content = json.loads(path.read_text(encoding="utf-8"))
         if path.stem == "provenance":
