@@ -1,4 +1,4 @@
-"""Writes what follows from the definition of the keys: the JSON Schema, and the tables of config/README.md.
+"""Write the JSON Schema and the tables of config/README.md from the definition of the keys.
 
 python docs/describe.py      in the folder of the project, or with its path
 """
@@ -14,12 +14,11 @@ import yaml
 from slippulse.configuration.read import read_overlay
 from slippulse.configuration.refusals import json_schema, resolved, words
 
-README, SCHEMA, SHIPPED = (
-    "config/README.md",
-    "workflow/schemas/config.schema.yaml",
-    "config/config.yaml",
-)
-# A table stands between these two lines; the first names the model, and where its values stand in config/config.yaml.
+README = "config/README.md"
+SCHEMA = "workflow/schemas/config.schema.yaml"
+SHIPPED = "config/config.yaml"
+# A table stands between two such lines; the first names the class of its keys, and the key of
+# config/config.yaml that has its values.
 TABLE = re.compile(r"(<!-- keys: (\w+)(?: at (\w+))? -->\n).*?(<!-- end of keys -->)", re.DOTALL)
 HEAD = "| key | meaning | allowed | default |\n|---|---|---|---|\n"
 LONGEST_DEFAULT = 40
@@ -30,27 +29,32 @@ def schema_text() -> str:
     text = yaml.safe_dump(
         json_schema(), sort_keys=False, allow_unicode=True, default_flow_style=None, width=110
     )
-    return (
-        "# Written by `make describe` from src/slippulse/configuration/schema.py, for editors and catalogues.\n"
-        f"$schema: https://json-schema.org/draft/2020-12/schema\n{text}"
-    )
+    source = "src/slippulse/configuration/schema.py, for editors and catalogues"
+    standard = "https://json-schema.org/draft/2020-12/schema"
+    return f"# Written by `make describe` from {source}.\n$schema: {standard}\n{text}"
 
 
-def rows(node: dict[str, Any], values: Mapping | None = None, prefix: str = "") -> Iterator[str]:
-    """One line for each key of a mapping and of what is nested in it, by its schema and its shipped values if any."""
-    for name, key in node["properties"].items():
-        inside = resolved(key)
-        mapping = inside.get("type") == "object"
-        if name in node.get("required", ()):
-            default = "required" if mapping or values is None else _short(values[name])
+def rows(schema: dict[str, Any], values: Mapping | None = None, prefix: str = "") -> Iterator[str]:
+    """One line for each key of a mapping, and for each key nested in it.
+
+    values : shipped values of the mapping, if there are some
+    """
+    for name, key in schema["properties"].items():
+        inner = resolved(key)
+        is_mapping = inner.get("type") == "object"
+        default = key.get("default")
+        if name in schema.get("required", ()):
+            shown = "required" if is_mapping or values is None else _short(values[name])
         else:
-            default = (
-                "none" if mapping or key.get("default") in (None, []) else _short(key["default"])
-            )
-        cells = (f"`{prefix}{name}`", key["description"], words(key), default)
-        yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
-        if "properties" in inside and node is not json_schema():
-            yield from rows(inside, values and values[name], f"{prefix}{name}.")
+            shown = "none" if is_mapping or default in (None, []) else _short(default)
+        cells = (f"`{prefix}{name}`", key["description"], words(key), shown)
+        yield f"| {' | '.join(map(_escaped, cells))} |"
+        if "properties" in inner and schema is not json_schema():
+            yield from rows(inner, values and values[name], f"{prefix}{name}.")
+
+
+def _escaped(cell: str) -> str:
+    return cell.replace("|", r"\|")
 
 
 def _short(value: Any) -> str:
@@ -61,13 +65,14 @@ def _short(value: Any) -> str:
 
 
 def readme(text: str, shipped: Mapping) -> str:
-    """The text of config/README.md with its tables made anew, by the values in config/config.yaml."""
+    """The text of config/README.md with new tables; ``shipped`` are values of config/config.yaml."""
 
-    def table(found: re.Match) -> str:
-        start, name, place, end = found.groups()
-        values = shipped if place == "top" else shipped.get(place)
-        node = json_schema() if name == "Configuration" else json_schema()["$defs"][name]
-        return f"{start}{HEAD}" + "\n".join(rows(node, values)) + f"\n{end}"
+    def table(match: re.Match) -> str:
+        start, name, section, end = match.groups()
+        values = shipped if section == "top" else shipped.get(section)
+        schema = json_schema() if name == "Configuration" else json_schema()["$defs"][name]
+        lines = "\n".join(rows(schema, values))
+        return f"{start}{HEAD}{lines}\n{end}"
 
     return TABLE.sub(table, text)
 

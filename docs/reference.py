@@ -1,4 +1,4 @@
-"""The reference of the Python interface, from its docstrings: `make reference`."""
+"""Write the reference of the Python interface from its docstrings: `make reference`."""
 
 import sys
 from pathlib import Path
@@ -10,8 +10,8 @@ from slippulse import theory
 
 
 def main(folder: str) -> None:
-    """Write HTML pages of what `slippulse` and `slippulse.theory` offer into a folder."""
-    # pdoc sees what is loaded, and these load their names when they are first used.
+    """Write HTML pages of what `slippulse` and `slippulse.theory` export into a folder."""
+    # pdoc sees loaded names only, and these packages load a name when it is first used.
     for package in (slippulse, theory):
         for name in package.__all__:
             setattr(package, name, getattr(package, name))

@@ -12,34 +12,30 @@ from matplotlib.figure import Figure
 
 
 def run(folder: str | Path) -> dict:
-    """Run every cell in order; pictures go to a folder. Returns the names that the cells have made."""
+    """Run every cell in order, save pictures in a folder, and return the names of the cells."""
     folder, names = Path(folder), {}
     folder.mkdir(parents=True, exist_ok=True)
     for number, cell in enumerate(jupytext.read(Path(__file__).with_name("tutorial.md")).cells):
         if cell.cell_type != "code":
             print(cell.source.splitlines()[0])
             continue
-        *body, last = ast.parse(cell.source).body
-        shown = isinstance(last, ast.Expr)
-        exec(
-            compile(
-                ast.Module([*body, *([] if shown else [last])], []),
-                f"tutorial, cell {number}",
-                "exec",
-            ),
-            names,
-        )
-        value = (
-            eval(compile(ast.Expression(last.value), f"tutorial, cell {number}", "eval"), names)
-            if shown
-            else None
-        )
+        value = _run_cell(cell.source, f"tutorial, cell {number}", names)
         if isinstance(value, Figure):
             value.savefig(folder / f"{number:02d}.png")
             print(f"    {folder}/{number:02d}.png")
         elif value is not None:
             print(f"    {value}")
     return names
+
+
+def _run_cell(source: str, name: str, names: dict) -> object:
+    """Run a cell and return the value of its last line, as a notebook shows it."""
+    body = ast.parse(source).body
+    last = body.pop() if isinstance(body[-1], ast.Expr) else None
+    exec(compile(ast.Module(body, []), name, "exec"), names)
+    if last is None:
+        return None
+    return eval(compile(ast.Expression(last.value), name, "eval"), names)
 
 
 if __name__ == "__main__":

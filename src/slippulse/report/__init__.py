@@ -1,1 +1,1 @@
-"""What people read: the replication report and the pages, from tables and texts; no number in them is typed."""
+"""Report and pages, written from tables and texts; no number in them is typed."""

@@ -1,4 +1,4 @@
-"""results/claims.html: the ledger by kind and failures first, each deviation next to its tolerance."""
+"""results/claims.html: the ledger, failures first, each deviation next to its tolerance."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,36 +21,42 @@ LONGEST = 2.0
 # Folders of tables whose kind has another name.
 KINDS = {"measurements": "measured", "predictions": "predicted", "studies": "study"}
 Rows = Sequence[Mapping]
-# Of more simulations than these everything is made.
+# A claim on more simulations than these has the command that makes everything.
 FEW = 6
 
 
 def claims_page(
     claims: Rows, altered: Rows = (), findings: Rows = (), tables: Iterable[str] = ()
 ) -> str:
-    """The ledger and the findings, as in their JSON, with links to tables, files from the folder of the page on."""
+    """The page of claims and findings (as in their JSON), with links to tables next to the page."""
     return page(
         "claims.html",
         findings=findings,
         altered=altered,
         tables_behind=partial(tables_behind, tables=sorted(tables)),
         command=command,
-        counted=lambda claims: sum(claim.counted for claim in claims),
+        counted=counted,
         rules_altered=any(change["key"].startswith("claims.") for change in altered),
         **shown(Ledger(claims), [finding["text"] for finding in findings]),
     )
 
 
+def counted(claims: Iterable[SimpleNamespace]) -> int:
+    """Number of claims that count, which do not follow from others."""
+    return sum(claim.counted for claim in claims)
+
+
 def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
-    """What templates that show claims ask for; `html` has the HTML of each of their texts, and of others."""
-    asked = [(claim.statement, claim.why, reading.evidence_text(claim)) for claim in ledger]
-    by_verdict = {
-        name: [claim for claim in ledger if claim.verdict == name] for name in WORST_FIRST
-    }
+    """Names for templates that show claims; `html` has the HTML of their texts and of `texts`."""
+    texts = [*texts]
+    groups: dict[str, list[SimpleNamespace]] = {}
+    for claim in sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict)):
+        texts += [claim.statement, claim.why, reading.evidence_text(claim)]
+        groups.setdefault(claim.verdict, []).append(claim)
     return {
-        "html": markup_of([*texts, *chain.from_iterable(asked)]),
+        "html": markup_of(texts),
         "summary": ledger.summary(),
-        "groups": {verdict: claims for verdict, claims in by_verdict.items() if claims},
+        "groups": groups,
         "signs": SIGNS,
         "reading": reading,
         "bar": bar,
@@ -60,26 +66,27 @@ def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
 
 def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
     """Files of the simulations and studies that a source names, by name and kind of table."""
-    found: dict[str, dict[str, str]] = {}
+    files: dict[str, dict[str, str]] = {}
     for path in map(Path, tables):
-        found.setdefault(path.stem, {})[KINDS.get(path.parts[0], path.parts[0])] = path.as_posix()
+        folder = path.parts[0]
+        files.setdefault(path.stem, {})[KINDS.get(folder, folder)] = path.as_posix()
     if source.startswith("every simulation"):
-        return found
-    return {
-        name: found[name] for name in dict.fromkeys(re.findall(r"\w+", source)) if name in found
-    }
+        return files
+    names = dict.fromkeys(re.findall(r"\w+", source))
+    return {name: files[name] for name in names if name in files}
 
 
-def command(behind: Mapping[str, Mapping[str, str]]) -> str:
-    """The command that makes some tables anew."""
-    if len(behind) > FEW:
+def command(files: Mapping[str, Mapping[str, str]]) -> str:
+    """The command that makes tables anew."""
+    if len(files) > FEW:
         return "make replicate"
-    paths = [f"results/{path}" for kinds in behind.values() for path in kinds.values()]
-    return f'make replicate TARGET="{" ".join(paths)}"' if paths else "make test"
+    paths = chain.from_iterable(kinds.values() for kinds in files.values())
+    targets = " ".join(f"results/{path}" for path in paths)
+    return f'make replicate TARGET="{targets}"' if targets else "make test"
 
 
 def bar(claim: SimpleNamespace) -> tuple[str, float] | None:
-    """Deviation over tolerance in words, and the length of its bar in percent; None where the kind has no such bar."""
+    """Deviation over tolerance in words and as a bar in percent; None where a kind has no bar."""
     if claim.kind not in ("exact", "approximate") or claim.deviation is None or not claim.tolerance:
         return None
     ratio = claim.deviation / claim.tolerance
@@ -87,6 +94,6 @@ def bar(claim: SimpleNamespace) -> tuple[str, float] | None:
 
 
 def figure_title(name: str) -> str:
-    """What a link to a figure says: figure 5, scaling."""
+    """Text of a link to a figure: figure 5, scaling."""
     kind, _, words = name.replace("_", " ").partition(" ")
     return f"figure {int(kind[3:])}, {words}" if kind.startswith("fig") else f"study, {words}"

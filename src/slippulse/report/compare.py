@@ -39,9 +39,9 @@ class Comparison:
     other: list[str] = field(default_factory=list)
 
 
-def compare(here: Path, there: Path) -> Comparison:
+def compare(here: Path, other: Path) -> Comparison:
     """Compare measured tables, configurations and verdicts; ValueError for a broken tree."""
-    result, trees = Comparison(), (here, there)
+    result, trees = Comparison(), (here, other)
     names = []
     for tree in trees:
         names.append({path.name for path in (tree / "measurements").glob("*.csv")})

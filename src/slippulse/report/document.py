@@ -1,4 +1,4 @@
-"""The executed manuscript as one self-contained HTML file and a PDF, by pandoc and Typst; no network, no clock."""
+"""The executed manuscript as one HTML file and a PDF, made by pandoc and Typst without network."""
 
 import json
 import re
@@ -16,7 +16,7 @@ from PIL import Image
 from ..data.files import configuration, write_text, write_whole
 from .html import TEMPLATES, page, pandoc
 
-# Those of the figures, which Matplotlib brings along.
+# The fonts of the figures, which Matplotlib brings along.
 FONTS = Path(matplotlib.get_data_path()) / "fonts/ttf"
 # Any fixed instant will do: equal inputs then give equal bytes.
 TIMESTAMP = 0
@@ -26,38 +26,31 @@ ALTERNATIVE = re.compile(r"\{#(\w+) [^{}]*\balt='([^']*)'\}")
 
 
 def write_html(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report, Markdown, as one HTML file that loads nothing; ``manuscript`` is the folder of its texts."""
+    """Write the report, Markdown, as one HTML file; ``manuscript`` is the folder of its texts."""
     with tempfile.TemporaryDirectory(prefix="slippulse-report-") as folder:
         template = Path(folder) / "report.html"
         template.write_text(page("report.html"), encoding="utf-8")
-        options = [
-            "--to=html5",
-            "--mathml",
-            "--default-image-extension=png",
-            "--toc",
-            "--toc-depth=2",
-        ]
-        html = as_page(_pandoc(text, manuscript, template, options))
+        options = ["--to=html5", "--mathml", "--default-image-extension=png", "--toc"]
+        html = as_page(_pandoc(text, manuscript, template, [*options, "--toc-depth=2"]))
     write_text(html, output)
 
 
 def as_page(html: str) -> str:
-    """The report of pandoc, its headings below the title, each figure and table where everybody can use it."""
+    """The HTML of pandoc with headings below the title, and figures and tables made accessible."""
     head, opening, text = html.partition('<main id="content">')
     text = re.sub(r"(</?h)([1-5])\b", lambda tag: f"{tag[1]}{int(tag[2]) + 1}", text)
-    # Where a phone has them scroll, the keyboard must reach them.
+    # A phone scrolls formulas, code and tables sideways, so the keyboard must reach them.
     text = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', text)
     numbers = count(1)
     region = '<div class="scroll" tabindex="0" role="region" aria-label="Table {}"><table'
-    text = re.sub("<table", lambda _: region.format(next(numbers)), text).replace(
-        "</table>", "</table></div>"
-    )
+    text = re.sub("<table", lambda _: region.format(next(numbers)), text)
+    text = text.replace("</table>", "</table></div>")
     # A click on a figure opens its picture, at its own size.
     return head + opening + FIGURE.sub(_enlarging, text)
 
 
 def _enlarging(figure: re.Match) -> str:
-    """A figure with its picture inside, and the size of that, which no page waits for."""
+    """A figure with its picture inside; the page need not wait for the picture to know its size."""
     start, name, path, rest = figure.groups()
     content = b64encode(Path(path).read_bytes()).decode()
     with Image.open(path) as picture:
@@ -67,16 +60,17 @@ def _enlarging(figure: re.Match) -> str:
 
 
 def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
-    """Write the report as PDF, its figures as vectors; a ValueError has the message of Typst if it refuses the text."""
+    """Write the report as PDF with vector figures; ValueError has the message of Typst."""
     options = ["--to=typst", "--default-image-extension=pdf"]
-    # The documents of this kind lead to each other.
+    # A link to another HTML document leads to its PDF.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", options)
-    shows = dict(ALTERNATIVE.findall(text))
+    alternatives = dict(ALTERNATIVE.findall(text))
 
     def with_alternative(image: re.Match) -> str:
-        # A string of Typst is written as one of JSON.
-        return f"{image[0]}, alt: {json.dumps(shows[Path(image[1]).stem], ensure_ascii=False)}"
+        alternative = alternatives[Path(image[1]).stem]
+        # JSON and Typst write a string in the same way.
+        return f"{image[0]}, alt: {json.dumps(alternative, ensure_ascii=False)}"
 
     source = re.sub(r'image\("([^"]+)"', with_alternative, source)
     compiled = partial(

@@ -1,11 +1,13 @@
-"""results/explorer.html: the exact rupture, its formulas and nearby simulations, recomputed as sliders move.
+"""results/explorer.html: exact rupture, formulas and nearby simulations, recomputed by sliders.
 
-The scripts next to its template compute; from here it has the front law, which needs the Wiener-Hopf factor.
+The scripts next to its template compute. The front law comes from here, since it needs the
+Wiener-Hopf factor.
 """
 
 import json
 import math
 from collections.abc import Iterable
+from itertools import chain
 
 import matplotlib
 import numpy as np
@@ -15,29 +17,30 @@ from markupsafe import Markup
 from ..model.prestress import Prestress, prestress_from
 from .html import page
 
-# What is shown of a run with its settings; absent where it was not measured.
+# Numbers of a run that are shown where they were measured.
 MEASURED = ("front_speed_right", "transition_time", "transition_length", "pulse_slip")
 DIGITS = 5
 COLOURS = 32
 
 
 def explorer_page(law: pd.DataFrame, measured: Iterable[pd.DataFrame], colours: str) -> str:
-    """The page, from the front law (`studies.explorer_law`), measured tables of sweeps and the name of a colour map."""
+    """The page, from the table of `studies.explorer_law`, measured tables and a colour map."""
     shades = matplotlib.colormaps[colours](np.linspace(0.0, 1.0, COLOURS))
     largest = float(law["damping_ratio"].max())
+    runs = chain.from_iterable(simulated_runs(table, largest) for table in measured)
     data = {
         "law": front_law(law),
         "largest_ratio": largest,
-        "runs": [run for table in measured for run in simulated_runs(table, largest)],
-        "colours": [[round(255 * part) for part in shade[:3]] for shade in shades.tolist()],
+        "runs": [*runs],
+        "colours": np.rint(255.0 * shades[:, :3]).astype(int).tolist(),
     }
-    # No text in it can end the script that it stands in.
+    # A text that holds "<" could end the script that the data stand in.
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     return page("explorer.html", data=Markup(text), largest_ratio=largest)
 
 
 def front_law(law: pd.DataFrame) -> dict:
-    """Logit of the pre-stress by release rule, damping ratio (rows) and logarithm of v - 1 (columns), with the grid."""
+    """Logit of the pre-stress by release rule, damping ratio (rows) and ln(v - 1) (columns)."""
     ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     first, last = float(excesses[0]), float(excesses[-1])
     scale = round(float(law["damping_ratio"].max() / np.sinh(ratios[-1])), 6)
@@ -51,7 +54,8 @@ def front_law(law: pd.DataFrame) -> dict:
 
 
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
-    """tau_0, gamma, W, beta, b, release rule and `MEASURED` of each run with equal positive levels and a plain peak."""
+    """tau_0, gamma, W, beta, b, release rule and `MEASURED` of runs with equal positive levels."""
+    names = ("left", "gamma", "width", "beta", "damping_ratio", "release")
     kept = []
     for run in table[table["boundary"] == "displacement"].to_dict("records"):
         prestress = prestress_from(run)
@@ -60,11 +64,10 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan
-        settings = [
-            run[name] for name in ("left", "gamma", "width", "beta", "damping_ratio", "release")
-        ]
-        numbers = [run.get(name, math.nan) for name in MEASURED]
-        kept.append(
-            settings + [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in numbers]
-        )
+        settings = [run[name] for name in names]
+        kept.append(settings + [_short(run.get(name, math.nan)) for name in MEASURED])
     return kept
+
+
+def _short(number: float) -> float | None:
+    return float(f"{number:.{DIGITS}g}") if math.isfinite(number) else None

@@ -11,7 +11,7 @@ from markupsafe import Markup
 from ..data.files import configuration
 from ..data.numerals import FILTERS
 
-# Of every page; what else a page is made with its step names.
+# Files that every page is made with; the step of a page names the others.
 FILES = ("report/templates/base.html", "report/templates/style.css")
 TEMPLATES = Path(__file__).with_name("templates")
 PAGES = Environment(loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined)
@@ -25,7 +25,7 @@ def page(template: str, **data: object) -> str:
 
 
 def pandoc(text: str, options: Sequence[str]) -> str:
-    """The text as pandoc converts it; a ValueError has its message if it refuses the text or warns of it."""
+    """The text as pandoc converts it; ValueError has its message if it refuses or warns."""
     command = [pypandoc.get_pandoc_path(), "--fail-if-warnings", *options]
     done = subprocess.run(
         command, input=text, capture_output=True, text=True, encoding="utf-8", check=False
@@ -36,19 +36,15 @@ def pandoc(text: str, options: Sequence[str]) -> str:
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """Each text, one paragraph of Markdown with formulas, as HTML with MathML; raw HTML in it is shown, not obeyed."""
+    """HTML with MathML of each text, one paragraph of Markdown with formulas; raw HTML is shown."""
     texts = sorted({text for text in texts if text.strip()})
     if not texts:
         return {"": Markup()}
-    # All by one call of pandoc.
-    whole = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
-    options = [
-        "--from=markdown-raw_html-smart-fancy_lists",
-        "--to=html5",
-        "--mathml",
-        "--wrap=none",
-    ]
-    parts = [part.strip() for part in pandoc(whole, options).split("<hr />")]
+    # One call of pandoc converts all texts.
+    joined = "\n\n* * *\n\n".join(" ".join(text.split()) for text in texts)
+    options = ["--from=markdown-raw_html-smart-fancy_lists", "--to=html5", "--mathml"]
+    html = pandoc(joined, [*options, "--wrap=none"])
+    parts = [part.strip() for part in html.split("<hr />")]
     paragraphs = [part[3:-4] for part in parts if part.startswith("<p>") and part.endswith("</p>")]
     if not len(texts) == len(parts) == len(paragraphs):
         raise ValueError("a text for a page is not one paragraph of Markdown")

@@ -1,9 +1,10 @@
-"""The manuscript executed: its code run, its prose filled, its figures numbered by where they stand."""
+"""The manuscript executed: its code run, its prose filled, its figures numbered by their order."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from pathlib import Path
 
 import jupytext
@@ -19,11 +20,11 @@ from .texts import Caption, answer, judged_lines, parameters, read_captions, rea
 
 # The report and what it refers to for more; each is NAME.md.
 DOCUMENTS = ("replication", "supplement")
-# A cell for the notebook opened by hand: here its names are there already.
+# Tag of a cell that only a notebook opened by hand needs: here its names are defined already.
 BY_HAND = "by-hand"
 # The number that a figure has in the paper, in its name.
 OF_PAPER = re.compile(r"fig(\d+)_")
-# How the text includes a figure.
+# The text includes a figure by this call.
 NAMED = re.compile(r"""\bfigure\(\s*["'](\w+)["']\s*\)""")
 # Inches across the pages of the journal, and of the report.
 PAGE = 7.0
@@ -31,7 +32,7 @@ PAGE = 7.0
 
 @dataclass(frozen=True)
 class Inputs:
-    """What one report is written from: files read, tables as `steps.inputs.given` has them, names of figures."""
+    """Inputs of one report: contents of files, tables by name, and names of figures."""
 
     config: Mapping
     shipped: Mapping
@@ -45,10 +46,10 @@ class Inputs:
 
 
 class Gallery:
-    """The figures of a report of several documents: those whose NAME.pdf and NAME.png are in a folder.
+    """Numbered figures of a report of several documents, of which ``here`` is written.
 
-    Each document numbers its own by the order in which its text names them, the first from 1 on, the others from S1 on.
-    One that no text names comes last, and one without a caption has its name.
+    Each document numbers its figures in the order of its text, the first document from 1 on and
+    the others from S1 on. A figure that no text names comes last.
     """
 
     def __init__(
@@ -56,34 +57,34 @@ class Gallery:
     ) -> None:
         self.captions, self.folder, self.here = captions, folder, here
         named = {document: NAMED.findall(text) for document, text in texts.items()}
-        self.unnamed = [
-            name for name in included if not any(name in names for names in named.values())
-        ]
+        everywhere = {*chain.from_iterable(named.values())}
+        self.unnamed = [name for name in included if name not in everywhere]
         named[[*texts][-1]] += self.unnamed
-        # Of each figure the document and the number.
-        self.places: dict[str, tuple[str, str]] = {}
-        for letter, (document, names) in zip(["", *"S" * len(named)], named.items(), strict=False):
-            there = [name for name in names if name in included]
-            self.places |= {
-                name: (document, f"{letter}{i}") for i, name in enumerate(there, start=1)
-            }
+        # Document and number of each figure.
+        self.numbers: dict[str, tuple[str, str]] = {}
+        letter = ""
+        for document, names in named.items():
+            drawn = [name for name in names if name in included]
+            for i, name in enumerate(drawn, start=1):
+                self.numbers[name] = document, f"{letter}{i}"
+            letter = "S"
 
     def figure(self, name: str) -> str:
         """The figure with its number and caption, as Markdown; nothing if it is not included."""
-        if name not in self.places:
+        if name not in self.numbers:
             return ""
         title = name.replace("_", " ")
         caption = self.captions.get(name, Caption(title, title, "", ""))
-        head, paper = f"Figure {self.places[name][1]}", OF_PAPER.match(name)
+        head, paper = f"Figure {self.numbers[name][1]}", OF_PAPER.match(name)
         if paper and head != f"Figure {int(paper[1])}":
             head += f" (paper, figure {int(paper[1])})"
         text = f"**{head}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")
         with Image.open(self.folder / f"{name}.png") as picture:
             inches = picture.width / picture.info["dpi"][0]
-        # A column of the journal stays one.
+        # A figure as wide as a column of the journal keeps that width.
         width = min(100.0, 100.0 * inches / PAGE)
-        # No extension: the vector file for print, the picture for the browser.
+        # Without an extension, print takes the vector file and the browser the picture.
         return f"![{text}]({self.folder / name}){{#{name} width={width:.0f}% alt='{alt}'}}"
 
     def further(self) -> str:
@@ -91,22 +92,23 @@ class Gallery:
         return "\n\n".join(self.figure(name) for name in self.unnamed)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """A link to a figure between two texts, with the word before its number; nothing if it is not included."""
-        if name not in self.places:
+        """A link to a figure between two texts; nothing if it is not included."""
+        if name not in self.numbers:
             return ""
-        start, word = re.fullmatch(r"(.*?)((?:figures? )?)", before).groups()  # type: ignore[union-attr]
-        document, number = self.places[name]
+        word = next((word for word in ("figure ", "figures ") if before.endswith(word)), "")
+        start = before.removesuffix(word)
+        document, number = self.numbers[name]
         file = "" if document == self.here else f"{document}.html"
         return f"{start}[{word}{number}]({file}#{name}){after}"
 
 
 def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dict[str, object]:
-    """The names that cells and prose of a document use, with ``show``, which puts Markdown into it."""
+    """Names that cells and prose of a document use; ``show`` puts Markdown into the document."""
     config, folder = inputs.config, inputs.manuscript
     ledger = Ledger(inputs.claims, inputs.findings)
     statements = read_text(folder / "statements.yaml")["statements"]
     altered = changes(inputs.shipped, config)
-    # A number as a link to its claim or finding, where the tables behind it are.
+    # A number is a link to its claim or finding, and the tables behind it.
     cite = "[{1}](../claims.html#{0})".format
     names: dict[str, object] = {
         **FILTERS,
@@ -125,7 +127,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "sentences": coverage(statements),
         "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
     }
-    # The errata see what the cells add later.
+    # The errata see names that cells add later.
     filled = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
@@ -145,7 +147,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
 
 
 def execute(source: str | Path, inputs: Inputs) -> str:
-    """The prose of a file with its expressions replaced, and what its code shows; a ValueError tells which fails."""
+    """The filled prose of a file, and what its code shows; ValueError names a cell that fails."""
     source = Path(source)
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)
@@ -159,8 +161,7 @@ def execute(source: str | Path, inputs: Inputs) -> str:
                 shown.append(fill(cell.source, names))
         except Exception as error:
             start, reason = cell.source.strip().splitlines()[0][:70], " ".join(str(error).split())
-            raise ValueError(
-                f"{source.name}: {type(error).__name__}: {reason} (cell {start!r})"
-            ) from error
-    # No line ends between a number and its per cent sign.
+            problem = f"{type(error).__name__}: {reason} (cell {start!r})"
+            raise ValueError(f"{source.name}: {problem}") from error
+    # A no-break space keeps a number and its per cent sign on one line.
     return re.sub(r"(?<=\d) %", "\N{NO-BREAK SPACE}%", "\n\n".join(filter(None, shown))) + "\n"

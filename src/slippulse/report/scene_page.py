@@ -11,29 +11,26 @@ from ..data.numerals import number, rounded, setting, with_uncertainty
 from ..model.prestress import prestress_from
 from .html import page
 
-SHOWN = (
-    "boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta", "damping_ratio", "dx",
-    "duration", "release", "scheme", "max_step", "order", "steps", "block_updates", "energy_residual", "min_velocity",
-    "min_stuck_stress", "re_releases", "pulse_state", "run_flags",
-)  # fmt: skip
+PHYSICS = ("boundary", "left", "right", "width", "peak", "steps_and_bumps", "gamma", "beta")
+LATTICE = ("damping_ratio", "dx", "duration", "release", "scheme", "max_step", "order", "steps")
+WORK = ("block_updates", "energy_residual", "min_velocity", "min_stuck_stress", "re_releases")
+SHOWN = (*PHYSICS, *LATTICE, *WORK, "pulse_state", "run_flags")
 NONE = "\N{EN DASH}"
 
 
 def scene_page(
     name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping
 ) -> str:
-    """A page that stands alone, with its figure; ``attributes``: of the data, with the state of the leading pulse."""
+    """A page with its figure inside; ``attributes`` of the data, and the state of the pulse."""
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
-        # In words, what its pre-stress has beside the Gaussian and its levels.
-        profile, bump = (
-            prestress_from(attributes),
-            "bump of {1:s} and width {2:s} at x = {0:s}".format,
-        )
-        parts = [f"step to {setting(level)} at x = {setting(at)}" for at, level in profile.steps]
-        shown["steps_and_bumps"] = "; ".join(
-            [*parts, *(bump(*map(setting, each)) for each in profile.bumps)]
-        )
+        profile, parts = prestress_from(attributes), []
+        for x, level in profile.steps:
+            parts.append(f"step to {setting(level)} at x = {setting(x)}")
+        for x, amplitude, width in profile.bumps:
+            size = f"{setting(amplitude)} and width {setting(width)}"
+            parts.append(f"bump of {size} at x = {setting(x)}")
+        shown["steps_and_bumps"] = "; ".join(parts)
     return page(
         "scene.html",
         name=name,
@@ -52,15 +49,16 @@ def scenes_page(scenes: Mapping[str, str]) -> str:
 
 
 def _number(row) -> dict[str, str]:
-    found = {"label": row.label, "measured": with_uncertainty(row.value, row.uncertainty, "(?)")}
-    found |= {"theory": NONE, "difference": NONE, "promise": "not covered"}
+    """Cells of one measured number."""
+    cells = {"label": row.label, "measured": with_uncertainty(row.value, row.uncertainty, "(?)")}
+    cells |= {"theory": NONE, "difference": NONE, "promise": "not covered"}
     if math.isfinite(row.theory):
-        found["theory"] = number(row.theory, 5)
+        cells["theory"] = number(row.theory, 5)
         difference = row.value / row.theory - 1.0 if row.theory != 0.0 else math.nan
         if math.isfinite(difference):
-            found["difference"] = f"{'+' * (difference > 0.0)}{rounded(100.0 * difference, 2)} %"
+            sign = "+" if difference > 0.0 else ""
+            cells["difference"] = f"{sign}{rounded(100.0 * difference, 2)} %"
     if math.isfinite(getattr(row, "promised", math.nan)):
-        found["promise"] = (
-            f"{row.promised:g}, {'kept' if str(row.kept).lower() == 'true' else 'missed'}"
-        )
-    return found
+        outcome = "kept" if str(row.kept).lower() == "true" else "missed"
+        cells["promise"] = f"{row.promised:g}, {outcome}"
+    return cells

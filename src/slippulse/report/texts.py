@@ -1,7 +1,6 @@
-"""The texts of the manuscript: captions, errata, the parameters of a simulation in words, and the answer."""
+"""Texts of the manuscript: captions, errata, the parameters of a simulation, and the answer."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from itertools import chain
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -11,9 +10,9 @@ from ..claims.rules import WORST_FIRST
 from ..data.numerals import setting
 
 ERRATUM = ("where", "printed", "right", "shown")
-# Of more values than this only the ends are named.
+# Of more values than this, a text names only the ends.
 FEW = 3
-# What the answer says of one thing with each verdict, and of several.
+# Words of the answer for one thing with a verdict, and for several.
 EXCEPTIONS = {
     "not reproduced": ("is not reproduced", "are not reproduced"),
     "depends on an open choice": (
@@ -26,7 +25,7 @@ EXCEPTIONS = {
 
 
 class Caption(NamedTuple):
-    """Texts of a figure: plain title and alt; in Markdown the finding, what it shows, and what is drawn."""
+    """Texts of a figure: title and alternative text, plain; finding and caption, Markdown."""
 
     title: str
     alt: str
@@ -38,28 +37,30 @@ PARTS = Caption._fields
 
 
 def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[str, Caption]:
-    """The captions of all figures by name, their expressions evaluated by ``fill``; ValueError if one is not whole."""
-    return {
-        name: Caption(*(" ".join(fill(parts[key]).split()) for key in PARTS))
-        for name, parts in _whole(path, read_text(path), PARTS).items()
-    }
+    """Captions by name of the figure, their expressions evaluated by ``fill``; or ValueError."""
+    captions = {}
+    for name, parts in read_text(path).items():
+        _check_keys(f"{path}: {name}", parts, PARTS)
+        filled = {key: " ".join(fill(parts[key]).split()) for key in PARTS}
+        captions[name] = Caption(**filled)
+    return captions
 
 
 def read_errata(path: str | Path) -> list[dict[str, str]]:
-    """The errata, mappings with the keys `ERRATUM`; one that is not whole is refused as a caption is."""
-    entries = {f"entry {i}": entry for i, entry in enumerate(read_text(path), start=1)}
-    return [*_whole(path, entries, ERRATUM).values()]
-
-
-def _whole(path: str | Path, entries: dict[str, dict], keys: Collection[str]) -> dict[str, dict]:
-    """Refuse an entry without a text for each key, or with another key."""
-    for name, entry in entries.items():
-        for key in [*entry, *keys]:
-            if key not in keys:
-                raise ValueError(f"{path}: {name}: {key}: unknown key; allowed: {', '.join(keys)}")
-            if not str(entry.get(key) or "").strip():
-                raise ValueError(f"{path}: {name}: {key}: missing; allowed: some text")
+    """The errata, mappings with the keys `ERRATUM`; or ValueError."""
+    entries = read_text(path)
+    for i, entry in enumerate(entries, start=1):
+        _check_keys(f"{path}: entry {i}", entry, ERRATUM)
     return entries
+
+
+def _check_keys(label: str, entry: Mapping, keys: Collection[str]) -> None:
+    """Refuse an entry without a text for each key, or with another key."""
+    for key in [*entry, *keys]:
+        if key not in keys:
+            raise ValueError(f"{label}: {key}: unknown key; allowed: {', '.join(keys)}")
+        if not str(entry.get(key) or "").strip():
+            raise ValueError(f"{label}: {key}: missing; allowed: some text")
 
 
 def listed(words: Sequence[str]) -> str:
@@ -69,28 +70,38 @@ def listed(words: Sequence[str]) -> str:
 
 
 def parameters(config: Mapping, name: str) -> str:
-    """Boundary, elasticity ratio, pre-stress and damping of all runs of one of its simulations, as Markdown."""
+    """Boundary, elasticity ratio, pre-stress and damping of a simulation's runs, as Markdown."""
     if name not in config["simulations"]:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
     simulation = config["simulations"][name]
-    profiles = simulation.get("profiles") or [simulation]
-    # Of lists, single values or missing.
-    given = ([each[key] for each in profiles if key in each] for key in ("left", "right", "width"))
-    lists = ([one if isinstance(one, list) else [one] for one in found] for found in given)
-    left, right, width = ([*dict.fromkeys(chain.from_iterable(found))] for found in lists)
-    springs, same = simulation["boundary"] == "displacement", right == ["same"]
-    ratios = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
-    values = {
-        r"$\gamma$": simulation["gamma"] if springs else [],
-        r"$\tau_0$" if same else r"$\tau_{0,l}$": left,
-        r"$\tau_{0,r}$": [] if same else right,
-        r"then $\tau$": simulation.get("beyond", {}).get("levels"),
-        "$W$": width,
-        r"$\beta$": simulation.get("beta"),
-        "$b$": [] if "beta" in simulation else ratios,
-    }
-    parts = [f"{symbol} = {_values(found)}" for symbol, found in values.items() if found]
-    return ", ".join([r"$\Gamma=1$" if springs else r"$\Gamma=0$", *parts])
+    left, right = _profile_values(simulation, "left"), _profile_values(simulation, "right")
+    values: dict[str, Sequence | None] = {}
+    if simulation["boundary"] == "displacement":
+        boundary = r"$\Gamma=1$"
+        values[r"$\gamma$"] = simulation["gamma"]
+    else:
+        boundary = r"$\Gamma=0$"
+    if right == ["same"]:
+        values[r"$\tau_0$"] = left
+    else:
+        values |= {r"$\tau_{0,l}$": left, r"$\tau_{0,r}$": right}
+    values[r"then $\tau$"] = simulation.get("beyond", {}).get("levels")
+    values["$W$"] = _profile_values(simulation, "width")
+    if "beta" in simulation:
+        values[r"$\beta$"] = simulation["beta"]
+    else:
+        values["$b$"] = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
+    parts = [f"{symbol} = {_values(numbers)}" for symbol, numbers in values.items() if numbers]
+    return ", ".join([boundary, *parts])
+
+
+def _profile_values(simulation: Mapping, key: str) -> list:
+    """Different values of one key of the pre-stress, which profiles or lists have."""
+    values: list = []
+    for part in simulation.get("profiles") or [simulation]:
+        given = part.get(key, [])
+        values += given if isinstance(given, list) else [given]
+    return [*dict.fromkeys(values)]
 
 
 def _values(values: Sequence[float]) -> str:
@@ -100,7 +111,7 @@ def _values(values: Sequence[float]) -> str:
 
 
 class Line(NamedTuple):
-    """One thing that the paper says, as in manuscript/summary.yaml, with the worst of the claims that it rests on."""
+    """A line of manuscript/summary.yaml, with the worst of the claims that it rests on."""
 
     topic: str
     named: str
@@ -110,22 +121,22 @@ class Line(NamedTuple):
 
 def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
     """The lines of the summary in their order, their expressions evaluated by ``fill``."""
-
-    def worst(claims: Iterable[str]) -> SimpleNamespace:
-        return min(map(ledger, claims), key=lambda claim: WORST_FIRST.index(claim.verdict))
-
-    return [
-        Line(it["topic"], it["named"], fill(it["text"]), worst(it["claims"]))
-        for it in summary["verdict"]
-    ]
+    lines = []
+    for entry in summary["verdict"]:
+        claims = [ledger(id) for id in entry["claims"]]
+        worst = min(claims, key=lambda claim: WORST_FIRST.index(claim.verdict))
+        lines.append(Line(entry["topic"], entry["named"], fill(entry["text"]), worst))
+    return lines
 
 
 def answer(lines: Sequence[Line]) -> str:
-    """One sentence: whether what the first line says is reproduced, and which of the others are not, as Markdown."""
+    """One sentence of Markdown: whether the first line is reproduced, and which others are not."""
     first, *rest = lines
     parts = []
-    for verdict, says in EXCEPTIONS.items():
-        if named := [line.named for line in rest if line.claim.verdict == verdict]:
-            parts.append(f"{listed(named)} {says[len(named) > 1]}")
+    for verdict, (one, several) in EXCEPTIONS.items():
+        named = [line.named for line in rest if line.claim.verdict == verdict]
+        if named:
+            parts.append(f"{listed(named)} {several if len(named) > 1 else one}")
     start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
-    return f"**{start}**, {first.named}{', except that ' if parts else ''}{', and '.join(parts)}."
+    exceptions = f", except that {', and '.join(parts)}" if parts else ""
+    return f"**{start}**, {first.named}{exceptions}."
