@@ -65,7 +65,7 @@ def _short(value: Any) -> str:
 
 
 def readme(text: str, shipped: Mapping) -> str:
-    """The text of config/README.md with new tables; ``shipped`` are values of config/config.yaml."""
+    """The text of config/README.md with new tables; ``shipped`` is config/config.yaml."""
 
     def table(match: re.Match) -> str:
         start, name, section, end = match.groups()
