@@ -1,4 +1,4 @@
-"""A report made from a small invented run: a ledger, tables and figures of the right form, executed and rendered."""
+"""A report of a small invented run: ledger, tables and figures of the right form, rendered."""
 
 import re
 from pathlib import Path
@@ -19,14 +19,28 @@ from slippulse.steps import write_report
 DIGEST = "0123456789abcdef"
 # A claim that is simply reproduced.
 CLAIM = {
-    "id": "speed", "figure_or_section": "III A", "statement": r"fronts <outrun> the waves & keep $\gamma<1$",
-    "kind": "exact", "counted": True, "follows_from": [], "why": "", "deviation": 8e-5,
-    "predicted": 1.25, "measured": 1.2501, "uncertainty": 1e-4, "tolerance": 1e-3, "verdict": "reproduced",
-    "note": "at $x_-$", "source": "runs", "runs": 4, "left_out": 0, "held": None, "failed": None, "undecided": None,
-    "ninety": None, "largest": None, "exponent": None, "exponent_uncertainty": None, "tolerance_exponent": None,
-    "exact_median": None, "exact_largest": None, "further": {}, "flips_at": [], "choices": [],
+    "id": "speed",
+    "figure_or_section": "III A",
+    "statement": r"fronts <outrun> the waves & keep $\gamma<1$",
+    "kind": "exact",
+    "counted": True,
+    "why": "",
+    "deviation": 8e-5,
+    "predicted": 1.25,
+    "measured": 1.2501,
+    "uncertainty": 1e-4,
+    "tolerance": 1e-3,
+    "verdict": "reproduced",
+    "note": "at $x_-$",
+    "source": "runs",
+    "runs": 4,
+    "left_out": 0,
     "figure": "fig01_one",
-}  # fmt: skip
+}
+CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": []}
+CLAIM |= dict.fromkeys(["held", "failed", "undecided", "ninety", "largest", "exponent"])
+CLAIM |= dict.fromkeys(["exponent_uncertainty", "tolerance_exponent"])
+CLAIM |= dict.fromkeys(["exact_median", "exact_largest"])
 
 
 def read(path: Path):
@@ -39,26 +53,42 @@ def invented_claims(entries: dict, config: dict, texts: str, scale: float = 1.0)
     asked = re.findall(r"\.further\[[\"'](.+?)[\"']\]", texts)
     further = {name.replace("\\\\", "\\"): 0.1 for name in asked}
     further |= {reading["statement"]: reading["value"] for reading in config["published"].values()}
-    claims = []
-    for i, (id, entry) in enumerate(entries.items()):
-        off = abs(scale * (1.0 + 0.00137 * (i + 1)) - 1.0)
-        claim = CLAIM | {key: entry[key] for key in ("kind", "tolerance", "reason")} | {
-            "id": id, "predicted": 1.0, "measured": 1.0 + off, "uncertainty": 0.00021, "deviation": off,
-            "statement": rf"statement of {id.replace('_', ' ')}: $T_\mathrm{{trans}}$ is $\pi/\sqrt\gamma$",
-            "counted": "follows_from" not in entry, "follows_from": entry.get("follows_from", []),
-            "tolerance_exponent": entry.get("tolerance_exponent"),
-            "verdict": within(off, 0.00021, entry["tolerance"]), "further": further, "figure": "fig05_scaling",
-            "why": "since $x$ is so", "note": r"measured at $\Delta x=0$", "ninety": 1e-3 * (i + 1),
-            "largest": 2e-3 * (i + 1), "exponent": 1.01 if "tolerance_exponent" in entry else None,
-            "exponent_uncertainty": 0.002, "exact_median": 1e-5 * (i + 1), "exact_largest": 2e-5 * (i + 1),
-        }  # fmt: skip
-        counts = {"held": i, "failed": 0, "undecided": 3} if entry["kind"] == "qualitative" else {}
-        claims.append(claim | counts)
-    return claims
+    numbered = enumerate(entries.items(), start=1)
+    return [
+        invented_claim(i, id, entry, scale) | {"further": further} for i, (id, entry) in numbered
+    ]
+
+
+def invented_claim(i: int, id: str, entry: dict, scale: float) -> dict:
+    """The claim of one entry; `i` makes its numbers differ from those of others."""
+    deviation = abs(scale * (1.0 + 0.00137 * i) - 1.0)
+    formula = r"$T_\mathrm{trans}$ is $\pi/\sqrt\gamma$"
+    claim = CLAIM | {key: entry[key] for key in ("kind", "tolerance", "reason")}
+    claim |= {
+        "id": id,
+        "predicted": 1.0,
+        "measured": 1.0 + deviation,
+        "uncertainty": 0.00021,
+        "deviation": deviation,
+        "verdict": within(deviation, 0.00021, entry["tolerance"]),
+        "statement": f"statement of {id.replace('_', ' ')}: {formula}",
+        "counted": "follows_from" not in entry,
+        "follows_from": entry.get("follows_from", []),
+        "why": "since $x$ is so",
+        "note": r"measured at $\Delta x=0$",
+        "figure": "fig05_scaling",
+    }
+    claim |= {"ninety": 1e-3 * i, "largest": 2e-3 * i}
+    claim |= {"exact_median": 1e-5 * i, "exact_largest": 2e-5 * i, "exponent_uncertainty": 0.002}
+    if "tolerance_exponent" in entry:
+        claim |= {"exponent": 1.01, "tolerance_exponent": entry["tolerance_exponent"]}
+    if entry["kind"] == "qualitative":
+        claim |= {"held": i - 1, "failed": 0, "undecided": 3}
+    return claim
 
 
 def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
-    """Each finding with a number for everything that any text asks of one."""
+    """Each finding, with every number that a text asks for."""
     names = set(re.findall(r"\b(?:n|late|literal|damped|made_with|collapse)\.(\w+)", texts))
     names |= set(re.findall(r'found\("\w+"\)\.(\w+)', texts))
     numbers = {name: 0.0123 * (i + 1) for i, name in enumerate(sorted(names))} | {
@@ -70,40 +100,36 @@ def invented_findings(findings: dict[str, str], texts: str) -> list[dict]:
 
 
 def invented_tables(texts: str) -> dict[str, pd.DataFrame]:
-    """What the report reads, with a number for each that its text asks for."""
+    """Tables of the report, with every number that its text asks for."""
 
     def row(variable: str) -> dict[str, float]:
-        return {
-            name: 1.0 + 0.01 * i
-            for i, name in enumerate(re.findall(rf"\b{variable}\.(\w+)", texts))
-        }
+        names = re.findall(rf"\b{variable}\.(\w+)", texts)
+        return {name: 1.0 + 0.01 * i for i, name in enumerate(names)}
 
+    crack, transition = row("crack"), {}
+    for name in ("transition_time", "transition_length"):
+        transition |= {name: 1.0, f"exact_{name}": 1.0}
     quoted = [
         {"quantity": name, "x": np.nan, "value": value} for name, value in row("exact").items()
     ]
     for name in ("release_time", "stick_time", "final_slip"):
-        quoted += [{"quantity": name, "x": x, "value": 1.0 + x} for x in (0.0, 1.0)]
-    found = {
-        "space_time_displacement": [row("scene")], "space_time_stress": [row("crack")],
-        "scaling_displacement": [
-            {f"{who}transition_{name}": 1.0 for who in ("", "exact_") for name in ("time", "length")}
-        ],
-        "arrest_path": [{"to_go": 1e-6, "time": 2.88} | row("crack")],
-        "derivations": quoted, "extremes": [{
-            "family": "level", "value": "tau_0 = 0.999", "quantity": "front speed", "error": 1e-4, "tolerance": 1e-2,
-            "verdict": "right", "message": ""}],
-    }  # fmt: skip
+        quoted.append({"quantity": name, "x": 0.0, "value": 1.0})
+        quoted.append({"quantity": name, "x": 1.0, "value": 2.0})
+    edge = {"family": "level", "value": "tau_0 = 0.999", "quantity": "front speed"}
+    edge |= {"error": 1e-4, "tolerance": 1e-2, "verdict": "right", "message": ""}
+    tables = {
+        "space_time_displacement": [row("scene")],
+        "space_time_stress": [crack],
+        "scaling_displacement": [transition],
+        "arrest_path": [{"to_go": 1e-6, "time": 2.88} | crack],
+        "derivations": quoted,
+        "extremes": [edge],
+    }
+    study = {"quantity": "front_speed_right", "value": 1.25}
+    known = study | {"uncertainty": 0.0013, "observed_order": 1.04}
     for name in write_report.NEEDS["uncertainties"]:
-        found[f"uncertainties/{name}"] = [
-            {
-                "quantity": "front_speed_right",
-                "value": 1.25,
-                "uncertainty": 0.0013,
-                "observed_order": 1.04,
-            },
-            {"quantity": "front_speed_right", "value": 1.25},
-        ]
-    return {name: pd.DataFrame(rows) for name, rows in found.items()}
+        tables[f"uncertainties/{name}"] = [known, study]
+    return {name: pd.DataFrame(rows) for name, rows in tables.items()}
 
 
 @pytest.fixture(scope="session")
@@ -128,24 +154,31 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
 
     def make(config: dict = shipped, scale: float = 1.0) -> Inputs:
         return Inputs(
-            config=config, shipped=shipped, claims=invented_claims(entries["claims"], config, texts, scale),
-            findings=invented_findings(entries["findings"], texts), tables=invented_tables(texts), figures=figures,
-            figures_folder=folder, manuscript=manuscript, citation=read(manuscript.parent / "CITATION.cff"),
-        )  # fmt: skip
+            config=config,
+            shipped=shipped,
+            claims=invented_claims(entries["claims"], config, texts, scale),
+            findings=invented_findings(entries["findings"], texts),
+            tables=invented_tables(texts),
+            figures=figures,
+            figures_folder=folder,
+            manuscript=manuscript,
+            citation=read(manuscript.parent / "CITATION.cff"),
+        )
 
     return make
 
 
 @pytest.fixture(scope="session")
 def build(tmp_path_factory):
-    """A function that writes a report and returns its files, inputs, claims by id, and both documents read."""
+    """A function that writes a report, and returns its files, inputs, claims and documents."""
 
     def made(inputs: Inputs) -> SimpleNamespace:
         folder = tmp_path_factory.mktemp("report")
         outputs = {
-            kind: [folder / f"{name}.{kind}" for name in DOCUMENTS] for kind in ("html", "pdf")
+            "html": [folder / f"{name}.html" for name in DOCUMENTS],
+            "pdf": [folder / f"{name}.pdf" for name in DOCUMENTS],
+            "verdicts": folder / "verdicts",
         }
-        outputs |= {"verdicts": folder / "verdicts"}
         with pytest.MonkeyPatch.context() as patch:
             patch.setenv(CONFIGURATION, DIGEST)
             patch.setattr(write_report, "inputs_of", lambda files, settings: inputs)

@@ -1,4 +1,4 @@
-"""The page of results: structure, keyboard, alternative texts, links, nothing from outside. No browser needed."""
+"""The page of results: structure, keyboard, alternative texts, links, nothing from outside."""
 
 import json
 import re
@@ -16,18 +16,14 @@ from slippulse.report.index_page import index_page
 from slippulse.report.scene_page import scenes_page
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
-FAILED = CLAIM | {
-    "id": "width", "verdict": "not reproduced", "measured": 1.5, "deviation": 0.2, "figure": "", "why": "It is *off*.",
-}  # fmt: skip
-OPEN = CLAIM | {
-    "id": "always", "kind": "qualitative", "verdict": "inconclusive", "counted": False, "follows_from": ["speed"],
-    "held": 3, "failed": 0, "undecided": 2, "runs": 5, "deviation": 0.0, "tolerance": 0.0,
-}  # fmt: skip
+FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "why": "It is *off*."}
+FAILED |= {"measured": 1.5, "deviation": 0.2, "figure": ""}
+OPEN = CLAIM | {"id": "always", "kind": "qualitative", "verdict": "inconclusive", "runs": 5}
+OPEN |= {"counted": False, "follows_from": ["speed"], "deviation": 0.0, "tolerance": 0.0}
+OPEN |= {"held": 3, "failed": 0, "undecided": 2}
 FINDING = {"id": "ours", "numbers": {"gap": 0.5}, "text": "a gap of $x$", "source": "other"}
-NEVER = CLAIM | {
-    "id": "length", "verdict": "not testable", "predicted": None, "measured": None, "uncertainty": None, "runs": None,
-    "deviation": None, "note": "",
-}  # fmt: skip
+NEVER = CLAIM | {"id": "length", "verdict": "not testable", "note": ""}
+NEVER |= dict.fromkeys(["predicted", "measured", "uncertainty", "runs", "deviation"])
 CLAIMS = [CLAIM, FAILED, NEVER, OPEN]
 TABLES = [
     "measurements/runs.csv",
@@ -64,21 +60,22 @@ class Outline(HTMLParser):
 
 @pytest.fixture(scope="module")
 def results(project, tmp_path_factory):
-    """A small run whose preset is not the shipped one, and beside its folder the texts of its page."""
+    """The folder of a small run with another preset; the texts of its page are next to it."""
     results = tmp_path_factory.mktemp("page") / "results"
-    made = [f"figures/{name}.{ending}" for name in NAMES for ending in ("pdf", "csv")]
-    for path in [*TABLES, *made, "scenes/made.html"]:
-        (results / path).parent.mkdir(parents=True, exist_ok=True)
+    for folder in ("figures", "scenes", *{path.partition("/")[0] for path in TABLES}):
+        (results / folder).mkdir(parents=True, exist_ok=True)
+    for path in [*TABLES, "scenes/made.html"]:
         (results / path).touch()
     for name in NAMES:
+        (results / f"figures/{name}.pdf").touch()
+        (results / f"figures/{name}.csv").touch()
         Image.new("1", (900, 600)).save(results / f"figures/{name}.png")
     (results / "claims.html").write_text(claims_page(CLAIMS, tables=TABLES), encoding="utf-8")
     config = read(project / "config/config.yaml")
     facts = provenance(project, "", config | {"preset": "draft"}, config, results)
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
-    caption = {
-        "alt": "A line <up>", "caption": "(a) $x$.", "finding": "Found in {{ claim('speed').runs }} runs.",
-    }  # fmt: skip
+    caption = {"alt": "A line <up>", "caption": "(a) $x$."}
+    caption["finding"] = "Found in {{ claim('speed').runs }} runs."
     lines = [
         {
             "topic": "Yes",
@@ -96,12 +93,12 @@ def results(project, tmp_path_factory):
         "verdict": lines,
     }
     captions = {name: caption | {"title": title} for name, title in NAMES.items()}
-    for path, content in {
-        "results/claims.json": CLAIMS, "results/findings.json": [FINDING], "results/provenance.json": facts,
-        "captions.yaml": captions, "summary.yaml": summary,
-    }.items():  # fmt: skip
-        write = json.dumps if path.endswith("json") else yaml.safe_dump
-        (results.parent / path).write_text(write(content), encoding="utf-8")
+    contents = {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}
+    for name, content in contents.items():
+        (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
+    for name, content in {"captions": captions, "summary": summary}.items():
+        text = yaml.safe_dump(content)
+        (results.parent / f"{name}.yaml").write_text(text, encoding="utf-8")
     return results
 
 
@@ -121,7 +118,7 @@ def page(results) -> str:
 
 
 def check_accessible(text: str) -> Outline:
-    """What every page has to keep."""
+    """Check the structure of a page."""
     outline = Outline(text)
     assert text.startswith("<!DOCTYPE html>")
     assert outline.all("html") == [{"lang": "en"}]
@@ -137,11 +134,11 @@ def check_accessible(text: str) -> Outline:
     assert outline.all("a")[0] == {"class": "skip", "href": "#content"}
     labels = [attributes.get("aria-label") for attributes in outline.all("nav")]
     assert len(labels) == len(set(labels)) and all(labels)
-    # What scrolls sideways can be reached by keyboard and has a name.
-    for region in (
-        attributes for attributes in outline.all("div") if attributes.get("class") == "scroll"
-    ):
-        assert region["tabindex"] == "0" and region["role"] == "region" and region["aria-label"]
+    # The keyboard reaches every region that scrolls sideways, and each has a name.
+    for region in outline.all("div"):
+        if region.get("class") == "scroll":
+            assert region["tabindex"] == "0" and region["role"] == "region"
+            assert region["aria-label"]
     assert len(outline.all("caption")) == len(outline.all("table"))
     assert all(attributes["scope"] == "col" for attributes in outline.all("th"))
     assert not any(
@@ -155,7 +152,7 @@ def test_pages_can_be_read_without_eyes_or_mouse(page):
     scenes = check_accessible(scenes_page({"one": "A <scene>", "two": "Another"}))
     assert [image["src"] for image in scenes.all("img")] == ["one.png", "two.png"]
     outline = check_accessible(page)
-    # Each figure once, with its size, the first above all links but the hidden one.
+    # Each figure is there once, with its size; the first is above all links but the hidden one.
     pictures = [(image["src"], image["width"], image["height"]) for image in outline.all("img")]
     assert pictures == [(f"figures/{name}.png", "360", "240") for name in NAMES]
     assert [tag for tag, _ in outline.tags if tag in ("a", "img")][:2] == ["a", "img"]
@@ -213,7 +210,7 @@ def test_the_ledger_has_a_page_with_failures_first():
     assert "\\gamma" not in re.sub("<annotation.*?</annotation>", "", text)
     assert '<a href="figures/fig01_one.png">figure 1, one</a>' in text
     assert "fronts &lt;outrun&gt; the waves &amp; keep <math" in text
-    # The tables behind a number, and what makes them; of simulations only those that it names.
+    # A number links to its tables and their command, of the simulations that its source names.
     links = [a["href"] for a in outline.all("a") if a["href"].endswith(".csv")]
     assert links == [TABLES[0], TABLES[1], TABLES[3]] * len(CLAIMS) + [TABLES[2]]
     made = " ".join(f"results/{path}" for path in links[:3])

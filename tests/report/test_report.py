@@ -1,4 +1,4 @@
-"""The report as a reader gets it: whole, self-contained, the same bytes each time, with the numbers of its run."""
+"""The report that a reader gets: complete, self-contained, reproducible, with its run's numbers."""
 
 import copy
 import json
@@ -20,7 +20,7 @@ from slippulse.report.manuscript import DOCUMENTS, execute, names_for
 from slippulse.report.texts import read_captions
 from slippulse.steps import write_report
 
-# Of the report; the supplement may be as long as it is.
+# Pages of the report; the supplement may be longer.
 MOST_PAGES = 14
 
 
@@ -58,10 +58,10 @@ def test_the_html_is_one_page_that_loads_nothing_and_says_what_it_was_made_by(do
 
 
 def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(report):
-    pictures = re.findall(
-        r'<figure id="(\w+)">\s*<a href="\.\./figures/(\w+)\.png"><img src="data:image/png;base64,([^"]+)"[^>]*></a>',
-        "".join(report.pages),
-    )
+    link = r'<a href="\.\./figures/(\w+)\.png">'
+    image = r'<img src="data:image/png;base64,([^"]+)"[^>]*>'
+    figure = rf'<figure id="(\w+)">\s*{link}{image}</a>'
+    pictures = re.findall(figure, "".join(report.pages))
     assert sorted(name for name, _, _ in pictures) == sorted(report.inputs.figures)
     for name, link, content in pictures:
         path = report.inputs.figures_folder / f"{name}.png"
@@ -73,9 +73,8 @@ def test_its_pictures_are_the_figures_pixel_by_pixel_and_enlarge(report):
 def test_the_pdf_is_a4_in_the_typeface_of_its_figures_which_have_alternative_texts(report):
     pdf = report.pdfs[0]
     assert len(pdf.pages) <= MOST_PAGES
-    assert {tuple(sorted(round(float(x)) for x in page.mediabox[2:])) for page in pdf.pages} == {
-        (595, 842)
-    }
+    for page in pdf.pages:
+        assert sorted(round(float(x)) for x in page.mediabox[2:]) == [595, 842]
     fonts = pdf.pages[0]["/Resources"]["/Font"].values()
     assert any(FAMILY in font.get_object()["/BaseFont"] for font in fonts)
     objects = (pdf.get_object(number) for number in range(1, int(pdf.trailer["/Size"])))
@@ -117,7 +116,8 @@ def test_an_altered_run_changes_the_numbers_and_says_so(report, make_inputs, shi
     altered = make_inputs(config, scale=1.05)
     documents = [manuscript / f"{name}.md" for name in DOCUMENTS]
     both = (report.inputs, altered)
-    before, after = ("".join(execute(one, inputs) for one in documents) for inputs in both)
+    before = "".join(execute(document, report.inputs) for document in documents)
+    after = "".join(execute(document, altered) for document in documents)
     assert "Altered configuration" not in before
     top = after[: after.index("# The answer")]
     assert "`simulations.space_time_displacement.left`: `[0.4]` (shipped: `[0.25]`)" in top
@@ -145,9 +145,10 @@ def test_what_was_not_measured_or_has_no_theory_is_said_to_be_so(report, manuscr
 
 
 def test_what_fails_is_one_line_that_names_it(report, tmp_path):
+    division = r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)"
     for source, reason in {
         "# Speed\n\nFirst.\n\nIt is {{ claim('no_such').measured }}.\n": r"small\.md: .*no_such",
-        "```python\nwidth = 1 / 0\n```\n": r"small\.md: ZeroDivisionError: .*\(cell 'width = 1 / 0'\)",
+        "```python\nwidth = 1 / 0\n```\n": division,
     }.items():
         (tmp_path / "small.md").write_text(source, encoding="utf-8")
         with pytest.raises(ValueError, match=reason) as caught:

@@ -1,5 +1,6 @@
 """Every example overlay runs, at draft, and does what its comment promises."""
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,7 @@ def make(project, tmp_path_factory):
     return made
 
 
-# What is to be seen in the measured table of each example and the path of its target.
+# A function for each example checks its measured table and the path of its target.
 
 
 def another_gamma(table, path):
@@ -96,9 +97,8 @@ def user_defined_sweep(table, path):
 def chunked_sweep(table, path):
     """It is in the order of its lists."""
     levels, widths = table["left"].unique(), table["width"].unique()
-    assert list(zip(table["left"], table["width"], strict=True)) == [
-        (a, b) for a in levels for b in widths
-    ]
+    pairs = [*zip(table["left"], table["width"], strict=True)]
+    assert pairs == [*product(levels, widths)]
     assert levels.tolist() == [-0.3, -0.6, -1.0, -2.0] and widths.tolist() == [1.0, 2.0, 4.0]
     chunks = sorted(chunk.name for chunk in (path.parent / "chunked_sweep").glob("*.csv"))
     assert chunks == [f"{number}-of-4.csv" for number in (1, 2, 3, 4)]
@@ -123,7 +123,7 @@ def target_error(table, path):
     assert "target_error: accuracy 0.01 kept by 12 of 12 runs" in log.read_text(encoding="utf-8")
 
 
-# Of each example a small target, cheap and enough to see what it promises.
+# A cheap target of each example that shows what its comment promises.
 TARGETS = {
     another_gamma: "measurements/steady_displacement.csv",
     asymmetric_levels: "measurements/asymmetric_levels.csv",

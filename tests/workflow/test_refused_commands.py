@@ -1,4 +1,4 @@
-"""The pipeline's own command refuses wrong input before any job, and goes on where that is asked for."""
+"""Refusals by the pipeline's own command before any job, and runs that are allowed in spite."""
 
 import os
 import runpy
@@ -6,6 +6,7 @@ import shutil
 import site
 import subprocess
 import sys
+from typing import NamedTuple
 
 import pytest
 
@@ -13,22 +14,41 @@ from slippulse.configuration.limits import HOW_TO_GO_ON
 
 STEADY = "simulations: {steady_displacement: "
 
-# The pipeline's own command: overlay, more arguments, what is named.
+
+class Command(NamedTuple):
+    """A run of the pipeline: overlay, parts of its refusal, further arguments."""
+
+    overlay: str
+    refusal: list[str]
+    arguments: tuple[str, ...] = ("--",)
+
+
+DRAFT = "preset: draft\n"
+SHELL = ("--config", "preset=$(touch written)")
+COSTS = ["simulations.scaling_stress.cost", "block updates", "allow_large=true"]
 COMMANDS = {
-    "misspelt key": ("simulations: {steady_displacement: {gama: [0.3]}}", [], ["did you mean 'gamma'"]),
-    "cost": (STEADY + "{duration: {time: 1.0e+8}}}", [], ["steady_displacement.cost: up to", "allow_large=true"]),
-    "python tag": ("preset: !!python/name:os.system\n", [], ["no tags"]),
-    "list": ("[1, 2]\n", [], ["with keys at top level"]),
-    "preset on the command line": ("preset: draft\n", ["--config", "preset=$(touch written)"], ["'$(touch written)'"]),
-    "accuracy that costs too much": (
-        "accuracy: 1.0e-4\n", ["results/figures/fig05_scaling.png"],
-        ["simulations.scaling_stress.cost", "block updates", "allow_large=true"],
+    "misspelt key": Command(STEADY + "{gama: [0.3]}}", ["did you mean 'gamma'"]),
+    "cost": Command(
+        STEADY + "{duration: {time: 1.0e+8}}}",
+        ["steady_displacement.cost: up to", "allow_large=true"],
     ),
-    "unknown figure": ("preset: draft\n", ["results/figures/fig05_scalling.png"], ["mean 'results/figures/fig05"]),
-    "rule for many files": ("preset: draft\n", ["simulate"], ["target: 'simulate'", "a rule of a single job"]),
-    "unknown scene": ("preset: draft\n", ["results/scenes/bariere.html"], ["did you mean 'results/scenes/barrier"]),
-}  # fmt: skip
-# The others go the same way.
+    "python tag": Command("preset: !!python/name:os.system\n", ["no tags"]),
+    "list": Command("[1, 2]\n", ["with keys at top level"]),
+    "preset on the command line": Command(DRAFT, ["'$(touch written)'"], SHELL),
+    "accuracy that costs too much": Command(
+        "accuracy: 1.0e-4\n", COSTS, ("--", "results/figures/fig05_scaling.png")
+    ),
+    "unknown figure": Command(
+        DRAFT, ["mean 'results/figures/fig05"], ("--", "results/figures/fig05_scalling.png")
+    ),
+    "rule for many files": Command(
+        DRAFT, ["target: 'simulate'", "a rule of a single job"], ("--", "simulate")
+    ),
+    "unknown scene": Command(
+        DRAFT, ["did you mean 'results/scenes/barrier"], ("--", "results/scenes/bariere.html")
+    ),
+}
+# The other cases take the same way through the pipeline.
 QUICK = ("misspelt key", "cost", "unknown figure", "rule for many files")
 REST = [pytest.param(case, marks=pytest.mark.slow) for case in COMMANDS if case not in QUICK]
 
@@ -42,9 +62,9 @@ def folder(project, tmp_path):
 
 
 def said(command, folder, code, environment=None) -> str:
-    """What a command says that ends with a code."""
-    how = {"cwd": folder, "env": environment, "capture_output": True, "text": True, "timeout": 120}
-    result = subprocess.run(command, **how, check=False)
+    """The output of a command that must end with a code."""
+    options = {"capture_output": True, "text": True, "timeout": 120, "check": False}
+    result = subprocess.run(command, cwd=folder, env=environment, **options)
     assert result.returncode == code, result.stdout + result.stderr
     return result.stdout + result.stderr
 
@@ -54,13 +74,11 @@ SNAKEMAKE = (sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--
 
 @pytest.mark.parametrize("case", [*QUICK, *REST])
 def test_the_command_refuses_before_any_job(folder, case):
-    overlay, arguments, named = COMMANDS[case]
-    (folder / "mine.yaml").write_text(overlay, encoding="utf-8")
-    text = said(
-        [*SNAKEMAKE, *(() if arguments[:1] == ["--config"] else ["--"]), *arguments], folder, 1
-    )
+    command = COMMANDS[case]
+    (folder / "mine.yaml").write_text(command.overlay, encoding="utf-8")
+    text = said([*SNAKEMAKE, *command.arguments], folder, 1)
     assert not any(part in text for part in ("Traceback", "localrule", "Select jobs"))
-    assert all(part in text for part in named)
+    assert all(part in text for part in command.refusal)
     assert not (folder / "results").exists() and not (folder / "written").exists()
 
 
@@ -73,14 +91,14 @@ def test_an_option_that_snakemake_itself_refuses_is_one_line_by_the_profile(fold
 
 @pytest.mark.slow
 def test_what_costs_too_much_goes_on_where_that_is_allowed(folder):
-    (folder / "mine.yaml").write_text(COMMANDS["cost"][0], encoding="utf-8")
+    (folder / "mine.yaml").write_text(COMMANDS["cost"].overlay, encoding="utf-8")
     allowed, target = HOW_TO_GO_ON.split()[:2], "results/data/steady_displacement.nc"
     said([*SNAKEMAKE, "--dry-run", *allowed, "--", target], folder, 0)
 
 
 @pytest.fixture
 def make(project, folder):
-    """A function that runs make in a folder with the sources and an environment, and returns what it refuses."""
+    """A function that runs make in a folder with the sources, and returns its refusal."""
     if shutil.which("make") is None:
         pytest.skip("no make on this machine")
     for part in ("Makefile", "pyproject.toml", "requirements-build.lock"):
@@ -88,33 +106,34 @@ def make(project, folder):
     (folder / ".venv/bin").mkdir(parents=True)
     (folder / ".venv/bin/python").symlink_to(sys.executable)
     (folder / ".venv/.ready").touch()
-    paths = os.environ | {
-        "PYTHONPATH": os.pathsep.join([str(project / "src"), *site.getsitepackages()])
-    }
-    return lambda *arguments: said(["make", *arguments], folder, 2, paths)
+    folders = [str(project / "src"), *site.getsitepackages()]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(folders)}
+    return lambda *arguments: said(["make", *arguments], folder, 2, environment)
 
 
 @pytest.mark.parametrize("overlay", ["mine.yaml: a template; allowed", "pipe: not a regular file"])
 def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overlay):
     template = "__use_yte__: true\npreset: ?open('written', 'w')\n"
     (tmp_path / "mine.yaml").write_text(template, encoding="utf-8")
-    # Nothing waits for it.
+    # Nothing waits for a writer of the pipe.
     os.mkfifo(tmp_path / "pipe")
     assert overlay in make("replicate", f"OVERLAY={overlay.partition(':')[0]}")
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 
-@pytest.mark.parametrize(
-    ("command", "name", "value", "allowed"),
-    [
-        *(("faults", "KILLS", value, "a whole number") for value in ("", "0", "-1", "1.5", "1; touch written")),
-        *(("replicate", "CORES", value, "a whole number") for value in ("0", "-1", "08", "all")),
-        *(("replicate", "PRESET", value, "the name of a preset") for value in ("draft'", "`touch written`", "a b")),
-        *(("replicate", "ALLOW_LARGE", value, "true or false") for value in ("NO", "maybe")),
-    ],
-)  # fmt: skip
-def test_make_checks_its_options(make, tmp_path, command, name, value, allowed):
-    assert f"{name}: {value}; allowed: {allowed}" in make(command, f"{name}={value}")
+OPTIONS = [
+    *(("faults", "KILLS", value) for value in ("", "0", "-1", "1.5", "1; touch written")),
+    *(("replicate", "CORES", value) for value in ("0", "-1", "08", "all")),
+    *(("replicate", "PRESET", value) for value in ("draft'", "`touch written`", "a b")),
+    *(("replicate", "ALLOW_LARGE", value) for value in ("NO", "maybe")),
+]
+ALLOWED = {"KILLS": "a whole number", "CORES": "a whole number"}
+ALLOWED |= {"PRESET": "the name of a preset", "ALLOW_LARGE": "true or false"}
+
+
+@pytest.mark.parametrize(("command", "name", "value"), OPTIONS)
+def test_make_checks_its_options(make, tmp_path, command, name, value):
+    assert f"{name}: {value}; allowed: {ALLOWED[name]}" in make(command, f"{name}={value}")
     assert not (tmp_path / "written").exists() and not (tmp_path / "results").exists()
 
 
@@ -128,7 +147,7 @@ def test_make_refuses_a_folder_in_which_jobs_would_fail(make, tmp_path, name):
     assert not (folder / ".venv").exists()
 
 
-# Commands with too few or wrong arguments, the exit code, and what is said.
+# Commands with too few or wrong arguments: module, arguments, exit code, words of the message.
 USES = {
     "overlay": ("slippulse.configuration.read", "", 2, "usage: "),
     "benchmarks": ("tests.benchmark", "", 2, "usage: "),
