@@ -1,9 +1,9 @@
 # The whole paper from one configuration: simulate, measure, draw.
 #   snakemake --cores 2                                        everything
-#   snakemake --cores 2 results/figures/fig05_scaling.png      one figure and only what it needs
-#   snakemake --cores 2 --config preset=draft                  the figures of the paper, coarse and quick
-#   snakemake --cores 2 --config preset=draft -- everything    studies, ledger and report too
-#   snakemake --cores 2 --configfile mine.yaml                 any part of the configuration overlaid
+#   snakemake --cores 2 results/figures/fig05_scaling.png      one figure and its inputs
+#   snakemake --cores 2 --config preset=draft                  its figures, coarse and quick
+#   snakemake --cores 2 --config preset=draft -- everything    with studies, claims and report
+#   snakemake --cores 2 --configfile mine.yaml                 with an overlaid configuration
 
 
 include: "workflow/rules/common.smk"
@@ -15,7 +15,7 @@ include: "workflow/rules/pages.smk"
 rule all:
     default_target: True
     input:
-        # With all that they are made from: what is missing of that is made again too.
+        # All files that they are made from are targets too: a missing one is made again.
         lambda wildcards: [f"results/{name}" for name in PLAN.wanted(["all"])],
 
 

@@ -1,9 +1,9 @@
-"""Run Snakemake for make, so that a signal ends the run at once, with all of its jobs and with one line.
+"""Run Snakemake for make. A signal ends the run at once, with all of its jobs and with one line.
 
     python workflow/run.py replicate|verify
 
-Files are written whole or not at all, so that a run may be killed at any time: the next one goes on from what is there.
-The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE.
+The options of make are in the environment: CORES, PRESET, OVERLAY, TARGET, ALLOW_LARGE. Files are
+written whole or not at all: after a kill the next run goes on from what is there.
 """
 
 import json
@@ -17,23 +17,21 @@ from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
 
-# How the last run was called.
+# The options and targets of the last run.
 CALL = Path("results/records/.call")
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-def arguments(what: str) -> list[str]:
-    """Of Snakemake, for a target of the Makefile."""
+def arguments(command: str) -> list[str]:
+    """Arguments of Snakemake for a command of the Makefile."""
     given = {name: value for name, value in os.environ.items() if value}
-    targets = [meant(target) for target in given.get("TARGET", "").split()]
-    values = [
-        f"{name.lower()}={given[name]}" for name in ("PRESET", "ALLOW_LARGE") if name in given
-    ]
-    options = ["--config", *values] if values else []
+    targets = [full_target(target) for target in given.get("TARGET", "").split()]
+    names = [name for name in ("PRESET", "ALLOW_LARGE") if name in given]
+    options = ["--config", *(f"{name.lower()}={given[name]}" for name in names)] if names else []
     options += ["--configfile", given["OVERLAY"]] if "OVERLAY" in given else []
-    if what == "verify":
+    if command == "verify":
         if not options:
-            # As the last run was called.
+            # Without options, the results are compared with what the last run was to make.
             with suppress(OSError, ValueError, KeyError):
                 called = json.loads(CALL.read_text(encoding="utf-8"))
                 options, targets = called["options"], [*{"everything"} & {*called["targets"]}]
@@ -42,8 +40,8 @@ def arguments(what: str) -> list[str]:
     return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
 
 
-def meant(target: str) -> str:
-    """A figure by less than its path, as fig5, fig05.png or study_arrest.pdf, as Snakemake knows it; else the same."""
+def full_target(target: str) -> str:
+    """Complete the short name of a figure, such as fig5, fig05.png or study_arrest.pdf."""
     name, dot, ending = target.removeprefix("results/figures/").partition(".")
     short = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     start = f"fig{int(short[1]):02d}_" if short else None
@@ -54,7 +52,7 @@ def meant(target: str) -> str:
 
 
 def answer() -> str:
-    """What to open when a run has ended, with the verdicts if it made or kept them."""
+    """Say what to open when a run has ended, with the verdicts if it made or kept them."""
     called = json.loads(CALL.read_text(encoding="utf-8"))
     if called["page"]:
         from slippulse.claims.reading import Ledger
@@ -66,8 +64,8 @@ def answer() -> str:
     return f"Made: {', '.join(called['targets'])}"
 
 
-def main(what: str) -> int:
-    """Run it in a group of processes of its own; returns the exit code."""
+def main(command: str) -> int:
+    """Run Snakemake in a group of processes of its own; returns the exit code."""
     began = time.monotonic()
     # When this process ends, however that happens, the other end of this pipe tells Snakemake.
     leash, _held = os.pipe()
@@ -87,17 +85,17 @@ def main(what: str) -> int:
 
     for number in SIGNALS:
         signal.signal(number, stop)
-    command = [sys.executable, "-m", "snakemake", *arguments(what)]
     process = subprocess.Popen(
-        command,
+        [sys.executable, "-m", "snakemake", *arguments(command)],
         env=os.environ | {"SLIPPULSE_LEASH": str(leash)},
         pass_fds=[leash],
         start_new_session=True,
     )
     os.close(leash)
     code = process.wait()
-    end()  # of jobs too, which would go on after a server that has died
-    if code == 0 and what == "replicate":
+    # Jobs would go on after a server of jobs that has died.
+    end()
+    if code == 0 and command == "replicate":
         print(f"{answer()}. It took {timedelta(seconds=round(time.monotonic() - began))}.")
     return code if code >= 0 else 128 - code
 

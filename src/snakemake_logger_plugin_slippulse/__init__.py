@@ -1,4 +1,4 @@
-"""Progress by rich, without a terminal one line a job. Snakemake finds it by the name of the package."""
+"""Progress bars in a terminal, else one line a job. Snakemake finds the plugin by its name."""
 
 import sys
 
@@ -6,7 +6,7 @@ from snakemake_logger_plugin_rich import LogHandler as Rich
 
 
 class LogHandler(Rich):
-    """Leaves out that a failed run is complete, and tracebacks of the parser of --config."""
+    """Logger without the line that a run is complete, and without tracebacks of --config."""
 
     def emit(self, record):
         message = record.getMessage()

@@ -1,4 +1,6 @@
-"""Chunks of a sweep: every run in one of them, about equal costs, and the bytes of the sweep when put together."""
+"""Chunks of a sweep: each run is in one, costs are about equal, and joined they are the sweep."""
+
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -10,33 +12,51 @@ from slippulse.data.files import CONFIGURATION as VARIABLE
 from slippulse.data.join import ChunksDiffer
 from slippulse.steps import join, measure, simulate, study_grid
 
-# Of the part of the configuration that the files are made by, which each notes.
+# The digest of a configuration, which each file notes.
 CONFIGURATION = "0123456789abcdef"
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
-# Levels of both signs, so that some runs have a transition and others none, in chunks of either kind alone too; a
-# level of 0, so that columns of whole numbers in one chunk hold fractions in the next; a symmetric and an oblique one.
+# Levels of both signs, so that some runs have a transition and others none, in chunks of either
+# kind alone too. A level of 0, so that integers in one chunk are fractions in the next.
 SWEEPS = {
     "displacement": {
-        "boundary": "displacement", "left": [-0.2, 0.0, 0.5], "right": [0.0, 0.5], "gamma": [0.65, 1.0],
-        "duration": {"time": 5.0}, "record": ["fronts", "fields", "samples"],
-        "samples": {"times": 3, "positions": 11, "extent": 5.0}, "resolved_blocks": 1,
+        "boundary": "displacement",
+        "left": [-0.2, 0.0, 0.5],
+        "right": [0.0, 0.5],
+        "gamma": [0.65, 1.0],
+        "duration": {"time": 5.0},
+        "record": ["fronts", "fields", "samples"],
+        "samples": {"times": 3, "positions": 11, "extent": 5.0},
+        "resolved_blocks": 1,
     },
     "stress": {
-        "boundary": "stress", "left": [-0.5, 0.0, 0.3], "right": [0.0, -0.4], "width": [0.5, 1.0],
-        "duration": {"time": 5.0}, "release": ["total", "elastic"], "record": ["fronts"],
+        "boundary": "stress",
+        "left": [-0.5, 0.0, 0.3],
+        "right": [0.0, -0.4],
+        "width": [0.5, 1.0],
+        "duration": {"time": 5.0},
+        "release": ["total", "elastic"],
+        "record": ["fronts"],
     },
     "profiles": {
-        "boundary": "displacement", "gamma": [0.65], "duration": {"time": 4.0}, "record": ["fronts", "samples"],
-        "profiles": [{"left": 0.3, "right": 0.3}, {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]}],
-        "samples": {"times": 4, "positions": 1, "extent": 0.0}, "resolved_blocks": 1,
+        "boundary": "displacement",
+        "gamma": [0.65],
+        "duration": {"time": 4.0},
+        "record": ["fronts", "samples"],
+        # A symmetric profile and an oblique one.
+        "profiles": [
+            {"left": 0.3, "right": 0.3},
+            {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]},
+        ],
+        "samples": {"times": 4, "positions": 1, "extent": 0.0},
+        "resolved_blocks": 1,
     },
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("chunks", "runs"), [(1, 5), (2, 2), (2, 7), (7, 7), (8, 81), (100, 1234)])
 def test_each_run_is_in_one_chunk(chunks, runs):
     members = [list(runs_of(number, chunks, runs)) for number in range(1, chunks + 1)]
-    assert sorted(run for chunk in members for run in chunk) == list(range(runs))
+    assert sorted(chain.from_iterable(members)) == list(range(runs))
     assert all(chunk == sorted(chunk) for chunk in members)
     assert {len(chunk) for chunk in members} <= {runs // chunks, -(-runs // chunks)}
 
@@ -92,26 +112,23 @@ SLOW = [("stress", 5), ("displacement", 5), ("profiles", 2)]
     [("displacement", 2), *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW)],
 )
 def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
-    whole = made(name)
-    of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]
-    joined = [tmp_path / file.name for file in whole]
+    sweep = made(name)
+    files_of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]
+    joined = [tmp_path / file.name for file in sweep]
     monkeypatch.setenv(VARIABLE, CONFIGURATION)
-    for kind, *files, path in zip(KINDS, *of_chunks, joined, strict=True):
+    for kind, *files, path in zip(KINDS, *files_of_chunks, joined, strict=True):
         settings = {"kind": kind, "record": SWEEPS[name]["record"]}
         join.run({"chunks": files, "finest": [joined[1]]}, {"joined": path}, settings)
-    for one, other in zip(whole, joined, strict=True):
+    for one, other in zip(sweep, joined, strict=True):
         assert one.read_bytes() == other.read_bytes(), one.name
 
 
 def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
-    whole = made("displacement")
+    sweep = made("displacement")
     short, long = made("displacement", [1, 5]), made("displacement", [2, 2])
+    outputs = {"joined": tmp_path / "joined"}
     for index, kind in enumerate(KINDS):
-        files = {"chunks": [short[index], long[index]], "finest": [whole[1]]}
+        files = {"chunks": [short[index], long[index]], "finest": [sweep[1]]}
         with pytest.raises(ChunksDiffer, match="not the runs of one sweep"):
-            join.run(
-                files,
-                {"joined": tmp_path / "joined"},
-                {"kind": kind, "record": ["fronts", "fields"]},
-            )
+            join.run(files, outputs, {"kind": kind, "record": ["fronts", "fields"]})
     assert not any(tmp_path.iterdir())

@@ -1,4 +1,4 @@
-"""What each job made from what, by which configuration and sources, and what is not as made by what is here now."""
+"""Records of jobs, and the results that are not as a run would make them."""
 
 import getpass
 import json
@@ -11,32 +11,28 @@ import pytest
 import yaml
 
 from slippulse.configuration.problems import ConfigError
-from slippulse.data import records
+from slippulse.data import tree
 from slippulse.data.alterations import changes
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
-from slippulse.data.records import (
-    Digests,
-    Origin,
-    Tree,
-    digest_of,
-    read_record,
-    read_records,
-    write_record,
-)
-from slippulse.steps.reach import Job, jobs_of, origins_of
+from slippulse.data.records import Origin, digest_of, read_record, write_record
+from slippulse.data.tree import Digests, Tree
+from slippulse.steps.origins import Job, jobs_of, origins_of
 from slippulse.steps.targets import Plan
 
-DATA, TABLE, PAGE, OTHER = "data/a.nc", "measurements/a.csv", "index.html", "scenes/other.html"
+DATA, TABLE = "data/a.nc", "measurements/a.csv"
+PAGE, OTHER = "index.html", "scenes/other.html"
+SUMMARY = "manuscript/summary.yaml"
 JOBS = [
     Job("simulate", (), (f"results/{DATA}",), {"level": 0.5}),
     Job("measure", (f"results/{DATA}",), (f"results/{TABLE}",), {}),
-    Job("write_index", (f"results/{TABLE}", "manuscript/summary.yaml"), (f"results/{PAGE}",), {"title": "All"}),
+    Job("write_index", (f"results/{TABLE}", SUMMARY), (f"results/{PAGE}",), {"title": "All"}),
     Job("animate_scene", (), (f"results/{OTHER}",), {}),
-]  # fmt: skip
+]
 
 
 def run(folder: Path, jobs=JOBS) -> None:
+    """Write the results and records of some jobs."""
     origins = origins_of(jobs)
     for job in jobs:
         origin = origins[job.outputs[0].removeprefix("results/")]
@@ -51,66 +47,110 @@ def results(tmp_path) -> Path:
     return tmp_path / "results"
 
 
-def found(results: Path, kind: str = "faults", jobs=JOBS):
+def compared(results: Path, jobs=JOBS) -> tuple[Tree, dict]:
+    """A folder of results, and what all of them are made by."""
     origins = origins_of(jobs)
-    return getattr(Tree(results, origins), kind)(origins)
+    return Tree(results, origins), origins
+
+
+def faults(results: Path, jobs=JOBS) -> dict[str, str]:
+    tree, names = compared(results, jobs)
+    return tree.faults(names)
+
+
+def problems(results: Path) -> tuple[list[str], int]:
+    tree, names = compared(results)
+    return tree.problems(names)
 
 
 def test_a_record_says_what_was_made_by_what_from_what(results):
     record = read_record(results / f"records/{TABLE}.json")
     assert record.step == "measure" and [*record.inputs] == [DATA] and [*record.outputs] == [TABLE]
-    assert found(results) == {} and len(read_records(results)) == len(JOBS)
-    assert found(results, "problems") == ([], len(JOBS))
+    assert faults(results) == {} and problems(results) == ([], len(JOBS))
     write_record(Origin((PAGE,), "measure", "", "", frozenset()), {"seconds": 0.25}, results)
     assert job_times(results) == {"simulate": 1.5, "measure": 1.75, "animate_scene": 1.5}
 
 
-def record_of(results: Path, name: str, **change) -> None:
+def put_folder(path: Path) -> None:
+    """Put a folder where a file was."""
+    path.unlink()
+    path.mkdir()
+
+
+def rewrite(results: Path, name: str, **change) -> None:
+    """Change the record of a result."""
     path = results / f"records/{name}.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
 
 
-RECORD = f"records/{OTHER}.json"
-AFTER = {
-    one: f"older than {other}, which it is made from"
-    for one, other in ((TABLE, DATA), (PAGE, TABLE))
+CHANGED = {DATA: "not what its job wrote"}
+# The table was made from the data, and the page from the table.
+OLDER = {
+    TABLE: f"older than {DATA}, which it is made from",
+    PAGE: f"older than {TABLE}, which it is made from",
 }
-HARM = {
-    "edited": (lambda folder: (folder / DATA).write_text("datA"), {DATA: "not what its job wrote"}),
-    "emptied": (lambda folder: (folder / DATA).write_text(""), {DATA: "not what its job wrote"}),
-    "removed": (lambda folder: (folder / DATA).unlink(), {DATA: "missing"}),
-    "a folder": (lambda folder: ((folder / DATA).unlink(), (folder / DATA).mkdir()), {DATA: "missing"}),
-    "a folder for a record": (
-        lambda folder: ((folder / RECORD).unlink(), (folder / RECORD).mkdir()), {OTHER: "its record cannot be read"},
-    ),
-    "other outputs": (lambda folder: record_of(folder, OTHER, outputs={}), {OTHER: "made by another rule"}),
-    "another step": (lambda folder: record_of(folder, OTHER, step="measure"), {OTHER: "made by another rule"}),
-    "other sources": (lambda folder: record_of(folder, OTHER, sources=""), {OTHER: "made by other sources"}),
-    "no record": (lambda folder: (folder / f"records/{DATA}.json").unlink(), {DATA: "no record"} | AFTER),
-    "other data": (
-        lambda folder: record_of(folder, DATA, outputs={DATA: "0"}), {DATA: "not what its job wrote"} | AFTER,
-    ),
-    **{
-        f"record {text[:9]}": (
-            lambda folder, text=text: (folder / RECORD).write_text(text), {OTHER: "its record cannot be read"},
-        )
-        for text in ("", "{", "[]", "5", '{"step": 1}', "[" * 100_000)
-    },
-}  # fmt: skip
 
 
-@pytest.mark.parametrize("case", HARM)
-def test_what_is_not_as_made_is_named_and_in_the_way_whatever_its_time(results, case):
-    harm, expected = HARM[case]
-    harm(results)
+def check_named(results: Path, expected: dict[str, str]) -> None:
+    """Exactly the expected results are faulty and in the way, whatever the times of the files."""
     for path in results.rglob("*"):
         os.utime(path, ns=(0, 0))
-    assert found(results) == expected
-    assert found(results, "problems")[0] == [
-        f"{results / name}: {why}" for name, why in expected.items()
-    ]
+    assert faults(results) == expected
+    assert problems(results)[0] == [f"{results / name}: {why}" for name, why in expected.items()]
+    tree, names = compared(results)
     in_the_way = {name: reason for name, reason in expected.items() if reason != "missing"}
-    assert found(results, "to_remove") == in_the_way
+    assert tree.to_remove(names) == in_the_way
+
+
+@pytest.mark.parametrize(
+    ("harm", "expected"),
+    [
+        pytest.param(lambda path: path.write_text("datA"), CHANGED, id="edited"),
+        pytest.param(lambda path: path.write_text(""), CHANGED, id="emptied"),
+        pytest.param(Path.unlink, {DATA: "missing"}, id="removed"),
+        pytest.param(put_folder, {DATA: "missing"}, id="a folder"),
+    ],
+)
+def test_a_result_that_was_changed_is_named(results, harm, expected):
+    harm(results / DATA)
+    check_named(results, expected)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "expected"),
+    [
+        pytest.param(OTHER, {"outputs": {}}, {OTHER: "made by another rule"}, id="other outputs"),
+        pytest.param(OTHER, {"step": "measure"}, {OTHER: "made by another rule"}, id="other step"),
+        pytest.param(OTHER, {"sources": ""}, {OTHER: "made by other sources"}, id="other sources"),
+        pytest.param(DATA, {"outputs": {DATA: "0"}}, CHANGED | OLDER, id="other data"),
+    ],
+)
+def test_a_result_whose_record_was_changed_is_named(results, name, change, expected):
+    rewrite(results, name, **change)
+    check_named(results, expected)
+
+
+def test_a_result_without_a_record_is_named(results):
+    (results / f"records/{DATA}.json").unlink()
+    check_named(results, {DATA: "no record"} | OLDER)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param("", id="empty"),
+        pytest.param("{", id="cut"),
+        pytest.param("[]", id="a list"),
+        pytest.param("5", id="a number"),
+        pytest.param('{"step": 1}', id="fields missing"),
+        pytest.param("[" * 100_000, id="nested too deep"),
+        pytest.param(None, id="a folder"),
+    ],
+)
+def test_a_result_whose_record_cannot_be_read_is_named(results, text):
+    path = results / f"records/{OTHER}.json"
+    put_folder(path) if text is None else path.write_text(text)
+    check_named(results, {OTHER: "its record cannot be read"})
 
 
 def test_only_what_is_wanted_and_what_that_is_made_from_or_with_is_in_the_way(results):
@@ -126,19 +166,24 @@ def test_only_what_is_wanted_and_what_that_is_made_from_or_with_is_in_the_way(re
     assert tree.to_remove(["a.png"]) == {"a.png": "made with a file that is not as made"}
 
 
-ANOTHER = {
-    "level": (0, {"settings": {"level": 0.6}}, dict.fromkeys((DATA, TABLE, PAGE), "configuration")),
-    "title": (2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}),
-    "text": (2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}),
-    "table": (2, {"inputs": (f"results/{DATA}", "manuscript/summary.yaml")}, {PAGE: "rule"}),
-}
-
-
-@pytest.mark.parametrize("name", ANOTHER)
-def test_another_configuration_is_told(results, name):
-    (index, change, reasons), jobs = ANOTHER[name], [*JOBS]
+@pytest.mark.parametrize(
+    ("index", "change", "reasons"),
+    [
+        pytest.param(
+            0,
+            {"settings": {"level": 0.6}},
+            dict.fromkeys((DATA, TABLE, PAGE), "configuration"),
+            id="level",
+        ),
+        pytest.param(2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}, id="title"),
+        pytest.param(2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}, id="text"),
+        pytest.param(2, {"inputs": (f"results/{DATA}", SUMMARY)}, {PAGE: "rule"}, id="table"),
+    ],
+)
+def test_another_configuration_is_told(results, index, change, reasons):
+    jobs = [*JOBS]
     jobs[index] = jobs[index]._replace(**change)
-    assert {name: why.split()[-1] for name, why in found(results, jobs=jobs).items()} == reasons
+    assert {name: why.split()[-1] for name, why in faults(results, jobs).items()} == reasons
 
 
 def test_a_file_that_no_rule_makes_is_not_known(results):
@@ -150,7 +195,7 @@ def test_a_file_that_no_rule_makes_is_not_known(results):
         f"{results / name}: not known; no rule makes it"
         for name in ("data/mine.nc", "records/gone.csv.json")
     ]
-    assert found(results, "problems")[0] == unknown
+    assert problems(results)[0] == unknown
 
 
 def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_same(
@@ -158,44 +203,41 @@ def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_
 ):
     path, cache = tmp_path / "a", tmp_path / "cache"
     path.write_text("one")
-    # One that was just written is read again.
-    for settled in (records.SETTLED, -1.0):
+    # The digest of a file that was just written is not remembered.
+    for settled in (tree.SETTLED, -1.0):
         assert not cache.exists()
-        monkeypatch.setattr(records, "SETTLED", settled)
+        monkeypatch.setattr(tree, "SETTLED", settled)
         digests = Digests(cache)
-        first = digests.of(path)
+        first = digests.digest(path)
         digests.save()
     cache.write_text(cache.read_text().replace(first, "remembered"))
-    assert Digests(cache).of(path) == "remembered"
+    assert Digests(cache).digest(path) == "remembered"
     # Another content of the same length, with the same time.
     times = path.stat()
     path.write_text("two")
     os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
-    second = Digests(cache).of(path)
+    second = Digests(cache).digest(path)
     assert second not in ("remembered", first)
     shutil.copy2(path, tmp_path / "b")
     (tmp_path / "b").replace(path)
-    assert Digests(cache).of(path) == second
+    assert Digests(cache).digest(path) == second
     cache.write_text("[" * 100)
-    assert Digests(cache).of(path) == second
+    assert Digests(cache).digest(path) == second
 
 
 @pytest.fixture
 def plan(results, monkeypatch) -> Plan:
-    """In the folder of the project."""
+    """The plan of the jobs, in the folder of the project."""
     monkeypatch.chdir(results.parent)
-    return Plan(
-        JOBS, {"all": [f"results/{PAGE}"], "everything": [f"results/{PAGE}", f"results/{OTHER}"]}
-    )
+    named = {"all": [f"results/{PAGE}"], "everything": [f"results/{PAGE}", f"results/{OTHER}"]}
+    return Plan(JOBS, named)
 
 
 def test_a_target_is_known_or_guessed(plan):
-    assert plan.wanted(["all"]) == [DATA, TABLE, PAGE] and plan.wanted([f"results/{OTHER}"]) == [
-        OTHER
-    ]
-    with pytest.raises(
-        ConfigError, match=r"target: 'al' \(did you mean 'all'\?\); allowed: a rule"
-    ):
+    assert plan.wanted(["all"]) == [DATA, TABLE, PAGE]
+    assert plan.wanted([f"results/{OTHER}"]) == [OTHER]
+    refusal = r"target: 'al' \(did you mean 'all'\?\); allowed: a rule"
+    with pytest.raises(ConfigError, match=refusal):
         plan.wanted(["al"])
 
 
@@ -216,34 +258,27 @@ def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
 def test_verification_compares_what_is_asked_for(plan, results, capsys):
     (results / OTHER).unlink()
     assert plan.verify(plan.wanted(["all"])) == 0
-    assert (
-        "3 files are as made" in (said := capsys.readouterr().out)
-        and "Not looked at: 1 files" in said
-    )
+    said = capsys.readouterr().out
+    assert "3 files are as made" in said and "Not looked at: 1 files" in said
     assert plan.verify(plan.wanted(["everything"])) == 1
     assert capsys.readouterr().out == f"results/{OTHER}: missing\n"
 
 
 def test_the_jobs_of_a_rule_are_those_of_its_wildcard():
-    of = {"level": lambda wildcards: wildcards.name * 2, "step": "study"}
+    params = {"level": lambda wildcards: wildcards.name * 2, "step": "study"}
     inputs = ["texts", lambda wildcards: [f"results/{wildcards.name}"]]
-    for name, job in zip(
-        "ab", jobs_of("run", inputs, ["results/{name}.csv"], of, {"name": "ab"}), strict=True
-    ):
-        assert job == (
-            "study",
-            ("texts", f"results/{name}"),
-            (f"results/{name}.csv",),
-            {"level": name * 2},
-        )
+    assert [*jobs_of("run", inputs, ["results/{name}.csv"], params, {"name": "ab"})] == [
+        ("study", ("texts", "results/a"), ("results/a.csv",), {"level": "aa"}),
+        ("study", ("texts", "results/b"), ("results/b.csv",), {"level": "bb"}),
+    ]
 
 
-def test_an_overlay_is_marked_value_by_value_and_digests_do_not_depend_on_the_order_of_keys():
-    assert (
-        digest_of({"a": 1, "b": [2]})
-        == digest_of({"b": [2], "a": 1})
-        != digest_of({"a": 1, "b": [3]})
-    )
+def test_a_digest_does_not_depend_on_the_order_of_keys():
+    digest = digest_of({"a": 1, "b": [2]})
+    assert digest == digest_of({"b": [2], "a": 1}) != digest_of({"a": 1, "b": [3]})
+
+
+def test_an_overlay_is_marked_value_by_value():
     shipped = {"model": {"release": "total", "friction_ratio": 5.0}, "list": [1, 2], "gone": 1}
     config = {"model": {"release": "elastic", "friction_ratio": 5.0}, "list": [1], "new": {"a": 1}}
     assert changes(shipped, config) == [
@@ -263,13 +298,10 @@ def test_sources_are_the_library_and_the_workflow(project):
 
 def test_it_holds_everything_and_names_nobody(project, config, results):
     facts = provenance(project, "", config | {"preset": "draft"}, config, results)
-    assert facts["config"]["preset"] == "draft" and [
-        entry["key"] for entry in facts["overlay"]
-    ] == ["preset"]
-    assert set(facts) == {
-        "paper", "overlay", "config", "source_digest", "lock_digest", "git", "versions", "implementation", "machine",
-        "times",
-    }  # fmt: skip
+    assert facts["config"]["preset"] == "draft"
+    assert [entry["key"] for entry in facts["overlay"]] == ["preset"]
+    names = "paper overlay config source_digest lock_digest git versions implementation machine"
+    assert set(facts) == {*names.split(), "times"}
     text = json.dumps(facts | {"config": None})
     host = socket.gethostname()
     assert len(host) < 4 or host not in text

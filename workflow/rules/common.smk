@@ -1,4 +1,4 @@
-# What the rules share: the checked configuration, and what each result comes from.
+# The checked configuration, and the files and settings that rules share.
 
 import os
 import re
@@ -11,20 +11,21 @@ from snakemake.cli import get_argument_parser
 from slippulse.claims.reading import read_entries
 from slippulse.configuration.accuracy import promised
 from slippulse.configuration.expand import run_count
+from slippulse.configuration.limits import bound_of_sweep
 from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import read_config, read_overlay
-from slippulse.configuration.limits import bound_of_sweep
 from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
-from slippulse.steps.job import Jobs, end_with
-from slippulse.steps.reach import below, declared, needs_of, sources
+from slippulse.steps.origins import below
+from slippulse.steps.processes import Jobs, end_with
+from slippulse.steps.reach import declared, needs_of, sources
 from slippulse.steps.targets import selected
 
 CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
 # With these Snakemake only looks.
 LOOKING = (
-    "archive cleanup_metadata containerize dag d3dag detailed_summary dryrun export_cwl filegraph generate_unit_tests lint"
-    " list_changes list_input_changes list_params_changes list_rules list_target_rules list_untracked print_compilation"
-    " report rulegraph summary touch unlock"
+    "archive cleanup_metadata containerize dag d3dag detailed_summary dryrun export_cwl filegraph"
+    " generate_unit_tests lint list_changes list_input_changes list_params_changes list_rules"
+    " list_target_rules list_untracked print_compilation report rulegraph summary touch unlock"
 )
 LOOKS = "verify" in CALLED.targets or any(getattr(CALLED, option) for option in LOOKING.split())
 JOBS = Jobs()
@@ -33,13 +34,13 @@ if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
 if workflow.is_main_process and not LOOKS:
     JOBS.begin()
 
-# What each figure and study is made from, as its module says: names by kind of file, keys of the configuration.
+# Inputs of each figure and study, as its module says: names by kind of file, and keys.
 NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
 try:
-    # Not by `configfile:`, which reads YAML 1.1 and names no line.
+    # `configfile:` reads YAML 1.1 and names no line.
     SHIPPED = read_overlay(f"{workflow.basedir}/config/config.yaml")
     OVERLAYS = [read_overlay(path) for path in workflow.overwrite_configfiles]
-    # A job on another node starts Snakemake anew, with scenes that were checked here.
+    # A job on another node starts Snakemake again; its scenes were checked here.
     CONFIG = read_config(
         SHIPPED, OVERLAYS, workflow.config_settings.config, workflow.is_main_process
     )
@@ -57,32 +58,34 @@ ACCURACY = accuracy_of(CONFIG)
 # A scene is a simulation of one run that records everything.
 SCENES, SIMULATIONS = config.get("scenes", {}), all_simulations(CONFIG)
 TITLES = {name: scene["title"] for name, scene in SCENES.items()}
-# What an overlay adds is made with the rest.
+# Simulations and scenes that an overlay adds; they are made with the rest.
 OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["simulations"]]
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 
 def run_step(rule, wildcards, input, output, params, threads):
-    """Run the step of a rule in another process, on plain values, for which that need not load Snakemake."""
-    plain = lambda named: {key: it if isinstance(it, str) else [*it] for key, it in named.items()}
+    """Run the step of a rule in another process, which need not load Snakemake."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
     log = f"results/logs/{'/'.join([rule, *wildcards])}.log"
     origin, name = PLAN.origins[below(output[0])], " ".join([rule, *wildcards])
     JOBS.run(origin, name, plain(input), plain(output), settings, log)
 
 
-FIGURES, TOPICS = [name for name in NEEDS if name.startswith("fig")], declared(
-    "steps.predict", "TOPICS"
-)
+def plain(named):
+    """Files of a rule by name, as builtins."""
+    return {key: str(file) if isinstance(file, str) else [*file] for key, file in named.items()}
+
+
+FIGURES = [name for name in NEEDS if name.startswith("fig")]
+TOPICS = declared("steps.predict", "TOPICS")
 SWEEPS = {
     f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS
 }
-# What is read of predictions: topics by simulation.
-CLAIM_PREDICTED, REPORT_NEEDS = declared("claims.paper", "PREDICTED"), declared(
-    "steps.write_report", "NEEDS"
-)
+CLAIM_PREDICTED = declared("claims.paper", "PREDICTED")
+REPORT_NEEDS = declared("steps.write_report", "NEEDS")
+# Predictions that are read: topics by simulation.
 READ = [CLAIM_PREDICTED, *(needs.get("predicted", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]
-# Files by kind, of a name; those of lists are named by their whole path.
+# Paths by kind of file, for a name; a list is named by its path.
 FILES = {
     "data": "results/data/{name}.nc",
     "measured": "results/measurements/{name}.csv",
@@ -96,7 +99,7 @@ FILES = {
     "animations": "results/scenes/{name}.gif",
     "kernels": "results/kernels/{name}.txt",
 }
-# The schemes that have kernels, and where: only what reaches them waits for them.
+# The kernels of each scheme: a job whose modules reach them waits until they are compiled.
 KERNELS = {
     "localised": "src/slippulse/solver/taylor.py",
     "fixed_step": "src/slippulse/solver/fixed_step.py",
@@ -113,31 +116,32 @@ def inputs_of(needs):
     return {kind: made(kind, names) for kind, names in needs.items() if kind in FILES}
 
 
-# Snakemake asks for the parameters of every waiting job again whenever a job has ended: they are found once.
+# Snakemake asks for the params of all waiting jobs whenever a job has ended.
 @cache
 def settings_of(job):
-    """All that the jobs on a simulation, or on a chunk of it (NAME/3-of-8), take from the configuration."""
+    """Settings of the jobs on a simulation, or on a chunk of it, such as NAME/3-of-8."""
     name, _, chunk = job.partition("/")
     simulation = SIMULATIONS[name]
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
     kind, scheme = "scenes" if name in SCENES else "simulations", sweep["scheme"]
     by_scheme = "" if scheme == "localised" else f"_{scheme}"
-    # Where it is asked for: jobs elsewhere check no scenes.
+    # Only a rule that asks for it computes the bound: jobs on other nodes check no scenes.
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
     share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
     return {
-        # With the spacing of each run where an accuracy is asked for.
+        # Where an accuracy is asked for, the sweep has the spacing of each run.
         "sweep": promised(sweep),
-        # On the coarser lattices of the preset, by factor of the spacing.
+        # The sweep on the coarser lattices of the preset, by factor of the spacing.
         "sweeps": {
-            float(by): promised({**sweep, "coarser": float(by)}) for by in ACCURACY["coarser"]
+            factor: promised({**sweep, "coarser": factor})
+            for factor in map(float, ACCURACY["coarser"])
         },
         "measure": {**config["measure"], "share": share},
-        # What is predicted: as far as it is read; all of what an overlay adds.
-        "topics": sorted({topic for read in READ for topic in read.get(name, ())} or TOPICS),
-        # By scheme: an edit of the theory re-runs exact solutions alone, which wait for no kernels.
+        # Of a shipped simulation the topics that are read; of an added one all.
+        "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
+        # Each scheme has its steps: an edit of the theory re-runs exact solutions alone.
         "simulate": f"simulate{by_scheme}",
         "study_grid": f"study_grid{by_scheme}",
         "kernels": made("kernels", {scheme} & {*KERNELS}),
@@ -149,16 +153,16 @@ def settings_of(job):
     }
 
 
-# Sweeps that several jobs share. How many is in the name of each chunk: files left by another number are never taken.
+# Chunks of the sweeps that are divided. The name has their number: files of another are not taken.
 CHUNKS = {
     name: [f"{name}/{number}-of-{sweep.chunks}" for number in range(1, sweep.chunks + 1)]
     for name, sweep in SIMULATIONS.items()
     if sweep.chunks > 1
 }
-# What is put together from chunks, below results/: its kind, and its simulation.
+# Files that are joined from chunks, below results/, each with its kind and its simulation.
 KINDS = ("data", "measured", "predicted", "uncertainties", "coarser")
 JOINED = {below(*made(kind, [name])): (kind, name) for name in CHUNKS for kind in KINDS}
-# What each wildcard stands for; a simulation is what one job works at: one without chunks, or a chunk of another.
+# Values of the wildcards. The simulation of one job is one without chunks, or a chunk of another.
 ONE_JOB = [job for name in SIMULATIONS for job in CHUNKS.get(name, [name])]
 VALUES = {"simulation": ONE_JOB, "joined": [*JOINED], "scene": [*SCENES], "scheme": [*KERNELS]}
 
@@ -167,11 +171,11 @@ wildcard_constraints:
     **{name: "|".join(map(re.escape, values)) or "(?!)" for name, values in VALUES.items()},
 
 
-def of(key):
-    """A setting of a rule's simulation, once its wildcards are known."""
+def setting(key):
+    """A setting of the simulation of a rule, as a function of its wildcards."""
     return lambda wildcards: settings_of(wildcards.simulation)[key]
 
 
-def of_joined(function):
-    """What a function of kind and simulation says of what is put together, once the wildcards of its rule are known."""
+def joined(function):
+    """A function of the kind and simulation of a joined file, as one of its wildcards."""
     return lambda wildcards: function(*JOINED[wildcards.joined])

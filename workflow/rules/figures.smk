@@ -1,17 +1,16 @@
 # Tables of studies; figures of the paper, of studies and of sweeps; single scenes by name.
 
 for study, needs in STUDY_NEEDS.items():
-    # The resolved simulations that it names.
+    # The resolved simulations that the study names.
     swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
+    reached = [scheme for scheme in KERNELS if KERNELS[scheme] in sources(f"studies.{study}")]
 
     rule:
         name:
             f"study_of_{study}"
         input:
             **inputs_of(needs),
-            kernels=made(
-                "kernels", [of for of in KERNELS if KERNELS[of] in sources(f"studies.{study}")]
-            ),
+            kernels=made("kernels", reached),
         output:
             table=f"results/studies/{study}.csv",
         priority: 2
@@ -27,7 +26,7 @@ for study, needs in STUDY_NEEDS.items():
             run_step(rule, wildcards, input, output, params, threads)
 
 
-# One rule a figure, all alike: a table of what is drawn (CSV), and the figure drawn from that table alone.
+# One rule a figure: it writes a table (CSV), and draws the figure from that table alone.
 for figure, needs in (NEEDS | SWEEPS).items():
     category = "Figures of the paper" if figure in FIGURES else "Studies and sweeps"
 
@@ -42,7 +41,7 @@ for figure, needs in (NEEDS | SWEEPS).items():
             ),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
-        # Before scenes and the explorer, which run beside the report: that waits for the figures alone.
+        # The report waits for the figures: they go before scenes and the explorer.
         priority: 1
         params:
             step="draw_figure",

@@ -1,4 +1,4 @@
-# What is read: claims, explorer, report, what the results were made from, and the page that leads to it all.
+# Files to read: claims, explorer, report, provenance, and the page that leads to all.
 
 from slippulse.data.alterations import changes
 from slippulse.data.provenance import source_files
@@ -7,7 +7,7 @@ CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 CLAIM_STUDIES = "derivations open_choices published_figure published_scheme rate_dependence".split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [
-    # The claims first, so that they come first in Snakemake's own report too.
+    # The claims are first here, and so in Snakemake's report.
     *expand(
         "results/{name}", name=("claims.html", "claims.json", "findings.json", "explorer.html")
     ),
@@ -20,7 +20,7 @@ RESULTS = [
     *expand("results/manuscript/{document}.{ending}", document=DOCUMENTS, ending=("html", "pdf")),
 ]
 EVERYTHING = [*RESULTS, "results/provenance.json", "results/index.html"]
-# Without a name a draft makes the figures of the paper and what an overlay adds.
+# By default, a draft makes the figures of the paper and what an overlay adds.
 DRAFT = (
     made("figures", [*FIGURES, *SWEEPS])
     + made("measured", OWN_SIMULATIONS)
@@ -31,7 +31,7 @@ TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statem
 
 rule write_claims:
     input:
-        # Of front speeds at one level, without a grid study.
+        # The front speeds are those of one level, without a grid study.
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),
@@ -127,7 +127,7 @@ rule write_index:
     input:
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
-        # Made from all else that it shows, or leads to.
+        # The provenance is made from all other files that the page shows or leads to.
         provenance="results/provenance.json",
     output:
         html="results/index.html",

@@ -1,10 +1,10 @@
-# Of each simulation its data, measured numbers, predictions and uncertainties; with `chunks` of each chunk, NAME/3-of-8,
-# whose files are then put together, and stay: to measure anew, or to make a lost chunk again, needs them.
+# Data, measured numbers, predictions and uncertainties of each simulation, or of each of its
+# chunks, as NAME/3-of-8. Files of chunks are joined, and stay for another measurement.
 
 
 BOUNDS = {
-    "runtime": lambda wildcards, attempt: attempt * of("bound")(wildcards)().minutes,
-    "mem_mb": lambda wildcards, attempt: attempt * of("bound")(wildcards)().megabytes,
+    "runtime": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().minutes,
+    "mem_mb": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().megabytes,
 }
 
 
@@ -20,17 +20,17 @@ rule compile_kernels:
 
 rule simulate:
     input:
-        kernels=of("kernels"),
+        kernels=setting("kernels"),
     output:
         data="results/data/{simulation}.nc",
-    # Before what only draws, as all that the claims wait for: the report waits for them.
+    # The report waits for the claims: what these wait for goes before what only draws.
     priority: 2
-    threads: lambda wildcards: of("bound")(wildcards)().threads
+    threads: lambda wildcards: setting("bound")(wildcards)().threads
     resources:
         **BOUNDS,
     params:
-        step=of("simulate"),
-        sweep=of("sweep"),
+        step=setting("simulate"),
+        sweep=setting("sweep"),
     message:
         "Simulating {wildcards.simulation}"
     run:
@@ -44,7 +44,7 @@ rule measure:
         measured="results/measurements/{simulation}.csv",
     priority: 2
     params:
-        measure=of("measure"),
+        measure=setting("measure"),
     message:
         "Measuring {wildcards.simulation}"
     run:
@@ -56,9 +56,9 @@ rule predict:
         predicted="results/predictions/{simulation}.csv",
     priority: 2
     params:
-        sweep=of("sweep"),
-        topics=of("topics"),
-        share=lambda wildcards: of("measure")(wildcards)["share"],
+        sweep=setting("sweep"),
+        topics=setting("topics"),
+        share=lambda wildcards: setting("measure")(wildcards)["share"],
         still=config["measure"]["still"],
     message:
         "Predicting {wildcards.simulation}"
@@ -68,7 +68,7 @@ rule predict:
 
 rule study_grid:
     input:
-        kernels=of("kernels"),
+        kernels=setting("kernels"),
         finest="results/measurements/{simulation}.csv",
     output:
         uncertainties="results/uncertainties/{simulation}.csv",
@@ -77,9 +77,9 @@ rule study_grid:
     resources:
         **BOUNDS,
     params:
-        step=of("study_grid"),
-        sweeps=of("sweeps"),
-        measure=of("measure"),
+        step=setting("study_grid"),
+        sweeps=setting("sweeps"),
+        measure=setting("measure"),
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     run:
@@ -88,19 +88,21 @@ rule study_grid:
 
 rule join:
     input:
-        chunks=of_joined(lambda kind, name: made(kind, CHUNKS[name])),
-        finest=of_joined(lambda kind, name: made("measured", [name] * (kind == "uncertainties"))),
+        chunks=joined(lambda kind, name: made(kind, CHUNKS[name])),
+        finest=joined(
+            lambda kind, name: made("measured", [name] if kind == "uncertainties" else [])
+        ),
     output:
         joined="results/{joined}",
     priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
-        # Measured over a million runs: 1.2 kB a run, and as much again for other sweeps.
+        # A million runs took 1.2 kB each; other sweeps may take twice as much.
         mem_mb=lambda wildcards, attempt: attempt
         * (1000 + settings_of(JOINED[wildcards.joined][1])["runs"] // 400),
     params:
-        kind=of_joined(lambda kind, name: kind),
-        record=of_joined(lambda kind, name: SIMULATIONS[name].record),
+        kind=joined(lambda kind, name: kind),
+        record=joined(lambda kind, name: SIMULATIONS[name].record),
     message:
         "Putting {wildcards.joined} together"
     run:

@@ -1,20 +1,19 @@
-# Included last: what is asked for is known, affordable, and made from nothing that is not what its record says.
+# Included last: checks the targets and their cost, and removes results that are faulty.
 
 import shlex
 import threading
 
 from slippulse.configuration.refusals import format_problems
 from slippulse.data.files import write_json
-from slippulse.data.records import Tree
-from slippulse.steps.reach import jobs_of
-from slippulse.steps.targets import Plan, say_faulty
+from slippulse.data.tree import Tree
+from slippulse.steps.origins import jobs_of
+from slippulse.steps.targets import Plan, write_faulty
 
-OPTIONS = (
-    ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles)] if OVERLAYS else []
-)
-OPTIONS += ["--config", *CALLED.config] if CALLED.config else []
+OPTIONS = ["--config", *CALLED.config] if CALLED.config else []
+if OVERLAYS:
+    OPTIONS = ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles), *OPTIONS]
 RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
-# What may be asked for by name: rules without wildcards, and to `verify` what a run without a name makes.
+# Targets by name: rules without wildcards; `verify` looks at what a run makes by default.
 NAMED = {
     name: rule.output or rule.input
     for name, rule in RULES.items()
@@ -28,7 +27,7 @@ PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
 
 
 def begin():
-    """Before anything is planned: refuse, or remove what is to be made anew."""
+    """Refuse the run, or remove what it is to make anew, before Snakemake plans it."""
     targets = sorted(CALLED.targets) or ["all"]
     wanted = PLAN.wanted(targets)
     if "verify" in targets:
@@ -43,36 +42,33 @@ def begin():
     if LOOKS:
         return look(PLAN.tree.to_remove(wanted))
     held = PLAN.begin(wanted, Path(".snakemake"))
-    # `make verify` and the last line of a run ask for it.
+    # `make verify` and the last line of a run read how the run was called.
     called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
     write_json(called, "results/records/.call")
     return held
 
 
 def look(faulty):
-    """Say what would be removed; a dry run begins anew with these files forced, since they are still there."""
+    """Write what a run would remove; a dry run starts again with these files forced."""
     if "SLIPPULSE_PLANNED" not in os.environ:
-        say_faulty(faulty, "; would be removed, and made anew where needed.")
+        write_faulty(faulty, "; would be removed, and made anew where needed.")
         if faulty and CALLED.dryrun:
-            at = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
+            end = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
             forced = ["--forcerun", *(f"results/{name}" for name in faulty)]
-            called = [sys.executable, "-m", "snakemake", *sys.argv[1:at], *forced, *sys.argv[at:]]
+            called = [sys.executable, "-m", "snakemake", *sys.argv[1:end], *forced, *sys.argv[end:]]
             os.execve(sys.executable, called, os.environ | {"SLIPPULSE_PLANNED": "yes"})
 
 
 def end():
-    """One line on results that this run has left behind, with the command that renews them."""
-    given = [
-        f"{name}={os.environ[name]}"
-        for name in ("PRESET", "OVERLAY", "ALLOW_LARGE")
-        if os.getenv(name)
-    ]
+    """Write one line on results that this run leaves outdated, with the command to renew them."""
+    names = [name for name in ("PRESET", "OVERLAY", "ALLOW_LARGE") if os.getenv(name)]
+    given = [f"{name}={os.environ[name]}" for name in names]
     how = ["--profile", *CALLED.profile] if CALLED.profile else ["--cores", str(CALLED.cores or 1)]
     renewal = ["snakemake", *how, *OPTIONS, "--", "everything"]
     if "MAKELEVEL" in os.environ:
         renewal = ["make", "replicate", *given, "TARGET=everything"]
-    say_faulty(Tree("results", PLAN.origins).outdated(), f". Renew them: {shlex.join(renewal)}")
-    # Timers of Snakemake, which would look for jobs again: its process would last until each is due.
+    write_faulty(Tree("results", PLAN.origins).outdated(), f". Renew them: {shlex.join(renewal)}")
+    # Snakemake's timers, which look for jobs, would keep its process until each is due.
     for thread in threading.enumerate():
         if isinstance(thread, threading.Timer):
             thread.cancel()

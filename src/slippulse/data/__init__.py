@@ -1,1 +1,1 @@
-"""Files, and what they are: writing and reading, chunks of a sweep, checksums, provenance."""
+"""Files of results: how they are written and read, joined from chunks, digested and recorded."""

@@ -1,14 +1,14 @@
-"""What an overlay changed."""
+"""Values that an overlay changed."""
 
 from collections.abc import Mapping
 
 
 def changes(shipped: object, config: object, key: str = "") -> list[dict]:
-    """What an overlay changed below a key: one entry a value, shipped and here; None where one has nothing."""
-    if isinstance(shipped, Mapping) and isinstance(config, Mapping):
-        return [
-            change
-            for name in dict.fromkeys([*shipped, *config])
-            for change in changes(shipped.get(name), config.get(name), f"{key}.{name}".lstrip("."))
-        ]
-    return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
+    """List the values that differ below a key, as shipped and as here; an absent one is None."""
+    if not (isinstance(shipped, Mapping) and isinstance(config, Mapping)):
+        return [] if shipped == config else [{"key": key, "shipped": shipped, "here": config}]
+    changed = []
+    for name in dict.fromkeys([*shipped, *config]):
+        dotted = f"{key}.{name}" if key else str(name)
+        changed += changes(shipped.get(name), config.get(name), dotted)
+    return changed

@@ -1,22 +1,22 @@
-"""Which runs of a sweep are in which of its chunks: a rule that needs the number of chunks and nothing else.
+"""Division of the runs of a sweep into chunks: a rule that needs only the number of chunks.
 
-Each round of as many runs as there are chunks goes to as many different chunks: neighbours, which cost
-about the same, are spread. Who is first changes from round to round at random, always in the same way; were it
-always the same, a list of as many values as there are chunks would give each chunk a single value of it.
+Each chunk gets one run a round: neighbours, which cost about the same, go to different chunks. The
+first chunk changes at random from round to round, always in the same way: else a list of as many
+values as there are chunks would give each chunk one value of it.
 """
 
 import random
 from collections.abc import Iterator
 
 
-def runs_of(number: int, chunks: int, runs: int) -> Iterator[int]:
-    """The runs of one chunk, from 0 and in the order of the sweep, by its number from 1 and how many there are."""
+def runs_of(chunk: int, chunks: int, runs: int) -> Iterator[int]:
+    """Yield the numbers of the runs, from 0, in a chunk of a sweep, numbered from 1."""
     for turn, start in enumerate(range(0, runs, chunks)):
-        run = start + (number - 1 - _first(turn, chunks)) % chunks
+        run = start + (chunk - 1 - _first(turn, chunks)) % chunks
         if run < runs:
             yield run
 
 
 def _first(turn: int, chunks: int) -> int:
-    # Of its draws Python promises this one to be the same in every version.
+    # Python promises that `random` draws the same numbers in every version; it promises no more.
     return int(chunks * random.Random(turn).random())

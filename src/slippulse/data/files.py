@@ -1,11 +1,11 @@
-"""Files written whole or not at all, and by which configuration."""
+"""Writing of files, whole or not at all."""
 
 import json
 import os
 from collections.abc import Callable
 from pathlib import Path
 
-# Of a job: digest of the configuration behind all that it writes.
+# The environment variable in which a job holds the digest of its configuration.
 CONFIGURATION = "SLIPPULSE_CONFIGURATION"
 
 
@@ -14,18 +14,17 @@ class UnreadableFile(ValueError):
 
     def __init__(self, path: str | Path, reason: object) -> None:
         text = " ".join(str(reason).split())[:120]
-        super().__init__(
-            f"{path}: cannot be read ({text}); delete it and run again, and it is made anew"
-        )
+        remedy = "delete it and run again, and it is made anew"
+        super().__init__(f"{path}: cannot be read ({text}); {remedy}")
 
 
 def configuration() -> str:
-    """Digest of the configuration behind what is being written; empty outside a job of the workflow."""
+    """Digest of the configuration behind the files of this job; empty outside the workflow."""
     return os.environ.get(CONFIGURATION, "")
 
 
 def write_whole(path: str | Path, write: Callable[[Path], object]) -> None:
-    """Let ``write`` fill a file beside ``path`` and move it there when it is complete."""
+    """Let ``write`` fill a file beside ``path``, and move it there when it is complete."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.stem}-{os.urandom(4).hex()}{path.suffix}")
@@ -42,5 +41,5 @@ def write_text(text: str, path: str | Path) -> None:
 
 
 def write_json(value: object, path: str | Path) -> None:
-    """Write builtins as JSON, to be read by people too."""
+    """Write builtins as JSON that people can read."""
     write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n", path)

@@ -1,4 +1,4 @@
-"""The chunks of a sweep put together again: the bytes are those of the sweep in one piece."""
+"""Joining of the chunks of a sweep: the joined file has the bytes of the sweep in one piece."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -8,7 +8,7 @@ import pandas as pd
 import xarray as xr
 
 from .chunks import runs_of
-from .points import runs_in
+from .points import Recorded, runs_in
 from .store import load_dataset
 from .sweeps import combine
 from .tables import load_table, save_table
@@ -24,69 +24,65 @@ class ChunksDiffer(ValueError):
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
-    """All runs in the order of the sweep, from the data of its chunks in the order of their numbers."""
+    """Join the data of the chunks, in the order of their numbers, to one Dataset of the sweep."""
     chunks = [load_dataset(path) for path in paths]
-    of_chunks = zip(chunks, _runs(paths, [chunk.sizes["point"] for chunk in chunks]), strict=True)
-    found = {
-        number: run
-        for chunk, own in of_chunks
-        for number, run in zip(own, runs_in(chunk), strict=True)
-    }
-    return described(combine([found[number] for number in sorted(found)], record))
+    numbers = _run_numbers(paths, [chunk.sizes["point"] for chunk in chunks])
+    runs: dict[int, Recorded] = {}
+    for chunk, chunk_numbers in zip(chunks, numbers, strict=True):
+        runs.update(zip(chunk_numbers, runs_in(chunk), strict=True))
+    return described(combine([runs[number] for number in sorted(runs)], record))
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[str] = ()) -> None:
-    """Put tables of one row a run together, or several below each other, which the columns ``last`` tell apart."""
+    """Join tables of one row a run, or of blocks of them that the columns ``last`` tell apart."""
     chunks = _texts(paths)
     keys = [name for name in last if name in chunks[0]]
+    # Without keys all rows are in one block.
     blocks = [chunk.groupby(keys or (lambda row: 0), sort=False).ngroup() for chunk in chunks]
-    if len({block.max() for block in blocks}) > 1:
-        raise ChunksDiffer(paths)
-    runs = _runs(paths, [int((block == 0).sum()) for block in blocks])
+    runs = _run_numbers(paths, [int((block == 0).sum()) for block in blocks])
+    count = blocks[0].max() + 1
     for chunk, block, numbers in zip(chunks, blocks, runs, strict=True):
-        if len(chunk) != len(numbers) * (block.max() + 1):
+        if block.max() + 1 != count or len(chunk) != len(numbers) * count:
             raise ChunksDiffer(paths)
-        chunk.index = pd.MultiIndex.from_arrays([block, np.tile(numbers, block.max() + 1)])
+        chunk.index = pd.MultiIndex.from_arrays([block, np.tile(numbers, count)])
+    # The chunk with the first run says the order of the columns.
     ordered = sorted(zip(runs, chunks, strict=True), key=lambda pair: pair[0][0])
     table = pd.concat([chunk for _, chunk in ordered]).sort_index().fillna("")
-    columns = [
-        *(name for name in table if name not in last),
-        *(name for name in last if name in table),
-    ]
-    save_table(table[columns], joined)
+    save_table(table[[*table.columns.drop(keys), *keys]], joined)
 
 
 def join_grid_studies(
     paths: Sequence[str], finest: str, keys: Sequence[str], quantities: Callable, joined: str
 ) -> None:
-    """Put the grid studies of the chunks of a sweep together; ``finest`` is the joined table of measured numbers.
+    """Join the grid studies of the chunks of a sweep whose joined measurements are ``finest``.
 
     keys : columns that name a run
-    quantities : names what the grid study of a table has a row for; that of a chunk may have more, or fewer
+    quantities : function of table and keys: the rows of its study; a chunk may have other rows
     """
-    (named,) = _texts([finest])
+    (measured,) = _texts([finest])
     chunks = _texts(paths)
-    runs = _runs(paths, [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks])
-    if sum(map(len, runs)) != len(named):
+    runs = _run_numbers(paths, [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks])
+    if sum(map(len, runs)) != len(measured):
         raise ChunksDiffer(paths)
-    for chunk, own in zip(chunks, runs, strict=True):
-        chunk["point"] = np.array(own)[chunk["point"].astype(int)]
+    for chunk, numbers in zip(chunks, runs, strict=True):
+        chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
-    of_each = quantities(load_table(finest), keys)
-    rows = pd.MultiIndex.from_product([range(len(named)), of_each], names=study.index.names)
+    names = quantities(load_table(finest), keys)
+    rows = pd.MultiIndex.from_product([range(len(measured)), names], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
-    of_runs = named[list(keys)].iloc[table["point"]].reset_index(drop=True)
-    save_table(pd.concat([table[["point"]], of_runs, table.drop(columns="point")], axis=1), joined)
+    run_names = measured[list(keys)].iloc[table["point"]].reset_index(drop=True)
+    columns = [table[["point"]], run_names, table.drop(columns="point")]
+    save_table(pd.concat(columns, axis=1), joined)
 
 
 def _texts(paths: Sequence[str | Path]) -> list[pd.DataFrame]:
-    # A column of whole numbers in one chunk may be one of fractions in the next.
+    """Read tables as text: whole numbers in one chunk may be fractions in the next."""
     return [pd.read_csv(path, dtype=str, keep_default_na=False) for path in paths]
 
 
-def _runs(paths: Sequence[str | Path], counts: Sequence[int]) -> list[list[int]]:
-    """The runs of each chunk, which has as many as counted."""
-    runs = [[*runs_of(number, len(counts), sum(counts))] for number in range(1, len(counts) + 1)]
-    if [len(own) for own in runs] != [*counts]:
+def _run_numbers(paths: Sequence[str | Path], counts: Sequence[int]) -> list[list[int]]:
+    """Numbers of the runs of each chunk, whose counts must be those of the chunks of one sweep."""
+    runs = [[*runs_of(chunk, len(counts), sum(counts))] for chunk in range(1, len(counts) + 1)]
+    if [len(numbers) for numbers in runs] != [*counts]:
         raise ChunksDiffer(paths)
     return runs

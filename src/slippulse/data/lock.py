@@ -1,9 +1,9 @@
 """A lock that the system frees when its holder ends, however that happens.
 
-    python src/slippulse/data/lock.py FILE COMMAND...     runs a command when nobody else holds the lock
-    python src/slippulse/data/lock.py FILE                fails where somebody holds it
+    python src/slippulse/data/lock.py FILE COMMAND...     waits for the lock, then runs a command
+    python src/slippulse/data/lock.py FILE                fails where somebody holds the lock
 
-Needs nothing but Python, since the set-up of the environment uses it too.
+The set-up of the environment uses it too: it needs nothing but Python.
 """
 
 import errno
@@ -15,7 +15,7 @@ from typing import TextIO
 
 
 def take(path: str | Path, wait: bool = False) -> TextIO | None:
-    """Hold a lock for as long as the file that this returns is open; None where another process holds it, or wait."""
+    """Hold a lock until the returned file is closed; wait for it, or return None if it is held."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     file = open(path, "a", encoding="utf-8")  # noqa: SIM115
     try:
@@ -29,7 +29,7 @@ def take(path: str | Path, wait: bool = False) -> TextIO | None:
 
 
 def main(arguments: list[str]) -> int:
-    """Wait for a lock, and run a command while it is held; returns the exit code."""
+    """Run the module as a command, and return its exit code."""
     path, *command = arguments
     held = take(path)
     if not command:

@@ -1,17 +1,17 @@
-"""How a number is written, in the report, on the pages and in figures: plain text with Unicode signs."""
+"""Numbers as plain text with Unicode signs, for the report, the pages and the figures."""
 
 import math
 
-# Smaller or larger than this, a number is written with a power of ten.
+# A number that is smaller or larger is written with a power of ten.
 SMALL, LARGE = 1e-3, 1e5
-# Significant digits: the most without an uncertainty, and with one.
+# The largest number of significant digits, without an uncertainty and with one.
 MOST, MOST_WITH_UNCERTAINTY = 5, 6
 MISSING = "not measured"
 SUPERSCRIPT = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float | None, digits: int = 3) -> str:
-    """A number with some significant digits, at most `MOST`; a whole number keeps all its digits."""
+    """Write a number with at most `MOST` significant digits; a whole number keeps all digits."""
     if value is None or math.isnan(value):
         return MISSING
     if math.isinf(value):
@@ -23,32 +23,33 @@ def number(value: float | None, digits: int = 3) -> str:
         return _power_of_ten(f"{value:.{digits - 1}e}")
     if float(value).is_integer():
         return _minus(f"{value:.0f}")
-    # Of the rounded value, so that 0.9996 with three digits is 1.00.
+    # The rounded value has the magnitude that counts: 0.9996 with three digits is 1.00.
     magnitude = int(f"{value:.{digits - 1}e}".partition("e")[2])
     return _minus(f"{value:.{max(0, digits - 1 - magnitude)}f}")
 
 
 def setting(value: float) -> str:
-    """A number of the configuration, all its digits and no more."""
+    """Write a number of the configuration with all its digits and no more."""
     return _power_of_ten(f"{value:g}")
 
 
 def rounded(value: float | None, digits: int = 4) -> str:
-    """A number to some significant digits, without zeros at its end."""
+    """Write a number to some significant digits, without zeros at its end."""
     return MISSING if value is None or math.isnan(value) else setting(float(f"{value:.{digits}g}"))
 
 
 def percent(value: float | None, digits: int = 2) -> str:
-    """A fraction as a percentage, or as it is where a percentage would need a power of ten."""
+    """Write a fraction as a percentage, or as it is where that would need a power of ten."""
     if value is None or math.isnan(value) or 0.0 < 100.0 * abs(value) < SMALL:
         return number(value, digits)
     return f"{number(100.0 * value, digits)} %"
 
 
 def with_uncertainty(value: float | None, uncertainty: float | None, unknown: str = "") -> str:
-    """A value with its uncertainty in the last digits, as in 1.476(13), rounded as the Particle Data Group does.
+    """Write a value with the uncertainty of its last digits, as in 1.476(13).
 
-    Of at most `MOST_WITH_UNCERTAINTY` digits, with that rounded up; ``unknown`` follows one without an uncertainty.
+    Both are rounded as the Particle Data Group does, and a smaller uncertainty up to digit number
+    `MOST_WITH_UNCERTAINTY`. ``unknown`` follows a value without an uncertainty.
     """
     if value is None or not math.isfinite(value) or uncertainty == 0.0:
         return number(value, MOST)
@@ -56,28 +57,28 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
         return number(value, MOST) + unknown
     from uncertainties import ufloat
 
-    last = (
-        10.0 ** (math.floor(math.log10(abs(value))) + 1 - MOST_WITH_UNCERTAINTY) if value else 0.0
-    )
-    if abs(uncertainty) < last:
-        return _minus(f"{ufloat(value, last):.1uSP}")
+    if value:
+        magnitude = math.floor(math.log10(abs(value)))
+        last_digit = 10.0 ** (magnitude + 1 - MOST_WITH_UNCERTAINTY)
+        if abs(uncertainty) < last_digit:
+            return _minus(f"{ufloat(value, last_digit):.1uSP}")
     return _minus(f"{ufloat(value, abs(uncertainty)):SP}")
 
 
 def short(value: object, longest: int = 80) -> str:
-    """Any value of the configuration as text of limited length; an absent one as a dash."""
+    """Write any value of the configuration in limited length; an absent one is a dash."""
     text = "\N{EN DASH}" if value is None else str(value)
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
-# What texts and templates may write a value with.
+# The filters by which texts and templates write a value.
 FILTERS = {
     write.__name__: write for write in (number, percent, rounded, setting, short, with_uncertainty)
 }
 
 
 def _power_of_ten(text: str) -> str:
-    """A number that Python may have written as 1.5e-05, with a true power of ten."""
+    """Give a number that Python may have written as 1.5e-05 a true power of ten."""
     mantissa, _, exponent = text.partition("e")
     if not exponent:
         return _minus(text)
@@ -86,5 +87,5 @@ def _power_of_ten(text: str) -> str:
 
 
 def _minus(text: str) -> str:
-    """A true minus sign."""
+    """Replace hyphens by true minus signs."""
     return text.replace("-", "\N{MINUS SIGN}")

@@ -1,4 +1,4 @@
-"""Markdown with expressions in double braces: jinja2 templates in which a number that is missing reads so."""
+"""Markdown with expressions in double braces: jinja2 templates that write numbers."""
 
 from collections.abc import Mapping
 from numbers import Real
@@ -10,7 +10,7 @@ from .numerals import FILTERS, number
 
 
 class Prose(Environment):
-    """Where the expressions of a text are evaluated: an unknown name is an error, and what belongs to None is None."""
+    """The rules of the expressions: an unknown name is an error, an attribute of None is None."""
 
     def __init__(self) -> None:
         super().__init__(undefined=StrictUndefined, finalize=_text)
@@ -24,7 +24,7 @@ class Prose(Environment):
 
 
 def _text(value: object) -> object:
-    """A number without a filter has three significant digits."""
+    """Write a number without a filter with three significant digits."""
     if isinstance(value, Real):
         return number(float(value))
     return number(None) if value is None else value
@@ -34,7 +34,7 @@ PROSE = Prose()
 
 
 def fill(text: str, names: Mapping[str, object]) -> str:
-    """Markdown with each ``{{ expression }}`` replaced by its value; a ValueError has the line of one that fails."""
+    """Evaluate each ``{{ expression }}`` of a text; a ValueError has the line of one that fails."""
     try:
         return PROSE.from_string(text).render(names)
     except (TemplateError, ValueError, TypeError, ArithmeticError, LookupError) as error:
@@ -42,9 +42,8 @@ def fill(text: str, names: Mapping[str, object]) -> str:
 
 
 def _line(text: str, error: Exception) -> str:
-    """The line of a template at which rendering failed."""
-    numbers = [
-        entry.lineno for entry in extract_tb(error.__traceback__) if entry.filename == "<template>"
-    ]
+    """Find the line of a template at which rendering failed."""
+    frames = extract_tb(error.__traceback__)
+    numbers = [frame.lineno for frame in frames if frame.filename == "<template>"]
     last = (numbers[-1] if numbers else getattr(error, "lineno", None)) or 1
     return " ".join(text.splitlines()[last - 1].split())[:100]

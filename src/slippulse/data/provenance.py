@@ -1,4 +1,4 @@
-"""Who made what from what: the one file of a run that holds times, and the manifest of everything it made."""
+"""Provenance of the results, in the only file that holds times; checksums and manifest."""
 
 import os
 import platform
@@ -6,14 +6,15 @@ import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from functools import partial
 from importlib.metadata import version
-from itertools import chain
 from pathlib import Path
 
 import yaml
 
 from .alterations import changes
-from .records import file_digest, read_records
+from .records import FOLDER, file_digest, read_record
 from .versions import PACKAGES
 
 PAPER = {
@@ -25,33 +26,29 @@ PAPER = {
 
 
 def source_files(root: str | Path) -> list[Path]:
-    """Everything that a result may depend on besides the configuration: library, workflow, report."""
-    found = chain(*(Path(root, folder).rglob("*") for folder in ("src", "workflow", "manuscript")))
-    below = [path for path in found if path.is_file() and "__pycache__" not in path.parts]
-    return [Path(root, "Snakefile"), *below]
+    """List all files that a result may depend on besides the configuration."""
+    files = [Path(root, "Snakefile")]
+    for folder in ("src", "workflow", "manuscript"):
+        paths = Path(root, folder).rglob("*")
+        files += [path for path in paths if path.is_file() and "__pycache__" not in path.parts]
+    return files
 
 
 def git_state(root: str | Path) -> dict | None:
-    """Commit and whether files differ from it; None outside a repository or without git."""
-
-    def ask(*arguments: str) -> str:
-        command = ["git", "-C", str(root), *arguments]
-        return subprocess.run(
-            command, capture_output=True, text=True, timeout=30, check=True
-        ).stdout.rstrip()
-
+    """Commit, and files that differ from it; None outside a repository or without git."""
+    git = partial(
+        subprocess.check_output, stderr=subprocess.DEVNULL, text=True, timeout=30, cwd=root
+    )
     try:
-        changed = ask("status", "--porcelain", "--untracked-files=no").splitlines()
-        return {
-            "commit": ask("rev-parse", "HEAD"),
-            "changed_files": sorted(line[3:] for line in changed),
-        }
+        commit = git(["git", "rev-parse", "HEAD"]).strip()
+        changed = git(["git", "status", "--porcelain", "--untracked-files=no"]).splitlines()
     except (OSError, subprocess.SubprocessError):
         return None
+    return {"commit": commit, "changed_files": sorted(line[3:] for line in changed)}
 
 
 def machine_class() -> dict:
-    """What kind of machine: no name of a host or a user."""
+    """Kind of machine, without the name of a host or a user."""
     cpuinfo = Path("/proc/cpuinfo")
     text = cpuinfo.read_text(encoding="utf-8", errors="replace") if cpuinfo.exists() else ""
     return {
@@ -64,18 +61,25 @@ def machine_class() -> dict:
 
 
 def job_times(results: str | Path) -> dict[str, float]:
-    """Seconds that the jobs of each step took, all together, from their records."""
+    """Seconds that all jobs of each step took together, from their records."""
     seconds: dict[str, float] = {}
-    for record in read_records(results):
-        seconds[record.step] = round(seconds.get(record.step, 0.0) + record.used["seconds"], 2)
+    for path in sorted(Path(results, FOLDER).rglob("*.json")):
+        # A record that cannot be read is replaced by the next run.
+        with suppress(OSError, ValueError):
+            record = read_record(path)
+            seconds[record.step] = round(seconds.get(record.step, 0.0) + record.used["seconds"], 2)
     return seconds
 
 
 def provenance(
     root: str | Path, sources: str, config: Mapping, shipped: Mapping, base: str | Path
 ) -> dict:
-    """Everything that a result depends on; ``sources``: digest of `source_files`; ``shipped``: without overlays."""
-    packages = (*PACKAGES, "snakemake", "matplotlib", "pandas")
+    """Collect all that the results in ``base`` depend on.
+
+    sources : digest of `source_files`; shipped : the configuration without overlays
+    """
+    versions = {"python": platform.python_version()}
+    versions |= {name: version(name) for name in (*PACKAGES, "snakemake", "matplotlib", "pandas")}
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
     return {
         "paper": PAPER,
@@ -84,8 +88,7 @@ def provenance(
         "source_digest": sources,
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
-        "versions": {"python": platform.python_version()}
-        | {name: version(name) for name in packages},
+        "versions": versions,
         "implementation": sys.implementation.name,
         "machine": machine_class(),
         "times": {"written": written, "seconds_of_jobs": job_times(base)},
@@ -93,13 +96,13 @@ def provenance(
 
 
 def checksums(files: Sequence[str], base: str | Path) -> str:
-    """Lines as of sha256sum, with paths relative to a folder, in order of the path."""
+    """Write the lines of sha256sum, with paths relative to a folder, in order of the path."""
     names = sorted(str(Path(file).relative_to(base)) for file in files)
     return "".join(f"{file_digest(Path(base) / name)}  {name}\n" for name in names)
 
 
 def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]) -> str:
-    """A CODECHECK manifest that lists every output, with what it is."""
+    """Write a CODECHECK manifest that lists every output with a comment."""
     entries = []
     for path in sorted((Path(file).relative_to(base) for file in files), key=str):
         comment = COMMENTS.get(path.parts[0], "result")

@@ -9,7 +9,7 @@ from .points import DIMENSIONS, Recorded
 
 FRONTS = ("release_time", "stick_time")
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
-# What every data file says of itself.
+# Attributes of every data file.
 FILE = {
     "Conventions": "CF-1.11",
     "title": "Ruptures of the minimal model for the onset of slip pulses",
@@ -19,24 +19,35 @@ FILE = {
 
 
 def combine(runs: Sequence[Recorded], record: Sequence[str]) -> xr.Dataset:
-    """Put the runs of a sweep into one Dataset."""
-    versions = {"versions": runs[0].attrs["versions"]}
-    names = [name for name in runs[0].attrs if name not in versions]
-    variables: dict = {
-        name: ("point", np.array([run.attrs[name] for run in runs])) for name in names
-    }
-    kept = (*(FRONTS if "fronts" in record else ()), *(FIELDS if "fields" in record else ()))
-    if kept:
-        # CF's contiguous ragged array: the profiles of the runs over x, one after the other.
-        sizes = np.array([run["x"].size for run in runs])
-        variables["row_size"] = "point", sizes, {"sample_dimension": "block"}
-        for name in ("x", "prestress", *kept):
-            variables[name] = "block", np.concatenate([run[name] for run in runs])
+    """Put the runs of a sweep into one Dataset, with what is to be recorded of each."""
+    attributes = FILE | {"versions": runs[0].attrs["versions"]}
+    variables: dict[str, tuple] = {}
+    for name in filter("versions".__ne__, runs[0].attrs):
+        variables[name] = "point", np.array([run.attrs[name] for run in runs])
+    fields = [*FRONTS] if "fronts" in record else []
+    fields += FIELDS if "fields" in record else []
+    if fields:
+        variables |= _profiles(runs, fields)
+        attributes["featureType"] = "profile"
     if "samples" in record:
-        for name, dimensions in DIMENSIONS.items():
-            axes = ("point", *(dimension.removeprefix("sample_") for dimension in dimensions))
-            variables[name] = axes, np.stack([run[name] for run in runs])
-    # All at once: each variable that is added to a Dataset is aligned with those that are there.
-    return xr.Dataset(
-        variables, attrs=FILE | versions | ({"featureType": "profile"} if kept else {})
-    )
+        variables |= _samples(runs)
+    # A variable that is added to a Dataset is aligned with those that are there: all go in at once.
+    return xr.Dataset(variables, attrs=attributes)
+
+
+def _profiles(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[str, tuple]:
+    """Profiles of the runs over x, one after the other: CF's contiguous ragged array."""
+    sizes = np.array([run["x"].size for run in runs])
+    profiles: dict[str, tuple] = {"row_size": ("point", sizes, {"sample_dimension": "block"})}
+    for name in ("x", "prestress", *fields):
+        profiles[name] = "block", np.concatenate([run[name] for run in runs])
+    return profiles
+
+
+def _samples(runs: Sequence[Recorded]) -> dict[str, tuple]:
+    """Samples of the runs over time and position."""
+    samples: dict[str, tuple] = {}
+    for name, dimensions in DIMENSIONS.items():
+        axes = [dimension.removeprefix("sample_") for dimension in dimensions]
+        samples[name] = ("point", *axes), np.stack([run[name] for run in runs])
+    return samples

@@ -1,4 +1,4 @@
-"""The meaning of everything that a data file may hold: non-dimensional numbers, counts and text."""
+"""Meaning of every variable that a data file may hold: plain numbers, counts and text."""
 
 import xarray as xr
 
@@ -11,7 +11,8 @@ VARIABLES = {
     "right": "pre-stress level far to the right, tau_{0,r}",
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
-    "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width) of the pre-stress, as JSON",
+    "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width) "
+    "of the pre-stress, as JSON",
     "duration": "time that is simulated, in units of H over the wave speed",
     "dx": "spacing of the blocks, in units of H",
     "release": "whether the released stress includes the damping force: total or elastic",
@@ -21,7 +22,8 @@ VARIABLES = {
     "half_lattice": "1 where half of a symmetric scene may be simulated",
     "friction_ratio": "mu_k/(mu_s - mu_k)",
     "resolved_blocks": "sliding blocks below which a pulse is flagged",
-    "rate_strengthening": "alpha, by which friction grows with slip rate, in units of the wave speed over H",
+    "rate_strengthening": "alpha, by which friction grows with slip rate, "
+    "in units of the wave speed over H",
     "work_of_prestress": "work of the pre-stress on the slip",
     "kinetic_energy": "kinetic energy at the end",
     "elastic_energy": "elastic energy of the strain at the end",
@@ -44,7 +46,8 @@ VARIABLES = {
     "first_stick_position": "position of the first stick, in units of H",
     "half_lattice_used": "1 where half of the scene was simulated",
     "pulse_blocks": "blocks across the narrowest pulse at the end",
-    "run_flags": "what would make the numbers something else than the model's; empty where nothing does",
+    "run_flags": "what would make the numbers something else than the model's; "
+    "empty where nothing does",
     "limit_position": "where the construction of the exact solution ends, in units of H",
     "limit_time": "when it ends there",
     "limit_reason": "why it ends",
@@ -64,7 +67,7 @@ VARIABLES = {
 
 
 def described(data: xr.Dataset) -> xr.Dataset:
-    """The same Dataset, each variable with units and long_name."""
+    """Give each variable of a Dataset units and long_name, and return the Dataset."""
     for name, variable in data.variables.items():
         variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)]} | variable.attrs
     return data

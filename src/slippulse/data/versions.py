@@ -1,4 +1,4 @@
-"""Versions of what a number depends on."""
+"""Versions of the packages that a number depends on."""
 
 from functools import cache
 from importlib.metadata import version

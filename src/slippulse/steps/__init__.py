@@ -1,2 +1,4 @@
-"""One module a rule of the workflow: ``run(files, outputs, settings)`` reads, calls and writes; what it imports, at its
-top or inside, is what its rule depends on, and data files of the package that it reads, named in its ``FILES``."""
+"""One module a rule of the workflow: ``run(files, outputs, settings)`` reads, calls and writes.
+
+A rule depends on all modules that its step imports, and on the data files that these name in FILES.
+"""

@@ -7,6 +7,5 @@ from ..figures.scene_animation import animate, save_animation
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data. Outputs: gif. Settings: title."""
-    save_animation(
-        animate(point(load_dataset(files["data"]), 0), settings["title"]), outputs["gif"]
-    )
+    data = point(load_dataset(files["data"]), 0)
+    save_animation(animate(data, settings["title"]), outputs["gif"])

@@ -1,4 +1,4 @@
-"""Compile the kernels of a scheme into the cache that its simulations share, and note the digest of their sources."""
+"""Compile the kernels of a scheme into the cache of its simulations; write their digest."""
 
 from ..data.files import write_text
 from ..solver.compilation import compile_all

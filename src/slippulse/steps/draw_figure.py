@@ -8,7 +8,7 @@ from .inputs import given
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as `given` takes them. Outputs: csv, png, pdf. Settings: figure (its module), values."""
+    """Files: as of `given`. Outputs: csv, png, pdf. Settings: figure (its module), values."""
     module = import_module(f"slippulse.figures.{settings['figure']}")
     save_table(module.table(*given(files), settings["values"]), outputs["csv"])
     save_figure(module.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])

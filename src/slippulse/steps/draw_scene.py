@@ -13,15 +13,16 @@ FILES = ("report/templates/parts.html", "report/templates/scene.html")
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html. Settings: scene, title"""
+    """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html.
+
+    Settings: scene (its name), title.
+    """
     name, title = settings["scene"], settings["title"]
-    found = point(load_dataset(files["data"]), 0)
+    data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
     save_table(numbers, outputs["numbers"])
-    save_table(scene.table(found, numbers, title), outputs["csv"])
+    save_table(scene.table(data, numbers, title), outputs["csv"])
     save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
-    state = {"pulse_state": row["pulse_state"]}
-    write_text(
-        scene_page(name, title, outputs["png"], numbers, found.attrs | state), outputs["html"]
-    )
+    values = data.attrs | {"pulse_state": row["pulse_state"]}
+    write_text(scene_page(name, title, outputs["png"], numbers, values), outputs["html"])

@@ -13,19 +13,18 @@ from ..data.tables import load_table
 
 
 def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame]]:
-    """Datasets by simulation; tables by simulation or study, of grid studies as uncertainties/NAME and coarser/NAME.
+    """Load Datasets by simulation, and tables by simulation or study, from lists of paths by kind.
 
-    Predictions are joined to the measurements of the same runs. Files are lists of paths by kind: data, measured,
-    predicted, studies, coarser, uncertainties, lists (YAML or JSON).
+    Tables of grid studies are named uncertainties/NAME and coarser/NAME; predictions are joined to
+    the measurements of the same runs. Further kinds: data, studies, lists (YAML or JSON).
     """
     tables: dict[str, pd.DataFrame] = {}
     for kind in ("measured", "studies", "predicted", "uncertainties", "coarser"):
         for path in map(Path, files.get(kind, [])):
             name = f"{kind}/{path.stem}" if kind in ("uncertainties", "coarser") else path.stem
             table = load_table(path)
-            tables[name] = (
-                tables[name].join(table) if kind == "predicted" and name in tables else table
-            )
+            joined = kind == "predicted" and name in tables
+            tables[name] = tables[name].join(table) if joined else table
     for path in map(Path, files.get("lists", [])):
         read = json.loads if path.suffix == ".json" else yaml.safe_load
         tables[path.stem] = pd.DataFrame(read(path.read_text(encoding="utf-8")))

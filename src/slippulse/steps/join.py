@@ -1,4 +1,4 @@
-"""Put one file of each chunk of a simulation together: data, or a table of any kind."""
+"""Join one file of each chunk of a simulation: data, or a table of any kind."""
 
 from ..data.join import join_datasets, join_grid_studies, join_tables
 from ..data.store import save_dataset
@@ -7,8 +7,9 @@ from ..measure.uncertainty import quantities
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: chunks, and for grid studies the joined measurements, finest. Outputs: joined. Settings: kind, record."""
-    kind, chunks, joined = settings["kind"], files["chunks"], outputs["joined"]
+    """Files: chunks, finest (joined measurements). Outputs: joined. Settings: kind, record."""
+    kind = settings["kind"]
+    chunks, joined = files["chunks"], outputs["joined"]
     if kind == "data":
         save_dataset(join_datasets(chunks, settings["record"]), joined)
     elif kind == "uncertainties":

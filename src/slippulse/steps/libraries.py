@@ -7,14 +7,14 @@ import os
 # Jobs run side by side: the linear algebra of each keeps to one core.
 os.environ["OMP_NUM_THREADS"] = "1"
 
-import h5netcdf
+import h5py
 import matplotlib.backends.backend_pdf
 import numba
 import scipy.optimize
 import xarray
 
-# The first function compiled loads most of numba.
+# The first function that is compiled loads most of numba.
 numba.njit(lambda: 0)()
-# Memory that nobody touches is shared by all; of what jobs make little is a cycle.
+# The processes share memory that none of them touches; few objects that jobs make are in cycles.
 gc.freeze()
 gc.set_threshold(50_000)

@@ -7,6 +7,5 @@ from ..predict.comparison import measured_table
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data. Outputs: measured. Settings: measure (how to measure)."""
-    save_table(
-        measured_table(load_dataset(files["data"]), settings["measure"]), outputs["measured"]
-    )
+    table = measured_table(load_dataset(files["data"]), settings["measure"])
+    save_table(table, outputs["measured"])

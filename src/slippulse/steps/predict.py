@@ -1,4 +1,4 @@
-"""Write what theory predicts of every run of one simulation, or of one chunk of it."""
+"""Write the predictions of theory for every run of one simulation, or of one chunk of it."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
@@ -11,20 +11,17 @@ from ..model.scene import Scene
 
 # Modules of `predict`.
 TOPICS = ("final_regime", "front", "pulse", "transition")
-# Formulas are compared beyond what is kept of measured numbers.
+# Formulas are compared to more digits than measured numbers have.
 DIGITS = 15
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: predicted. Settings: sweep (resolved), topics, share and still, as in `measure` of the configuration."""
+    """Outputs: predicted. Settings: sweep (resolved), topics; share, still (of `measure`)."""
     scenes, _ = expand(settings["sweep"])
     save_table(predictions(settings["topics"], scenes, settings), outputs["predicted"], DIGITS)
 
 
 def predictions(topics: Iterable[str], scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
-    """What the paper and the exact theory say of each run by some modules of `predict`; NaN where they say nothing."""
-    found = [
-        import_module(f"slippulse.predict.{topic}").predictions(scenes, settings)
-        for topic in topics
-    ]
-    return pd.concat(found, axis=1)
+    """Join the predictions of some modules of `predict`, one row a run; NaN where there is none."""
+    modules = [import_module(f"slippulse.predict.{topic}") for topic in topics]
+    return pd.concat([module.predictions(scenes, settings) for module in modules], axis=1)

@@ -7,6 +7,6 @@ from .inputs import given
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as `given` takes them. Outputs: table. Settings: study (its module), values (of the configuration)."""
+    """Files: as of `given`. Outputs: table. Settings: study (its module), values."""
     study = import_module(f"slippulse.studies.{settings['study']}")
     save_table(study.table(*given(files), settings["values"]), outputs["table"])

@@ -1,4 +1,4 @@
-"""Run the scenes of one simulation on lattices, or those of one chunk of it, and write their data."""
+"""Run the scenes of one simulation, or of one chunk of it, on lattices, and write their data."""
 
 import sys
 from collections import Counter
@@ -13,16 +13,14 @@ from ..solver.run import run_scene
 
 
 def simulate(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: data. Settings: simulation (its name), sweep (resolved), threads, progress (of `run_sweep`)."""
-    sweep = settings["sweep"]
+    """Outputs: data. Settings: simulation (its name), sweep (resolved), threads, progress."""
+    sweep, threads = settings["sweep"], settings["threads"]
     scenes, samples = expand(sweep)
-    data = run_all(
-        solve, scenes, samples, sweep["record"], settings["threads"], settings.get("progress")
-    )
+    data = run_all(solve, scenes, samples, sweep["record"], threads, settings.get("progress"))
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
-        what = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
-        sys.stderr.write(f"  {settings['simulation']}: {what}\n")
+        flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
+        sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
     save_dataset(described(data), outputs["data"])
 
 

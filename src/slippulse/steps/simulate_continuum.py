@@ -1,4 +1,4 @@
-"""Solve the scenes of one simulation exactly: apart, so that runs on lattices do not depend on the theory."""
+"""Solve the scenes of one simulation exactly. Runs on lattices do not depend on this step."""
 
 from functools import partial
 

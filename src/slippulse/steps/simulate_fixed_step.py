@@ -1,4 +1,4 @@
-"""Run the scenes of one simulation by the textbook scheme: apart, so that other runs do not depend on it."""
+"""Run the scenes of one simulation by the textbook scheme. Other runs do not depend on it."""
 
 from functools import partial
 

@@ -1,4 +1,4 @@
-"""Run and measure one simulation on coarser lattices, whose tables are kept, for the uncertainty of each number."""
+"""Run and measure one simulation on coarser lattices, for the uncertainty of each number."""
 
 import sys
 from collections.abc import Callable
@@ -17,23 +17,26 @@ from ..solver.run import run_scene
 
 
 def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
-    """Files: finest. Outputs: uncertainties, coarser. Settings: simulation, sweeps (by factor), measure, threads."""
-    name, sweeps, measure = settings["simulation"], settings["sweeps"], settings["measure"]
+    """Files: finest. Outputs: uncertainties, coarser (the tables of the coarser lattices).
+
+    Settings: simulation (its name), sweeps (by factor of the spacing), measure, threads.
+    """
+    name, sweeps = settings["simulation"], settings["sweeps"]
     tables = {}
     for factor in sorted(sweeps):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
         scenes, samples = expand(sweeps[factor])
         data = run_all(solve, scenes, samples, sweeps[factor]["record"], settings["threads"])
-        tables[factor] = measured_table(data, measure)
-    # A column of fractions may happen to have none in a chunk.
-    part = any("chunk" in sweep for sweep in sweeps.values())
-    measured = load_table(files["finest"], whole=PARAMETERS if part else None)
-    found = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
+        tables[factor] = measured_table(data, settings["measure"])
+    # In a chunk, a column of fractions may happen to have integers alone.
+    in_chunk = any("chunk" in sweep for sweep in sweeps.values())
+    measured = load_table(files["finest"], integers=PARAMETERS if in_chunk else None)
+    uncertainties = grid_tables((measured, *tables.values()), tuple(tables), PARAMETERS)
     promise = promise_of(next(iter(sweeps.values())))
     if promise is not None:
-        found = judged(found, measured, promise, measure["share"])
-        sys.stderr.write(f"  {name}: {summary(found, promise)}\n")
-    save_table(found, outputs["uncertainties"])
+        uncertainties = judged(uncertainties, measured, promise, settings["measure"]["share"])
+        sys.stderr.write(f"  {name}: {summary(uncertainties, promise)}\n")
+    save_table(uncertainties, outputs["uncertainties"])
     coarser = [table.assign(factor=factor) for factor, table in tables.items()]
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
 

@@ -1,4 +1,4 @@
-"""Compute every claim's verdict and what was found beside, as JSON and as a page to read."""
+"""Compute the verdict of every claim and the further findings, as JSON and as a page."""
 
 from pathlib import Path
 
@@ -14,9 +14,10 @@ FILES = ("report/templates/claims.html", "report/templates/parts.html")
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as `given` takes them, texts, statements. Outputs: json, findings, html.
+    """Files: as of `given`; texts, statements. Outputs: json, findings, html.
 
-    Settings: claims (tolerances in place of those with the texts), measure, published, damping_ratio, altered.
+    Settings: claims (tolerances in place of those of the texts), measure, published, damping_ratio,
+    altered (values that an overlay changed).
     """
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]
@@ -27,11 +28,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     beside = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])
     write_json(beside, outputs["findings"])
-    here = Path(outputs["html"]).parent
-    listed = [
-        path
-        for kind in ("measured", "predicted", "uncertainties", "studies")
-        for path in files[kind]
-    ]
-    tables_of = [Path(path).relative_to(here).as_posix() for path in listed]
-    write_text(claims_page(claims, settings["altered"], beside, tables_of), outputs["html"])
+    paths = files["measured"] + files["predicted"] + files["uncertainties"] + files["studies"]
+    folder = Path(outputs["html"]).parent
+    links = [Path(path).relative_to(folder).as_posix() for path in paths]
+    write_text(claims_page(claims, settings["altered"], beside, links), outputs["html"])

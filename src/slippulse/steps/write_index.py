@@ -6,7 +6,7 @@ from ..data.files import write_text
 from ..report.index_page import index_page
 
 FILES = ("report/templates/index.html", "report/templates/parts.html")
-# Of figures, by how their names begin.
+# Headings of figures, by how the names of these begin.
 HEADINGS = {
     "fig": "The figures of the paper",
     "study_": "Beyond the paper",
@@ -15,11 +15,11 @@ HEADINGS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: captions, summary, provenance. Outputs: html. Settings: figures (names), scenes (titles)."""
-    figures = settings["figures"]
-    named = {
-        text: [name for name in figures if name.startswith(key)] for key, text in HEADINGS.items()
-    }
-    galleries = {heading: names for heading, names in named.items() if names}
+    """Files: captions, summary, provenance. Outputs: html. Settings: figures, scenes (titles)."""
+    galleries = {}
+    for start, heading in HEADINGS.items():
+        names = [name for name in settings["figures"] if name.startswith(start)]
+        if names:
+            galleries[heading] = names
     page = index_page(Path(outputs["html"]).parent, files, galleries, settings["scenes"])
     write_text(page, outputs["html"])

@@ -1,4 +1,4 @@
-"""Write what the results were made from, their checksums and their manifest."""
+"""Write the provenance of the results, their checksums and their manifest."""
 
 from pathlib import Path
 
@@ -9,13 +9,15 @@ from .reach import digest_of_files
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: results, captions. Outputs: provenance, checksums, manifest. Settings: config, shipped."""
+    """Files: results, captions. Outputs: provenance, checksums, manifest.
+
+    Settings: config, shipped (the configuration without overlays).
+    """
     base = Path(outputs["provenance"]).parent
-    comments = {name: caption.title for name, caption in read_captions(files["captions"]).items()}
+    captions = read_captions(files["captions"])
+    comments = {name: caption.title for name, caption in captions.items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, comments), outputs["manifest"])
     sources = digest_of_files(source_files("."))
-    write_json(
-        provenance(".", sources, settings["config"], settings["shipped"], base),
-        outputs["provenance"],
-    )
+    facts = provenance(".", sources, settings["config"], settings["shipped"], base)
+    write_json(facts, outputs["provenance"])

@@ -18,7 +18,7 @@ FILES = (
     "report/templates/report.css",
     "report/templates/report.typ",
 )
-# What the report quotes.
+# Tables that the report quotes.
 NEEDS = {
     "measured": ["scaling_displacement", "space_time_displacement", "space_time_stress"],
     "predicted": {
@@ -29,17 +29,19 @@ NEEDS = {
     "uncertainties": ["scaling_displacement", "scaling_stress", "steady_displacement"],
     "studies": ["arrest_path", "derivations", "extremes"],
 }
-HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy from the run of the shipped one."
+HEAD = "# Verdict of each claim. manuscript/shipped_verdicts.yaml is a copy "
+HEAD += "from the run of the shipped one."
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: sources, claims, findings, shipped, citation, figures, and as `given` takes them.
+    """Files: sources, claims, findings, shipped, citation, figures, and as of `given`.
 
-    Outputs: html and pdf, lists with a file for each document; verdicts. Settings: figures (names), config.
+    Outputs: html and pdf, lists with a file for each document; verdicts.
+    Settings: figures (names), config.
     """
     inputs = inputs_of(files, settings)
+    # The writers wait for processes of their own, and so overlap.
     with ThreadPoolExecutor() as pool:
-        # They wait for processes of their own, so they overlap.
         writings = []
         for document, *paths in zip(DOCUMENTS, outputs["html"], outputs["pdf"], strict=True):
             text = execute(inputs.manuscript / f"{document}.md", inputs)
@@ -52,7 +54,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
-    """What the report is written from, read."""
+    """Read all that the report is written from."""
     return Inputs(
         config=settings["config"],
         shipped=read_text(files["shipped"]),
@@ -67,7 +69,7 @@ def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
 
 
 def by_hand(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
-    """The names of a document's cells, for a notebook in a project with results; what is shown goes below the cell."""
+    """Make the names of a document's cells for a notebook, which shows Markdown below the cell."""
     if show is None:
         from IPython.display import Markdown, display
 

@@ -1,0 +1,146 @@
+"""A folder of results, compared with what would make them here and now.
+
+A result is as a run would make it if it has the content that its record says, and if its record
+says what a run would do. The times of files do not count.
+"""
+
+import json
+import os
+import time
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from .files import write_text
+from .records import FOLDER, Origin, file_digest, read_record, record_path
+
+# Folders of results in which no rule makes the files.
+BESIDE = ("logs", "benchmarks", "reference")
+# Seconds. A file that was just written may change once more within a tick of the clock.
+SETTLED = 2.0
+
+
+class Comparison(NamedTuple):
+    """A record against its origin: why the result is outdated, else the digest of its content."""
+
+    reason: str = ""
+    digest: str = ""
+
+
+class Tree:
+    """The results in a folder, by path below it, each with its origin."""
+
+    def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
+        self.results, self.origins = Path(results), origins
+        self._digests = Digests(self.results / FOLDER / ".digests")
+        self._read, self._compared = cache(read_record), cache(self._compare)
+
+    def behind(self, names: Iterable[str]) -> list[str]:
+        """List all that some results are made from, what the same jobs make, and them, in order."""
+        ordered: dict[str, None] = {}
+
+        def visit(name: str) -> None:
+            if name not in ordered and name in self.origins:
+                for source in sorted(self.origins[name].inputs):
+                    visit(source)
+                ordered.update(dict.fromkeys(self.origins[name].outputs))
+
+        for name in names:
+            visit(name)
+        return [*ordered]
+
+    def faults(self, names: Iterable[str]) -> dict[str, str]:
+        """Find those of some results that are not as a run would make them, with the reason."""
+        reasons = {}
+        for name in names:
+            path, compared = self.results / name, self._compared(name)
+            if not path.is_file():
+                reasons[name] = "missing"
+            elif compared.reason:
+                reasons[name] = compared.reason
+            elif self._digests.digest(path) != compared.digest:
+                reasons[name] = "not what its job wrote"
+        self._digests.save()
+        return reasons
+
+    def outdated(self) -> dict[str, str]:
+        """Find the results that would be made anew, whatever their content, the last one first."""
+        present = [name for name in reversed([*self.origins]) if (self.results / name).is_file()]
+        reasons = {name: self._compared(name).reason for name in present}
+        return {name: reason for name, reason in reasons.items() if reason}
+
+    def to_remove(self, names: Iterable[str]) -> dict[str, str]:
+        """Find files that keep Snakemake from making what is faulty of some results anew."""
+        faults = self.faults(self.behind(names))
+        reasons = {}
+        # A missing file is made anew only where the other files of its job are missing too.
+        for name in faults:
+            for output in self.origins[name].outputs:
+                reasons[output] = faults.get(output, "made with a file that is not as made")
+        # A link to nowhere, or to something else than a file, is in the way too.
+        present = [name for name in reasons if os.path.lexists(self.results / name)]
+        return {name: reasons[name] for name in present if not (self.results / name).is_dir()}
+
+    def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
+        """Compare all files that are there or ``complete``: one line a fault, and their number."""
+        files = [path for path in self.results.rglob("*") if path.is_file() and path.name[0] != "."]
+        paths = [path.relative_to(self.results) for path in files]
+        present = {path.as_posix() for path in paths if path.parts[0] not in BESIDE}
+        wanted = present.union(complete)
+        compared = [name for name in self.origins if name in wanted]
+        records = {record_path(origin) for origin in self.origins.values()}
+        unknown = sorted(present - self.origins.keys() - records)
+        reasons = self.faults(compared) | dict.fromkeys(unknown, "not known; no rule makes it")
+        lines = [f"{self.results / name}: {reason}" for name, reason in reasons.items()]
+        return lines, len(compared)
+
+    def _compare(self, name: str) -> Comparison:
+        """Compare the record of a result with its origin, and so with those of its inputs."""
+        origin = self.origins[name]
+        try:
+            record = self._read(self.results / record_path(origin))
+        except FileNotFoundError:
+            return Comparison("no record")
+        except (OSError, ValueError):
+            return Comparison("its record cannot be read")
+        known = name in record.outputs and record.inputs.keys() == origin.inputs
+        if record.step != origin.step or not known:
+            return Comparison("made by another rule")
+        if record.configuration != origin.configuration:
+            return Comparison("made by another configuration")
+        if record.sources != origin.sources:
+            return Comparison("made by other sources")
+        for source, digest in record.inputs.items():
+            if self._compared(source) != Comparison(digest=digest):
+                return Comparison(f"older than {source}, which it is made from")
+        return Comparison(digest=record.outputs[name])
+
+
+class Digests:
+    """SHA-256 of files, remembered with size, inode and both times; nobody can set the inode's."""
+
+    def __init__(self, path: Path) -> None:
+        self._path, self._known = path, {}
+        with suppress(OSError, ValueError):
+            self._known = dict(json.loads(path.read_text(encoding="utf-8")))
+        self._saved = self._known.copy()
+
+    def digest(self, path: Path) -> str:
+        """Digest of a file, remembered or read now."""
+        status = path.stat()
+        state = [status.st_size, status.st_ino, status.st_mtime_ns, status.st_ctime_ns]
+        match self._known.get(path.as_posix()):
+            case [*known_state, str(digest)] if known_state == state:
+                return digest
+        now, digest = time.time(), file_digest(path)
+        if now - max(status.st_mtime, status.st_ctime) > SETTLED:
+            self._known[path.as_posix()] = [*state, digest]
+        return digest
+
+    def save(self) -> None:
+        """Write the digests to their file, where that is possible."""
+        if self._known != self._saved:
+            with suppress(OSError):
+                write_text(json.dumps(self._known), self._path)

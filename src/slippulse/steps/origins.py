@@ -1,0 +1,95 @@
+"""Jobs of the rules, and by which job, configuration and sources each result is made."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path, PurePath
+from types import SimpleNamespace
+from typing import NamedTuple
+
+from ..data.records import Origin, digest_of
+from .reach import digest_of_files, sources
+
+RESULTS = Path("results")
+# All steps load libraries that the lock names.
+LOCK = "requirements.lock"
+
+
+class Job(NamedTuple):
+    """A job: its step, the files that it reads and writes, its part of the configuration."""
+
+    step: str
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    settings: Mapping
+
+
+def is_result(path: str) -> bool:
+    """Tell whether a file is below results/."""
+    return PurePath(path).is_relative_to(RESULTS)
+
+
+def below(path: str) -> str:
+    """Path of a result below results/."""
+    return PurePath(path).relative_to(RESULTS).as_posix()
+
+
+def jobs_of(
+    name: str, inputs: Iterable, outputs: Sequence[str], params: Mapping, values: Mapping
+) -> Iterator[Job]:
+    """Yield the jobs of a rule, one for each of the ``values`` of its wildcard, if it has one.
+
+    Its inputs and params may be functions of the wildcards, as in Snakemake.
+    """
+    wildcard = next((key for key in values if f"{{{key}}}" in outputs[0]), "none")
+    for value in values.get(wildcard, [""]):
+        wildcards = SimpleNamespace(**{wildcard: value})
+        read: list[str] = []
+        for entry in inputs:
+            read += entry(wildcards) if callable(entry) else [entry]
+        settings = {}
+        for key, param in params.items():
+            settings[key] = param(wildcards) if callable(param) else param
+        files = [path.format(**{wildcard: value}) for path in read]
+        made = [path.format(**{wildcard: value}) for path in outputs]
+        # A rule whose params name no step has the step of its own name.
+        yield Job(settings.pop("step", name), tuple(files), tuple(made), settings)
+
+
+def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
+    """Find the origin of each result; its configuration is also that of all it is made from."""
+    makers: dict[str, Job] = {}
+    for job in jobs:
+        makers.update(dict.fromkeys(map(below, job.outputs), job))
+    origins: dict[str, Origin] = {}
+
+    def origin(name: str) -> Origin:
+        if name not in origins:
+            job = makers[name]
+            inputs = frozenset(below(path) for path in job.inputs if is_result(path))
+            texts = sorted(path for path in job.inputs if not is_result(path))
+            earlier = sorted({origin(source).configuration for source in inputs})
+            configuration = digest_of([job.settings, *earlier])
+            digest = _source_digest(tuple(modules_of(job.step, job.settings)), tuple(texts))
+            outputs = tuple(map(below, job.outputs))
+            made = Origin(outputs, job.step, configuration, digest, inputs)
+            origins.update(dict.fromkeys(outputs, made))
+        return origins[name]
+
+    for name in makers:
+        origin(name)
+    return origins
+
+
+def modules_of(step: str, settings: Mapping) -> list[str]:
+    """List the modules that a step runs: its own, and those that its settings name."""
+    modules = [f"steps.{step}", *(f"predict.{topic}" for topic in settings.get("topics", ()))]
+    for key, room in (("figure", "figures"), ("study", "studies")):
+        if key in settings:
+            modules.append(f"{room}.{settings[key]}")
+    return modules
+
+
+@cache
+def _source_digest(modules: tuple[str, ...], texts: tuple[str, ...]) -> str:
+    """Digest of all that some modules reach, of texts that their step reads, and of the lock."""
+    return digest_of_files([*sources(*modules), *texts, LOCK])
