@@ -1,16 +1,17 @@
-"""Stop a reduced draft run at random instants, over and over; what comes out must be what a quiet run gives.
+"""Stop a reduced run at random instants, over and over; its results must be those of a quiet run.
 
     make faults             24 stops
     python tests/faults.py --kills 3 --seed 7
 
-A run as `make replicate` starts it is stopped by a signal, or its server of jobs is killed; of one that Snakemake alone
-starts, Snakemake, a job or everything is. The next run goes on from what is there. Results are compared byte by byte.
+A run that `make replicate` starts is stopped by a signal, or its server of jobs is killed. Of a run
+that Snakemake starts, Snakemake, a job or everything is killed. The next run goes on.
 """
 
 import argparse
 import hashlib
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -31,137 +32,149 @@ TARGETS = (
     "results/uncertainties/steady_displacement.csv",
     "results/scenes/one.html",
 )
+SWEEP = {"left": [0.4, 0.5, 0.6, 0.7], "damping_ratio": [0.0, 0.1], "duration": {"time": 20.0}}
 OVERLAY = {
     "preset": "draft",
-    "simulations": {
-        "steady_displacement": {"left": [0.4, 0.5, 0.6, 0.7], "damping_ratio": [0.0, 0.1], "duration": {"time": 20.0}}
-    },
+    "simulations": {"steady_displacement": SWEEP},
     "scenes": {"one": SCENE | {"dx": 0.04, "duration": 10.0}},
-}  # fmt: skip
+}
 SIGNALS = ("SIGTERM", "SIGINT", "SIGHUP", "SIGKILL")
 WITHOUT_MAKE = ("Snakemake", "a job", "everything")
 WAYS = (*SIGNALS, "the server of jobs", *WITHOUT_MAKE)
-# Seconds. SIGKILL leaves nobody who could end what was started: that ends itself when it has begun to work.
+# Seconds until all processes have ended; after SIGKILL each ends by itself when it begins to work.
 AT_ONCE, AFTER_SIGKILL = 2.0, 60.0
 
 
 def prepare(folder: Path) -> Path:
-    """A folder in which the reduced run can be made, its sources linked."""
+    """Link the sources of the reduced run into a folder, and write its overlay."""
     copy_project(PROJECT, folder, link=True)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
     return folder
 
 
 def start(folder: Path, targets: Sequence[str], by_make: bool = True) -> subprocess.Popen:
-    """A run in a process group of its own, as `make replicate` starts it or by Snakemake itself."""
+    """Start a run in a process group of its own, as `make replicate` does, or by Snakemake."""
     command = [*SNAKEMAKE, "--cores", "2", "--configfile", "overlay.yaml", "--", *targets]
+    if by_make:
+        command = [sys.executable, "workflow/run.py", "replicate"]
     options = {"CORES": "2", "PRESET": "", "OVERLAY": "overlay.yaml", "TARGET": " ".join(targets)}
+    how = {"cwd": folder, "env": os.environ | options, "start_new_session": True}
     with open(folder / "said.txt", "w", encoding="utf-8") as said:
-        return subprocess.Popen(
-            [sys.executable, "workflow/run.py", "replicate"] if by_make else command,
-            cwd=folder, env=os.environ | options, stdout=said, stderr=said, start_new_session=True,
-        )  # fmt: skip
+        return subprocess.Popen(command, stdout=said, stderr=said, **how)
+
+
+def said(folder: Path) -> str:
+    """Read what the last run in a folder wrote to its terminal."""
+    return (folder / "said.txt").read_text(encoding="utf-8")
 
 
 def digests(folder: Path, results: str = "results") -> dict[str, str]:
-    """Every result but logs, times and notes; a hidden name is a file that its writer was killed over."""
-    paths = {
-        path.relative_to(folder / results): path for path in sorted((folder / results).rglob("*"))
-    }
-    return {
-        str(name): hashlib.sha256(path.read_bytes()).hexdigest()
-        for name, path in paths.items()
-        if path.is_file()
-        and not path.name.startswith(".")
-        and name.parts[0] not in ("logs", "benchmarks", "records")
-    }
+    """Digest every result but logs and records; a hidden file was left unfinished by a kill."""
+    digest = {}
+    for path in sorted((folder / results).rglob("*")):
+        name = path.relative_to(folder / results)
+        beside = name.parts[0] in ("logs", "benchmarks", "records") or path.name.startswith(".")
+        if path.is_file() and not beside:
+            digest[str(name)] = hashlib.sha256(path.read_bytes()).hexdigest()
+    return digest
 
 
 def at_work(folder: Path) -> dict[int, bytes]:
-    """Arguments of all other processes that work in a folder, or whose arguments or environment name it."""
-    found, folder = {}, folder.resolve()
+    """Arguments of the other processes that work in a folder or name it, by process number."""
+    folder, others = folder.resolve(), {}
     for entry in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
-            arguments, here = (entry / "cmdline").read_bytes(), (entry / "cwd").resolve()
+            arguments, place = (entry / "cmdline").read_bytes(), (entry / "cwd").resolve()
             named = os.fsencode(folder) in arguments + (entry / "environ").read_bytes()
-            if (
-                arguments
-                and int(entry.name) != os.getpid()
-                and (named or here.is_relative_to(folder))
-            ):
-                found[int(entry.name)] = arguments
-    return found
+            if arguments and (named or place.is_relative_to(folder)):
+                others[int(entry.name)] = arguments
+    others.pop(os.getpid(), None)
+    return others
+
+
+def find_victims(run: subprocess.Popen, folder: Path, way: str) -> list[int]:
+    """List the processes of a run that a way of stopping it may kill."""
+    others = {number: name for number, name in at_work(folder).items() if number != run.pid}
+    if way == "a job":
+        return [*others]
+    if way == "the server of jobs":
+        servers = sorted(number for number, name in others.items() if b"forkserver" in name)
+        # The first is the server, if there is another, which is a job.
+        return servers[:1] if len(servers) > 1 else []
+    return [run.pid]
 
 
 def stop(run: subprocess.Popen, folder: Path, way: str, chance: random.Random) -> bool:
-    """Stop a run in some way, unless it ends before there is what is killed; returns whether it was stopped.
+    """Stop a run in some way, and tell whether there was something to kill before it ended.
 
-    All that it has started ends with it, but for jobs of a Snakemake that was killed alone.
+    All that the run has started must end too, but for jobs of a Snakemake that was killed alone.
     """
-    able: list[int] = []
-    while not able and run.poll() is None:
-        others = {number: name for number, name in at_work(folder).items() if number != run.pid}
-        # The first is the server, if there is another, which is a job.
-        servers = sorted(number for number, name in others.items() if b"forkserver" in name)
-        able = {"a job": [*others], "the server of jobs": servers[: len(servers) > 1]}.get(
-            way, [run.pid]
-        )
+    victims: list[int] = []
+    while not victims and run.poll() is None:
+        victims = find_victims(run, folder, way)
     kill = os.killpg if way in (*SIGNALS, "everything") else os.kill
-    with suppress(ProcessLookupError):
-        for victim in able and [chance.choice(able)]:
-            kill(victim, getattr(signal, way, signal.SIGKILL))
+    # There is nothing to choose from where the run has ended.
+    with suppress(ProcessLookupError, IndexError):
+        kill(chance.choice(victims), getattr(signal, way, signal.SIGKILL))
     since = time.monotonic()
     run.wait(timeout=300)
     if way in WITHOUT_MAKE:
-        return bool(able)
-    # That the server is gone, the run has to see first.
-    since = since if way in SIGNALS else time.monotonic()
-    while left := at_work(folder):
-        assert time.monotonic() - since < (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE), (
-            way,
-            left,
-        )
+        return bool(victims)
+    if way not in SIGNALS:
+        # The run has to notice that its server is gone.
+        since = time.monotonic()
+    limit = since + (AFTER_SIGKILL if way == "SIGKILL" else AT_ONCE)
+    while others := at_work(folder):
+        assert time.monotonic() < limit, (way, others)
         time.sleep(0.02)
-    said = (folder / "said.txt").read_text(encoding="utf-8")
-    assert "Traceback" not in said and ("Exception" not in said or way not in SIGNALS), said[-4000:]
-    return bool(able)
+    unwanted = "Traceback|Exception" if way in SIGNALS else "Traceback"
+    assert not re.search(unwanted, said(folder)), said(folder)[-4000:]
+    return bool(victims)
+
+
+def quiet_run(folder: Path, targets: Sequence[str]) -> tuple[float, dict[str, str]]:
+    """Make the reduced run without a stop; returns its time and the digests of its results."""
+    began = time.monotonic()
+    assert start(prepare(folder), targets).wait(timeout=1200) == 0, said(folder)
+    duration, expected = time.monotonic() - began, digests(folder)
+    assert len(expected) >= 3 * len(targets)
+    return duration, expected
+
+
+def ends_within(run: subprocess.Popen, seconds: float) -> bool:
+    with suppress(subprocess.TimeoutExpired):
+        run.wait(seconds)
+    return run.poll() is not None
 
 
 def fault_run(folder: Path, stops: int, seed: int, targets: Sequence[str] = TARGETS) -> str:
-    """Stop runs ``stops`` times; compare each time that one gets to its end. Returns what happened."""
-    chance, stopped, compared = random.Random(seed), Counter(), 0
-    quiet, harmed = prepare(folder / "quiet"), prepare(folder / "harmed")
-    began = time.monotonic()
-    assert start(quiet, targets).wait(timeout=1200) == 0, (quiet / "said.txt").read_text(
-        encoding="utf-8"
-    )
-    duration = time.monotonic() - began
-    expected = digests(quiet)
-    assert len(expected) >= 3 * len(targets)
-    # Every file by name, so that each that is taken away is missed.
+    """Stop runs ``stops`` times; compare whenever one ends by itself. Returns what happened."""
+    chance, harmed = random.Random(seed), prepare(folder / "harmed")
+    stopped, compared = Counter(), 0
+    duration, expected = quiet_run(folder / "quiet", targets)
+    # Every file is named, so that each file that is taken away is missed.
     targets = [f"results/{name}" for name in expected]
     while True:
-        left, way = stops - stopped.total(), min(WAYS, key=stopped.__getitem__)
+        way = min(WAYS, key=stopped.__getitem__)
         run = start(harmed, targets, by_make=way not in WITHOUT_MAKE)
-        try:
-            # What is there already is not made again.
-            run.wait(chance.uniform(0.02, 0.7) * duration if left else 1200)
-        except subprocess.TimeoutExpired:
+        last = stopped.total() >= stops
+        time_until_stop = 1200 if last else chance.uniform(0.02, 0.7) * duration
+        if not ends_within(run, time_until_stop):
             stopped[way] += stop(run, harmed, way, chance)
             assert run.returncode or digests(harmed) == expected
             continue
-        assert run.returncode == 0, (harmed / "said.txt").read_text(encoding="utf-8")[-4000:]
+        assert run.returncode == 0, said(harmed)[-4000:]
         differing = dict(digests(harmed).items() ^ expected.items())
         assert not differing, f"other than in a quiet run: {sorted(differing)}"
         compared += 1
-        if not left:
+        if last:
             break
         # Some of the files are taken away, so that the next runs have work.
         for name in sorted(expected)[chance.randrange(3) :: chance.choice((1, 3))]:
             (harmed / "results" / name).unlink()
     counts = ", ".join(f"{count} by {way}" for way, count in stopped.items())
-    same = f"{len(expected)} files the same, byte by byte, {compared} times"
-    return f"{stops} stops survived ({counts}); {same}"
+    same_files = f"{len(expected)} files the same, byte by byte, {compared} times"
+    return f"{stops} stops survived ({counts}); {same_files}"
 
 
 def main() -> None:

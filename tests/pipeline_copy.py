@@ -1,4 +1,4 @@
-"""A copy of the project's sources in which a test may run, edit and break things."""
+"""A copy of the sources of the project, in which a test may run, edit and break things."""
 
 import os
 import re
@@ -7,23 +7,18 @@ import subprocess
 import sys
 from pathlib import Path
 
-PARTS = (
-    "CITATION.cff", "Snakefile", "workflow", "profiles", "config", "src", "manuscript", "requirements.lock",
-)  # fmt: skip
-# The profile of the folder logs for people; without it the plain lines are read.
+FOLDERS = ("workflow", "profiles", "config", "src", "manuscript")
+PARTS = ("CITATION.cff", "Snakefile", "requirements.lock", *FOLDERS)
+# The profile of the folder logs for people; without it the log is plain lines.
 BY_PROFILE = (sys.executable, "-m", "snakemake")
-SNAKEMAKE = (
-    *BY_PROFILE, "--workflow-profile", "none", "--rerun-incomplete", "--force-use-threads",
-    "--rerun-triggers", "software-env",
-)  # fmt: skip
+WITHOUT = "--workflow-profile none --rerun-incomplete --force-use-threads"
+SNAKEMAKE = (*BY_PROFILE, *WITHOUT.split(), "--rerun-triggers", "software-env")
 # A user-defined sweep, in chunks so that there are the rules that join them, and a scene.
-SWEEP = {
-    "boundary": "displacement", "left": [0.3, 0.5], "right": "same", "gamma": [0.65], "duration": {"time": 6.0},
-    "spacing": {"scale": 4.0}, "record": ["fronts", "fields"], "chunks": 2,
-}  # fmt: skip
-SCENE = {
-    "title": "One", "boundary": "displacement", "left": 0.5, "right": 0.6, "gamma": 0.65, "dx": 0.1, "duration": 6.0,
-}  # fmt: skip
+SWEEP = {"boundary": "displacement", "left": [0.3, 0.5], "right": "same", "gamma": [0.65]}
+SWEEP |= {"duration": {"time": 6.0}, "spacing": {"scale": 4.0}}
+SWEEP |= {"record": ["fronts", "fields"], "chunks": 2}
+SCENE = {"title": "One", "boundary": "displacement", "left": 0.5, "right": 0.6, "gamma": 0.65}
+SCENE |= {"dx": 0.1, "duration": 6.0}
 OVERLAY = {"preset": "draft", "simulations": {"mine": SWEEP}, "scenes": {"one": SCENE}}
 
 
@@ -42,7 +37,7 @@ def copy_project(project: Path, folder: Path, *, link: bool = False) -> Path:
     return folder
 
 
-# What a job does in an imitated project: each output says what it is made by and from, as quickly as possible.
+# The step of an imitated job: each output says by what and from what it is made.
 IMITATION = """
 
 class import_module:
@@ -53,16 +48,19 @@ class import_module:
         from ..data.files import configuration, write_text
         from ..data.records import file_digest
 
-        given, made = ([path for value in all.values() for path in ([value] if isinstance(value, str) else value)]
-                       for all in (files, outputs))
-        digests = [file_digest(path) for path in given if path.startswith("results/")]
-        for path in made:
+        def paths(named):
+            lists = ([value] if isinstance(value, str) else value for value in named.values())
+            return [path for paths in lists for path in paths]
+
+        read = [path for path in paths(files) if path.startswith("results/")]
+        digests = [file_digest(path) for path in read]
+        for path in paths(outputs):
             write_text(f"{self.name} {configuration()} {digests} {path}\\n", path)
 """
 
 
 def imitate_steps(folder: Path) -> None:
-    """Let every job of a copy write short texts instead of running its step; all else is as it is."""
+    """Let the jobs of a copy write short texts instead of running their steps."""
     path = folder / "src/slippulse/steps/job.py"
     text = path.read_text(encoding="utf-8")
     assert text.count('import_module(f"slippulse.steps.') == 1
@@ -72,14 +70,14 @@ def imitate_steps(folder: Path) -> None:
 def snakemake(
     folder: Path, *arguments, overlay="", cores=1, environment=None, command=SNAKEMAKE, **how
 ):
-    """Run Snakemake in a folder, with that folder's library; returns the completed process."""
-    overlays = [overlay] if isinstance(overlay, str | Path) else overlay
-    options = ["--cores", str(cores), *(["--configfile", *overlays] if overlay else [])]
+    """Run Snakemake in a folder, with its library; returns the completed process."""
+    options = ["--cores", str(cores)]
+    if overlay:
+        options += ["--configfile", *([overlay] if isinstance(overlay, str | Path) else overlay)]
     library = {"PYTHONPATH": str((folder / "src").resolve())}
-    return subprocess.run(
-        [*command, *options, *arguments], env=os.environ | library | (environment or {}), text=True,
-        **{"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how,
-    )  # fmt: skip
+    how = {"cwd": folder, "capture_output": True, "timeout": 1200, "check": False} | how
+    how["env"] = os.environ | library | (environment or {})
+    return subprocess.run([*command, *options, *arguments], text=True, **how)
 
 
 def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
@@ -94,6 +92,6 @@ def planned(result: subprocess.CompletedProcess) -> dict[str, int]:
 
 
 def edges(graph: str) -> set[tuple[str, str]]:
-    """Which rule feeds which, by name, in a mermaid graph."""
+    """Pairs of rules, by name, of which the first feeds the second, in a mermaid graph."""
     names = dict(re.findall(r"^\s*(id\d+)\[(\w+)\]", graph, re.M))
     return {(names[a], names[b]) for a, b in re.findall(r"^\s*(id\d+) --> (id\d+)", graph, re.M)}

@@ -9,7 +9,7 @@ THIN = {"left": 4, "gamma": 4, "width": 3, "damping_ratio": 3, "dx": 3}
 
 
 def small_sweep(config: dict, name: str) -> dict:
-    """A simulation at preset draft with the first, the last and a few evenly between of each list, but of regimes."""
+    """Resolve a simulation at preset draft, with the ends and a few between of each long list."""
     block = copy.deepcopy(config["simulations"][name])
     for key, count in THIN.items():
         values = block.get(key, [])

@@ -1,4 +1,4 @@
-"""A real browser, where there is one: Debian's chromium, or the like of another system."""
+"""A real browser, where there is one: chromium, or the like."""
 
 import shutil
 from collections.abc import Iterator
@@ -18,11 +18,11 @@ LEVELS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
 @pytest.fixture(scope="session")
 def browser():
     """Chromium without a window."""
-    path = next((found for name in NAMES if (found := shutil.which(name))), None)
+    path = next(filter(None, map(shutil.which, NAMES)), None)
     if path is None:
         pytest.skip(f"no browser: none of {', '.join(NAMES)} is installed")
     with sync_playwright() as playwright:
-        # A sandbox needs rights that a container has not; the pages are our own.
+        # A container has no rights for a sandbox, and the pages are ours.
         browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield browser
         browser.close()
@@ -30,7 +30,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def opened(browser):
-    """A function that opens a file as a reader would: what the page says, fetches or fails in ends the test."""
+    """A function that opens a page, which must say, fetch and fail in nothing."""
 
     @contextmanager
     def open_page(path: Path, width: int = 1280, scheme: str = "light") -> Iterator[Page]:
@@ -59,15 +59,14 @@ def violations():
         wide = page.evaluate(
             "document.documentElement.scrollWidth - document.documentElement.clientWidth"
         )
-        # Thousands of elements in the colour of their text, which take most of the time of all.
-        page.evaluate(
-            "document.querySelectorAll('math[display=inline]').forEach((each) => each.remove())"
-        )
+        # Thousands of elements in the colour of their text would take most of the time.
+        inline = "document.querySelectorAll('math[display=inline]')"
+        page.evaluate(f"{inline}.forEach((formula) => formula.remove())")
         options = {"runOnly": {"type": "tag", "values": LEVELS}, "resultTypes": ["violations"]}
-        found = axe.run(page, options=options).response["violations"]
-        problems = [
-            f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]
-        ]
-        return problems + [f"wider than the page by {wide}"] * (wide > 0)
+        problems = [f"wider than the page by {wide}"] if wide > 0 else []
+        for violation in axe.run(page, options=options).response["violations"]:
+            elements = [node["html"][:200] for node in violation["nodes"]]
+            problems += [f"{violation['id']}: {element}" for element in elements]
+        return problems
 
     return find

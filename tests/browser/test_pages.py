@@ -1,8 +1,7 @@
-"""The pages of a results folder as readers meet them, in a browser: links, accessibility, narrow screens, the dark;
-and that every column of its tables is explained. The explorer alone: its numbers are those of the theory, and it works
-by keyboard and on a phone.
+"""The pages of a results folder in a browser: links, accessibility, narrow screens, dark colours.
 
-`make test-pages` says which folder; without one only the explorer is tested here, and an unfinished one fails.
+The numbers of the explorer are those of the theory, and it works by keyboard and on a phone. `make
+test-pages` names the folder, which must be complete; without it only the explorer is tested.
 """
 
 import math
@@ -24,20 +23,17 @@ from slippulse.theory import Rupture, front_speed, steady_pulse
 pytestmark = pytest.mark.slow
 
 RESULTS = os.environ.get("PAGES", "")
-PAGES = (
-    "index.html", "claims.html", "manuscript/replication.html", "manuscript/supplement.html", "explorer.html",
-    "scenes/barrier.html",
-)  # fmt: skip
-# What the explorer may weigh, and the report with all its figures inside.
+PAGES = ("index.html", "claims.html", "explorer.html", "scenes/barrier.html")
+PAGES += ("manuscript/replication.html", "manuscript/supplement.html")
+# Largest sizes of the explorer, and of the report with all its figures inside.
 LARGEST = {"explorer.html": 300e3, "manuscript/replication.html": 3.5e6}
-# Of the explorer, in the order of the page.
+# Names of the sliders of the explorer, in the order of the page.
 SLIDERS = ["beta", "dx", "left", "right", "width", "gamma", "alpha", "end"]
-RUN = {
-    "boundary": "displacement", "left": 0.3, "right": 0.3, "width": 1.0, "peak": 1.0, "gamma": 0.5, "beta": 1e-3,
-    "steps_and_bumps": '{"steps": [], "bumps": []}', "damping_ratio": 0.1, "release": "total",
-    "front_speed_right": 1.1, "transition_time": 4.1, "transition_length": 10.1, "pulse_slip": 1.11,
-    "pulse_state": "steady",
-}  # fmt: skip
+RUN = {"boundary": "displacement", "left": 0.3, "right": 0.3, "width": 1.0, "peak": 1.0}
+RUN |= {"gamma": 0.5, "beta": 1e-3, "damping_ratio": 0.1, "release": "total"}
+RUN |= {"steps_and_bumps": '{"steps": [], "bumps": []}', "front_speed_right": 1.1}
+RUN |= {"transition_time": 4.1, "transition_length": 10.1}
+RUN |= {"pulse_slip": 1.11, "pulse_state": "steady"}
 SCENE = dict(left=0.5, right=0.5, gamma=0.65, width=1.0, ratio=0.1, release="total", end=20.0)
 
 
@@ -56,9 +52,8 @@ def test_every_column_of_every_table_is_explained(results, project):
     assert len(tables) > 100
     for path in tables:
         columns = path.open(encoding="utf-8").readline().rstrip("\n").split(",")
-        assert {
-            column for column in columns if not column.startswith("trailing_edge_")
-        } <= described, path
+        named = {column for column in columns if not column.startswith("trailing_edge_")}
+        assert named <= described, path
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -76,13 +71,12 @@ def test_everybody_can_read_it(name, width, scheme, results, opened, violations)
 
 def test_every_link_resolves(results, opened):
     anchors, inside = {}, set()
+    linked = "[...document.querySelectorAll('a[href], img[src], link[href]')]"
     for name in PAGES:
         with opened(results / name) as page:
-            links = page.evaluate(
-                "[...document.querySelectorAll('a[href], img[src], link[href]')].map((tag) => tag.href || tag.src)"
-            )
-            found = page.evaluate("[...document.querySelectorAll('[id]')].map((tag) => tag.id)")
-        anchors[(results / name).absolute()] = found
+            links = page.evaluate(f"{linked}.map((tag) => tag.href || tag.src)")
+            names = page.evaluate("[...document.querySelectorAll('[id]')].map((tag) => tag.id)")
+        anchors[(results / name).absolute()] = names
         assert all(link.startswith(("file:", "https://", "data:")) for link in links)
         inside |= {link for link in links if link.startswith("file:")}
     assert len(inside) > 100
@@ -118,15 +112,25 @@ def press(page, where: str, key: str) -> None:
     settled(page)
 
 
+def random_scene(random: np.random.Generator, k: int) -> dict:
+    """A scene over the reach of the sliders with positive levels.
+
+    Half of the scenes are symmetric, and half have either release; a fifth has no damping.
+    """
+    left, right = random.uniform(0.05, 0.95, 2).tolist()
+    ratio = log_uniform(random, 2e-3, explorer_law.LARGEST_RATIO) if k % 5 else 0
+    gamma, width = log_uniform(random, 0.02, 2.0), log_uniform(random, 0.2, 5.0)
+    scene = dict(left=left, right=left if k % 2 else right, gamma=gamma, width=width, ratio=ratio)
+    return scene | {"release": "total" if k % 4 < 2 else "elastic"}
+
+
+def log_uniform(random: np.random.Generator, smallest: float, largest: float) -> float:
+    return float(np.exp(random.uniform(np.log(smallest), np.log(largest))))
+
+
 def test_its_numbers_are_those_of_the_library(explorer, opened):
-    random, scenes = np.random.default_rng(16), []
-    # Over the reach of the sliders with positive levels, half of them symmetric, both rules.
-    for k in range(400):
-        left, right = random.uniform(0.05, 0.95, 2).tolist()
-        ranges = [(2e-3, explorer_law.LARGEST_RATIO)] * (k % 5 > 0) + [(0.02, 2.0), (0.2, 5.0)]
-        *ratio, gamma, width = np.exp([random.uniform(*np.log(ends)) for ends in ranges]).tolist()
-        scene = dict(left=left, right=left if k % 2 else right, gamma=gamma, width=width)
-        scenes.append(scene | {"ratio": sum(ratio), "release": "total" if k % 4 < 2 else "elastic"})
+    random = np.random.default_rng(16)
+    scenes = [random_scene(random, k) for k in range(400)]
     with opened(explorer) as page:
         laws = page.evaluate(
             """scenes => scenes.map((s) => {
@@ -156,60 +160,70 @@ def test_its_numbers_are_those_of_the_library(explorer, opened):
         # The pulse is read at the time and position that the page found.
         rupture = Rupture(prestress, scene["gamma"], *law, 1.001 * numbers["time"])
         exact = {
-            "speed": front_speed(scene["right"], *law), "speedLeft": front_speed(scene["left"], *law),
-            "transitionTime": rupture.transition_time, "transitionLength": rupture.transition_length,
+            "speed": front_speed(scene["right"], *law),
+            "speedLeft": front_speed(scene["left"], *law),
+            "transitionTime": rupture.transition_time,
+            "transitionLength": rupture.transition_length,
             "width": rupture.pulse_width(numbers["time"]),
-            "slip": float(rupture.final_slip(numbers["edge"])), "slipCentre": float(rupture.final_slip(0.0)),
-        }  # fmt: skip
+            "slip": float(rupture.final_slip(numbers["edge"])),
+            "slipCentre": float(rupture.final_slip(0.0)),
+        }
         assert {name: numbers[name] for name in exact} == pytest.approx(exact, rel=EXPLORER), scene
 
 
 def test_fronts_into_negative_pre_stress_are_those_of_the_library(explorer, opened):
     cases = [
-        (-0.5, 0.5, 0.65, 0.0), (0.7, -0.3, 0.65, 0.0), (-0.2, -0.4, 0.65, 0.0), (-0.5, 0.5, 0.65, 0.5),
-        (-0.5, 0.0, 0.0, 0.0), (-0.3, -0.5, 0.0, 0.0), (-0.5, 0.2, 0.0, 0.5),
-    ]  # fmt: skip
+        (-0.5, 0.5, 0.65, 0.0),
+        (0.7, -0.3, 0.65, 0.0),
+        (-0.2, -0.4, 0.65, 0.0),
+        (-0.5, 0.5, 0.65, 0.5),
+        (-0.5, 0.0, 0.0, 0.0),
+        (-0.3, -0.5, 0.0, 0.0),
+        (-0.5, 0.2, 0.0, 0.5),
+    ]
     names = ("left", "right", "gamma", "alpha")
     scenes = [SCENE | dict(zip(names, case, strict=True)) | {"end": 12.0} for case in cases]
     with opened(explorer) as page:
-        found = page.evaluate(
+        shown = page.evaluate(
             """scenes => scenes.map((scene) => {
                 const rupture = new Rupture(scene, DATA.law);
-                const stopped = [rupture.left, rupture.right].map((front) => Boolean(front.slow && front.slow.stopped));
+                const stopped = [rupture.left, rupture.right].map(
+                    (front) => Boolean(front.slow && front.slow.stopped));
                 return [[0.3, 0.6, 1].flatMap((part) => rupture.fronts(part * scene.end)), stopped];
             })""",
             scenes,
         )
-    for scene, (fronts, stopped) in zip(scenes, found, strict=True):
+    for scene, (fronts, stopped) in zip(scenes, shown, strict=True):
         prestress = Prestress(scene["left"], scene["right"])
         exact = Rupture(prestress, scene["gamma"], 0.1, "total", scene["end"], 1, scene["alpha"])
-        at = [x for part in (0.3, 0.6, 1.0) for x in exact.fronts_at(part * scene["end"])]
-        assert fronts == pytest.approx(at, rel=EXPLORER), scene
+        positions = np.ravel([exact.fronts_at(part * scene["end"]) for part in (0.3, 0.6, 1.0)])
+        assert fronts == pytest.approx(positions.tolist(), rel=EXPLORER), scene
         assert stopped == [end.reason == "stops" for end in exact.front_ends[0]]
 
 
 def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(explorer, opened):
     rates = [-0.3, 0.0, 0.4, 0.7, 0.9]
     with opened(explorer) as page:
-        found = page.evaluate(
-            "scenes => scenes.map((scene) => new Rupture(scene, DATA.law).transition().transitionTime)",
+        times = page.evaluate(
+            """scenes => scenes.map(
+                (scene) => new Rupture(scene, DATA.law).transition().transitionTime)""",
             [SCENE | {"alpha": alpha} for alpha in rates],
         )
-        slip, critical, *beyond = page.evaluate(
-            """scene => { const v = 1 / frontLaw(DATA.law, scene.ratio, scene.release)(0.5); return [
-                steadyPulse({ ...scene, beta: 0, alpha: 0.4 }, v).slip, criticalRate(scene.gamma, v),
-                ...[0.99, 1.01].map((part) => (
-                    steadyPulse({ ...scene, beta: 0, alpha: part * criticalRate(scene.gamma, v) }, v) !== null))]; }""",
+        slip, critical, exists_below, exists_above = page.evaluate(
+            """scene => {
+                const v = 1 / frontLaw(DATA.law, scene.ratio, scene.release)(0.5);
+                const critical = criticalRate(scene.gamma, v);
+                const pulse = (alpha) => steadyPulse({ ...scene, beta: 0, alpha: alpha }, v);
+                const exists = [0.99, 1.01].map((part) => pulse(part * critical) !== null);
+                return [pulse(0.4).slip, critical, ...exists];
+            }""",
             SCENE,
         )
     ruptures = [Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 20.0, 1, alpha) for alpha in rates]
-    assert found == pytest.approx(
-        [rupture.transition_time for rupture in ruptures], rel=EXPLORER_SPEED
-    )
-    assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5) and beyond == [
-        True,
-        False,
-    ]
+    exact = [rupture.transition_time for rupture in ruptures]
+    assert times == pytest.approx(exact, rel=EXPLORER_SPEED)
+    assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5)
+    assert exists_below and not exists_above
 
 
 def test_beta_over_dx_alone_sets_the_speed_and_axes_stand_still(explorer, opened):
@@ -235,30 +249,36 @@ def test_beta_over_dx_alone_sets_the_speed_and_axes_stand_still(explorer, opened
         assert axes() == drawn
 
 
-def test_every_setting_works_by_keyboard_typed_and_by_address(explorer, opened):
+def test_every_slider_is_reached_by_keyboard(explorer, opened):
     with opened(explorer) as page:
         reached = []
         for _ in range(40):
             page.keyboard.press("Tab")
             reached.append(page.evaluate("document.activeElement.id"))
-        assert [name for name in reached if name in SLIDERS] == SLIDERS
-        for name in SLIDERS:
-            page.reload()
-            slider, typed = page.locator(f"#{name}"), page.locator(f"#{name}-typed")
-            assert page.locator(f"label[for={name}]").text_content() and typed.get_attribute(
-                "aria-label"
-            )
-            values, pictures = {typed.input_value()}, {page.locator("#map").inner_html()}
-            for key in ("ArrowLeft", "End", "Home"):
-                press(page, f"#{name}", key)
-                values.add(typed.input_value())
-                pictures.add(page.locator("#map").inner_html())
-                assert f"{name}={float(typed.input_value()):g}" in page.url
-            # Spacing and damping at the end of their range may give the b that there was.
-            assert len(values) == 4 and len(pictures) >= 3, name
-            typed.fill("0.4")
-            press(page, f"#{name}-typed", "Enter")
-            assert slider.get_attribute("aria-valuetext") == typed.input_value()
+    assert [name for name in reached if name in SLIDERS] == SLIDERS
+
+
+@pytest.mark.parametrize("name", SLIDERS)
+def test_every_setting_works_by_keyboard_and_typed(explorer, opened, name):
+    with opened(explorer) as page:
+        slider, typed = page.locator(f"#{name}"), page.locator(f"#{name}-typed")
+        assert page.locator(f"label[for={name}]").text_content()
+        assert typed.get_attribute("aria-label")
+        values, pictures = {typed.input_value()}, {page.locator("#map").inner_html()}
+        for key in ("ArrowLeft", "End", "Home"):
+            press(page, f"#{name}", key)
+            values.add(typed.input_value())
+            pictures.add(page.locator("#map").inner_html())
+            assert f"{name}={float(typed.input_value()):g}" in page.url
+        # Spacing and damping at the end of their range may give the b that there was.
+        assert len(values) == 4 and len(pictures) >= 3
+        typed.fill("0.4")
+        press(page, f"#{name}-typed", "Enter")
+        assert slider.get_attribute("aria-valuetext") == typed.input_value()
+
+
+def test_an_address_holds_every_setting(explorer, opened):
+    with opened(explorer) as page:
         address = "left=0.32&right=0.32&width=1&gamma=0.5&beta=0.001&dx=0.01&alpha=0&end=12"
         page.goto(f"{explorer.as_uri()}#{address}&release=elastic&held=false")
         page.reload()
@@ -283,9 +303,12 @@ def test_on_a_phone_the_map_stays_in_view(explorer, opened):
 
 def test_only_runs_that_the_page_can_compute_are_shown():
     others = [
-        RUN | {"boundary": "stress"}, RUN | {"left": 0.2}, RUN | {"left": -0.3, "right": -0.3},
-        RUN | {"steps_and_bumps": '{"steps": [[1.0, 0.2]], "bumps": []}'}, RUN | {"damping_ratio": 6.0},
-    ]  # fmt: skip
+        RUN | {"boundary": "stress"},
+        RUN | {"left": 0.2},
+        RUN | {"left": -0.3, "right": -0.3},
+        RUN | {"steps_and_bumps": '{"steps": [[1.0, 0.2]], "bumps": []}'},
+        RUN | {"damping_ratio": 6.0},
+    ]
     unsteady = RUN | {"pulse_state": "unsteady"}
     runs = simulated_runs(pd.DataFrame([RUN, *others, unsteady]), explorer_law.LARGEST_RATIO)
     settings = [0.3, 0.5, 1.0, 1e-3, 0.1, "total", 1.1, 4.1, 10.1]

@@ -1,4 +1,4 @@
-"""A tree with every result, for tests of what is made anew."""
+"""A folder with every result, for tests of which results are made anew."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import pytest
 import yaml
 from pipeline_copy import OVERLAY, copy_project, imitate_steps, planned, snakemake
 
-# What everything makes, and what is only made by name.
+# Targets that together make all files; scenes have some that are only made by name.
 TARGETS = ("everything", "scenes")
 
 
@@ -16,9 +16,7 @@ def imitated(project, tmp_path_factory) -> Path:
     folder = copy_project(project, tmp_path_factory.mktemp("imitated") / "copy")
     imitate_steps(folder)
     (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
-    made = snakemake(
-        folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2, timeout=1200
-    )
+    made = snakemake(folder, "--quiet", "--", *TARGETS, overlay="overlay.yaml", cores=2)
     assert made.returncode == 0, made.stderr
     assert planned(snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")) == {}
     return folder

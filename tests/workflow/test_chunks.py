@@ -1,4 +1,4 @@
-"""A sweep in chunks through Snakemake: the bytes of the sweep in one job, and only what is lost is made again."""
+"""A sweep in chunks through Snakemake: the same bytes, and only what is lost is made again."""
 
 import json
 import shutil
@@ -22,25 +22,24 @@ FILES = (
 
 
 def write_overlay(folder: Path, name: str, sweeps: dict[str, int | None], **changes) -> str:
-    """Sweeps of some levels in some numbers of chunks, or without."""
-    sweep = {key: value for key, value in SWEEP.items() if key != "chunks"}
-    sweep |= {"left": LEVELS, "resolved_blocks": 4} | changes
-    found = {
-        name: sweep | ({"chunks": chunks} if chunks else {}) for name, chunks in sweeps.items()
-    }
-    (folder / name).write_text(
-        json.dumps({"preset": "draft", "simulations": found}), encoding="utf-8"
-    )
+    """Write an overlay with sweeps of some levels, by how many chunks each has, or None."""
+    sweep = SWEEP | {"left": LEVELS, "resolved_blocks": 4} | changes
+    simulations = {name: sweep | {"chunks": chunks} for name, chunks in sweeps.items()}
+    for simulation in simulations.values():
+        if simulation["chunks"] is None:
+            del simulation["chunks"]
+    overlay = {"preset": "draft", "simulations": simulations}
+    (folder / name).write_text(json.dumps(overlay), encoding="utf-8")
     return name
 
 
-def targets(*sweeps: str, files=FILES) -> list[str]:
-    return [f"results/{file}".format(sweep) for sweep in sweeps for file in files]
+def targets(sweep: str, files=FILES) -> list[str]:
+    return [f"results/{file}".format(sweep) for file in files]
 
 
 @pytest.fixture(scope="module")
 def folder(project, tmp_path_factory) -> Path:
-    """A copy in which a sweep has been made whole, kept apart, and then in two chunks, one a run longer."""
+    """A copy in which a sweep was made whole, kept apart, then in two chunks, one a run longer."""
     folder = copy_project(project, tmp_path_factory.mktemp("chunks"), link=True)
     overlay = write_overlay(folder, "whole.yaml", {"in_two": None})
     for made in (overlay, write_overlay(folder, "overlay.yaml", CHUNKS)):
@@ -55,46 +54,64 @@ def test_the_bytes_are_those_of_the_sweep_in_one_job(folder):
     files, trees = [file.format("in_two") for file in FILES], [folder / "whole", folder / "results"]
     digests = [load_dataset(tree / files[0]).attrs["configuration"].encode() for tree in trees]
     for file in files:
-        whole, joined = ((tree / file).read_bytes() for tree in trees)
+        one_job, joined = ((tree / file).read_bytes() for tree in trees)
         # The configuration says how many chunks there are.
-        assert whole.replace(*digests) == joined, file
+        assert one_job.replace(digests[0], digests[1]) == joined, file
     chunks = sorted(path.name for path in (folder / "results/data/in_two").glob("*.nc"))
     assert chunks == ["1-of-2.nc", "2-of-2.nc"]
 
 
-ONE_JOB, THREE = ({"simulate": count, "measure": count, "study_grid": count} for count in (1, 3))
-FORCED, KERNELS, LEVEL = ["--forceall"], {"compile_kernels": 1}, {"left": [*LEVELS[:-1], 0.8]}
-# Numbers of chunks, what else is altered, the sweep and its files that are asked for, options, and jobs.
-PLANS = {
-    "without chunks there are no other jobs": (CHUNKS, {}, "in_none", FILES, FORCED, ONE_JOB | KERNELS),
-    "nor with one": (CHUNKS, {}, "in_one", FILES, FORCED, ONE_JOB | KERNELS),
-    "joined data are not needed": (CHUNKS, {}, "in_three", FILES[1:], FORCED, THREE | KERNELS | {"join": 3}),
-    "another number of chunks takes nothing": ({"in_two": 3}, {}, "in_two", FILES, [], THREE | {"join": 4}),
-    "nor does none": ({"in_two": None}, {}, "in_two", FILES, [], ONE_JOB),
-    "with another level all run again": (
-        CHUNKS, LEVEL, "in_two", FILES[1:2], [], {"simulate": 2, "measure": 2, "join": 1}
-    ),
-    "a lost chunk is made again alone": (CHUNKS, {}, "in_two", FILES, ["lost"], ONE_JOB | {"join": 4}),
-    "or the rest": (CHUNKS, {}, "in_two", FILES[1:], ["lost"], {"measure": 1, "study_grid": 1, "join": 3}),
-    "and only its grid study": (CHUNKS, {}, "in_two", FILES[2:], ["lost"], {"study_grid": 1, "join": 2}),
-}  # fmt: skip
+def jobs(count: int, **others: int) -> dict[str, int]:
+    """Jobs by rule, with as many simulations, measurements and grid studies as there are chunks."""
+    return dict.fromkeys(("simulate", "measure", "study_grid"), count) | others
 
 
-@pytest.mark.parametrize("case", PLANS)
-def test_what_runs(folder, case):
-    sweeps, changes, name, files, options, jobs = PLANS[case]
-    lost = targets("in_two/2-of-2", name, files=files) if options == ["lost"] else []
+def case(identity: str, name: str, files=FILES, sweeps=CHUNKS, **parts):
+    """A sweep and its files that are asked for, and which jobs then run."""
+    return pytest.param(sweeps, name, files, parts, id=identity)
+
+
+@pytest.mark.parametrize(
+    ("sweeps", "name", "files", "parts"),
+    [
+        case("no chunks", "in_none", forced=True, jobs=jobs(1, compile_kernels=1)),
+        case("one chunk", "in_one", forced=True, jobs=jobs(1, compile_kernels=1)),
+        # The joined data are not needed.
+        case("tables", "in_three", FILES[1:], forced=True, jobs=jobs(3, compile_kernels=1, join=3)),
+        case("more chunks", "in_two", sweeps={"in_two": 3}, jobs=jobs(3, join=4)),
+        case("chunks no more", "in_two", sweeps={"in_two": None}, jobs=jobs(1)),
+        case(
+            "another level",
+            "in_two",
+            FILES[1:2],
+            changes={"left": [*LEVELS[:-1], 0.8]},
+            jobs={"simulate": 2, "measure": 2, "join": 1},
+        ),
+        case("lost chunk", "in_two", lost=True, jobs=jobs(1, join=4)),
+        case(
+            "lost tables",
+            "in_two",
+            FILES[1:],
+            lost=True,
+            jobs={"measure": 1, "study_grid": 1, "join": 3},
+        ),
+        case("lost study", "in_two", FILES[2:], lost=True, jobs={"study_grid": 1, "join": 2}),
+    ],
+)
+def test_what_runs(folder, sweeps, name, files, parts):
+    """Nothing is taken from another number of chunks, and a lost chunk is made again alone."""
+    lost = targets("in_two/2-of-2", files) + targets(name, files) if "lost" in parts else []
     kept = [(folder / path).rename(folder / f"{path}.kept") for path in lost]
-    options = [] if lost else options
+    arguments = ["--dry-run", "--", *targets(name, files)]
+    if "forced" in parts:
+        arguments.insert(0, "--forceall")
     try:
-        overlay = write_overlay(folder, "other.yaml", sweeps, **changes)
-        result = snakemake(
-            folder, "--dry-run", *options, "--", *targets(name, files=files), overlay=overlay
-        )
+        overlay = write_overlay(folder, "other.yaml", sweeps, **parts.get("changes", {}))
+        result = snakemake(folder, *arguments, overlay=overlay)
     finally:
         for path in kept:
             path.rename(path.with_suffix(""))
-    assert planned(result) == jobs
+    assert planned(result) == parts["jobs"]
 
 
 def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
@@ -103,12 +120,10 @@ def test_a_chunk_asked_for_by_name_is_made_again_to_the_same_bytes(folder):
     lost = targets("in_two/1-of-2")
     for target in lost:
         (folder / target).unlink()
-    # What the joined files were made from is not missed.
-    assert (
-        planned(snakemake(folder, "--dry-run", "--", *targets("in_two"), overlay="overlay.yaml"))
-        == {}
-    )
-    result = snakemake(folder, "--", *lost, *targets("in_two"), overlay="overlay.yaml", cores=2)
+    # A file that the joined files were made from is not missed.
+    asked = targets("in_two")
+    assert planned(snakemake(folder, "--dry-run", "--", *asked, overlay="overlay.yaml")) == {}
+    result = snakemake(folder, "--", *(lost + asked), overlay="overlay.yaml", cores=2)
     assert result.returncode == 0, result.stderr
     assert "Simulating in_two/1-of-2" in result.stderr and "2-of-2\n" not in result.stderr
     assert [path.read_bytes() for path in joined] == before
@@ -121,21 +136,16 @@ def test_a_chunk_that_there_is_not_is_refused(folder, chunk):
     result = snakemake(folder, "--", f"results/data/in_{chunk}.nc", overlay="overlay.yaml")
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "Traceback" not in said
-    assert (
-        f"target: 'results/data/in_{chunk}.nc'" in said
-        and "allowed: a rule of a single job" in said
-    )
+    assert f"target: 'results/data/in_{chunk}.nc'" in said
+    assert "allowed: a rule of a single job" in said
 
 
 def test_a_job_elsewhere_does_not_check_every_run_again(folder):
-    (folder / "wrong.yaml").write_text(
-        "simulations: {space_time_stress: {left: [1.0]}}", encoding="utf-8"
-    )
+    wrong = "simulations: {space_time_stress: {left: [1.0]}}"
+    (folder / "wrong.yaml").write_text(wrong, encoding="utf-8")
     arguments = ("--dry-run", "--", "results/figures/fig07_damage_zone.png")
     here = snakemake(folder, *arguments, overlay="wrong.yaml")
-    assert (
-        here.returncode != 0
-        and "space_time_stress.prestress.left: 1.0" in here.stdout + here.stderr
-    )
+    assert here.returncode != 0
+    assert "space_time_stress.prestress.left: 1.0" in here.stdout + here.stderr
     elsewhere = snakemake(folder, "--mode", "remote", *arguments, overlay="wrong.yaml")
     assert elsewhere.returncode == 0, elsewhere.stderr

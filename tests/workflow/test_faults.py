@@ -1,4 +1,4 @@
-"""What goes wrong on other people's machines: each works, or fails in one clear line and leaves what was there."""
+"""Faults of machines: a run works, or fails in one clear line and leaves what was there."""
 
 import hashlib
 import json
@@ -22,7 +22,8 @@ from slippulse.data.files import UnreadableFile
 from slippulse.data.records import Origin
 from slippulse.data.store import save_dataset
 from slippulse.data.tables import load_table, save_table
-from slippulse.steps.job import JobFailed, Jobs, logged
+from slippulse.steps.job import logged
+from slippulse.steps.processes import JobFailed, Jobs
 
 SCENE = "results/measurements/one.csv"
 DATA, RECORD = "results/data/one.nc", "results/records/data/one.nc.json"
@@ -47,30 +48,22 @@ def test_a_run_is_stopped_in_every_way_and_the_next_gives_the_same(tmp_path, tim
 @pytest.mark.slow
 def test_surroundings_do_not_change_a_byte(finished, tmp_path):
     elsewhere = prepare(tmp_path / "elsewhere")
-    strange = {
-        "TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "PYTHONHASHSEED": "1", "DISPLAY": "",
-        "MPLBACKEND": "TkAgg", "FONTCONFIG_FILE": str(tmp_path / "no fonts"), "OMP_NUM_THREADS": "3",
-    }  # fmt: skip
-    result = snakemake(
-        elsewhere, "--", SCENE, FIGURE, overlay="overlay.yaml", cores=1, environment=strange
-    )
+    strange = {"TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "DISPLAY": ""}
+    strange |= {"PYTHONHASHSEED": "1", "MPLBACKEND": "TkAgg", "OMP_NUM_THREADS": "3"}
+    strange["FONTCONFIG_FILE"] = str(tmp_path / "no fonts")
+    how = {"overlay": "overlay.yaml", "environment": strange}
+    result = snakemake(elsewhere, "--", SCENE, FIGURE, **how)
     assert result.returncode == 0, result.stderr
     assert digests(elsewhere) == digests(finished)
 
 
 @pytest.mark.slow
 def test_it_can_be_started_from_anywhere(finished, tmp_path):
-    what = [
-        "--dry-run",
-        "--directory",
-        finished,
-        "--snakefile",
-        finished / "Snakefile",
-        "--",
-        SCENE,
-    ]
-    how = {"overlay": finished / "overlay.yaml", "command": BY_PROFILE, "cwd": tmp_path}
-    assert planned(snakemake(finished, *what, **how)) == {}
+    options = ["--directory", finished, "--snakefile", finished / "Snakefile", "--dry-run"]
+    overlay = finished / "overlay.yaml"
+    arguments = [*options, "--", SCENE]
+    result = snakemake(finished, *arguments, overlay=overlay, command=BY_PROFILE, cwd=tmp_path)
+    assert planned(result) == {}
 
 
 @pytest.mark.slow
@@ -79,17 +72,14 @@ def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
     copy = Path(shutil.copytree(finished, tmp_path / "copy", symlinks=True))
     (copy / SCENE).unlink()
     (copy / DATA).write_bytes(b"no data")
-    outputs = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
-    (copy / RECORD).write_text(
-        json.dumps(json.loads((copy / RECORD).read_text()) | {"outputs": outputs})
-    )
+    record = json.loads((copy / RECORD).read_text())
+    record["outputs"] = {"data/one.nc": hashlib.sha256(b"no data").hexdigest()}
+    (copy / RECORD).write_text(json.dumps(record))
     result = snakemake(copy, "--", SCENE, overlay="overlay.yaml", command=BY_PROFILE)
     said = result.stdout + result.stderr
     assert result.returncode != 0 and "one.nc: cannot be read" in said
-    assert (
-        "delete it and run again" in said
-        and "(details: results/logs/measure/one.traceback)" in said
-    )
+    assert "delete it and run again" in said
+    assert "(details: results/logs/measure/one.traceback)" in said
     assert "Traceback" not in said and not (copy / SCENE).exists()
     assert "Traceback" in (copy / "results/logs/measure/one.traceback").read_text()
 
@@ -97,24 +87,23 @@ def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
 def test_an_unreadable_table_is_named(tmp_path):
     path = tmp_path / "edited.csv"
     path.write_text('a,b\n1,2,3\n"4', encoding="utf-8")
-    with pytest.raises(
-        UnreadableFile, match=r"edited\.csv: cannot be read .* delete it and run again"
-    ):
+    refusal = r"edited\.csv: cannot be read .* delete it and run again"
+    with pytest.raises(UnreadableFile, match=refusal):
         load_table(path)
 
 
-# A file where a folder goes, or a folder where a file goes.
-PLACES = {
-    "results/data": "file", "results/logs": "file", ".snakemake": "file", "results/kernels/localised.txt": "folder",
-    "results/measurements/arrest.csv": "folder", "results/records/data/arrest.nc.json": "folder",
-}  # fmt: skip
-REST = [pytest.param(place, marks=pytest.mark.slow) for place in PLACES]
+# Places of folders, where a file is put, and of files, where a folder is put.
+FOLDERS = ("results/data", "results/logs", ".snakemake")
+FILES = ("kernels/localised.txt", "measurements/arrest.csv", "records/data/arrest.nc.json")
+PLACES = [("results", "file")]
+PLACES += [pytest.param(place, "file", marks=pytest.mark.slow) for place in FOLDERS]
+PLACES += [pytest.param(f"results/{name}", "folder", marks=pytest.mark.slow) for name in FILES]
 
 
-@pytest.mark.parametrize("place", ["results", *REST])
-def test_a_place_that_is_taken_fails_in_one_line(project, tmp_path, place):
+@pytest.mark.parametrize(("place", "kind"), PLACES)
+def test_a_place_that_is_taken_fails_in_one_line(project, tmp_path, place, kind):
     folder = copy_project(project, tmp_path / "copy", link=True)
-    path, kind = folder / place, PLACES.get(place, "file")
+    path = folder / place
     path.parent.mkdir(parents=True, exist_ok=True)
     path.mkdir() if kind == "folder" else path.write_text("mine")
     result = snakemake(folder, "--", FIGURE)
@@ -163,14 +152,8 @@ def test_a_job_that_fails_has_said_why(tmp_path, capfd):
 def test_jobs_run_one_after_another_in_a_process_until_it_ends(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", frozenset())
-    job = (
-        origin,
-        "a job",
-        {},
-        {"html": "results/scenes.html"},
-        {"scenes": {}},
-        "results/logs/one.log",
-    )
+    outputs, settings = {"html": "results/scenes.html"}, {"scenes": {}}
+    job = (origin, "a job", {}, outputs, settings, "results/logs/one.log")
     before = set(multiprocessing.active_children())
     for _ in range(3):
         jobs.run(*job)
@@ -210,15 +193,11 @@ def test_of_two_first_runs_in_a_fresh_clone_one_sets_up_and_one_runs(project, tm
     subprocess.run(["git", "clone", "--quiet", project, folder], check=True)
     options = {"cwd": folder, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     runs = [subprocess.Popen(run, **options) for _ in range(2)]
-    said = [each.communicate(timeout=500)[0] for each in runs]
-    assert sum("Setting up" in text for text in said) == 1 and "Traceback" not in "".join(said), (
-        said
-    )
-    # The second may begin when the first has ended.
-    refused = [text for each, text in zip(runs, said, strict=True) if each.returncode]
-    assert (
-        all("Another run is at work in this folder" in text for text in refused)
-        and len(refused) <= 1
-    )
+    said = [process.communicate(timeout=500)[0] for process in runs]
+    both = "".join(said)
+    assert both.count("Setting up") == 1 and "Traceback" not in both
+    # The second run may begin when the first has ended.
+    refused = [process.returncode for process in runs if process.returncode]
+    assert len(refused) == both.count("Another run is at work in this folder") <= 1
     assert (folder / FIGURE).exists()
     assert subprocess.run(run, cwd=folder, check=False, timeout=100).returncode == 0

@@ -1,9 +1,10 @@
-"""A results folder cannot mislead: whatever is done to it, `make verify` names it and the next run repairs it.
+"""A results folder cannot mislead: `make verify` names every change, and the next run repairs it.
 
-Every job is imitated by one that writes what it is made by and from: what is tested is which jobs run.
+Each job is imitated by one that writes by what and from what it is made: the tests see which run.
 """
 
 import json
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -18,10 +19,13 @@ from slippulse.data.lock import take
 
 pytestmark = pytest.mark.slow
 
-# What is made by other overlays than that of the tree.
+# The overlay of the results, and others.
 OVERLAYS = {
-    "overlay": OVERLAY, "other": OVERLAY | {"model": {"release": "elastic"}}, "paper": OVERLAY | {"preset": "paper"},
-}  # fmt: skip
+    "overlay": OVERLAY,
+    "other": OVERLAY | {"model": {"release": "elastic"}},
+    "paper": OVERLAY | {"preset": "paper"},
+}
+# Results that are made by every overlay.
 PART = (
     "results/scenes/one.html",
     "results/measurements/arrest.csv",
@@ -31,29 +35,26 @@ FIGURE = "figures/fig07_damage_zone"
 
 
 def run(folder: Path, *targets: str, overlay: str = "overlay.yaml") -> str:
-    """What a run says, which must succeed."""
+    """Run successfully, and return what the run writes to the terminal."""
     result = snakemake(folder, "--quiet", "--", *targets, overlay=overlay, cores=2)
     assert result.returncode == 0, result.stderr
     return result.stderr
 
 
 def verify(folder: Path, overlay: str = "overlay.yaml") -> dict[str, str]:
-    """As `make verify`: the reason by file."""
+    """Verify as `make verify` does, and return the reason by file."""
     result = snakemake(folder, "--quiet", "--", "verify", "everything", overlay=overlay)
     assert "Traceback" not in result.stdout + result.stderr
-    found = [
-        line.partition(": ") for line in result.stdout.splitlines() if line.startswith("results/")
-    ]
-    assert result.returncode == bool(found), result.stderr
-    return {name.removeprefix("results/"): reason for name, _, reason in found}
+    reasons = dict(re.findall(r"^results/(.+?): (.+)$", result.stdout, re.M))
+    assert result.returncode == bool(reasons), result.stderr
+    return reasons
 
 
 @pytest.fixture(scope="module")
 def finished(imitated, tmp_path_factory) -> Path:
-    """The imitated tree; and in folders beside results/, what each overlay makes."""
-    folder = Path(
-        shutil.copytree(imitated, tmp_path_factory.mktemp("results") / "first", symlinks=True)
-    )
+    """The imitated results; and in folders beside results/, what each overlay makes."""
+    folder = tmp_path_factory.mktemp("results") / "first"
+    shutil.copytree(imitated, folder, symlinks=True)
     for name, overlay in OVERLAYS.items():
         (folder / f"{name}.yaml").write_text(yaml.safe_dump(overlay), encoding="utf-8")
         if overlay is not OVERLAY:
@@ -65,12 +66,12 @@ def finished(imitated, tmp_path_factory) -> Path:
 
 @pytest.fixture
 def folder(finished, tmp_path) -> Path:
-    """The same, moved elsewhere: a test may do there what it likes."""
+    """A copy of this folder, which a test may change."""
     shutil.copytree(finished, tmp_path / "copied", symlinks=True)
     return Path(shutil.move(tmp_path / "copied", tmp_path / "moved"))
 
 
-# What is done to a folder, in a shell.
+# Functions of the shell in which a folder is changed.
 SHELL = r"""
 swap() { mv "$1" away; mv "$2" "$1"; mv away "$2"; }
 # A source or a text, as `rsync -a` and `cp -p` leave it.
@@ -78,77 +79,109 @@ edit() { touch -r "$1" was; echo "# edited" >> "$1"; touch -r was "$1"; }
 # Another value in a record.
 rewrite() { sed -i -zE "s#(\"$2\": )(\"[^\"]*\"|\{[^}]*\})#\1$3#" "results/records/$1.json"; }
 """
+# Changes of a file. Edits keep the size.
 GONE = {
     "removed": "rm {0}",
     "a dead link": "ln -sf nowhere {0}",
     "a link to a device": "ln -sf /dev/null {0}",
 }
-# Edits keep the size.
 HARMS = GONE | {
-    "edited": "sed -i 's/.$/!/' {0}", "old": "sed -i 's/.$/!/' {0}; touch -d @0 {0}",
-    "in the future": "sed -i 's/.$/!/' {0}; touch -d '3 hours' {0}", "with other line ends": "sed -i 's/$/\\r/' {0}",
-    "emptied": "truncate -s 0 {0}", "grown": "cat {0} {0} > twice; mv twice {0}", "cut": "truncate -s 20 {0}",
+    "edited": "sed -i 's/.$/!/' {0}",
+    "old": "sed -i 's/.$/!/' {0}; touch -d @0 {0}",
+    "in the future": "sed -i 's/.$/!/' {0}; touch -d '3 hours' {0}",
+    "with other line ends": "sed -i 's/$/\\r/' {0}",
+    "emptied": "truncate -s 0 {0}",
+    "grown": "cat {0} {0} > twice; mv twice {0}",
+    "cut": "truncate -s 20 {0}",
     "with zeros": "truncate -s +1 {0}",
-}  # fmt: skip
+}
+# Reasons that verify gives.
 MISSING, CHANGED = "missing", "not what its job wrote"
 NO_RECORD, UNREADABLE = "no record", "its record cannot be read"
 RULE, SOURCES = "made by another rule", "made by other sources"
 CONFIGURATION, UNKNOWN = "made by another configuration", "not known; no rule makes it"
 OLDER = "older than {}, which it is made from"
-# One of each kind of file, with what is done to it.
+# One of each kind of file, with its change.
 FILES = {
-    "kernels/localised.txt": "old", "data/barrier.nc": "edited", "data/mine/1-of-2.nc": "removed",
-    "data/mine.nc": "emptied", "measurements/arrest.csv": "in the future", "measurements/mine/2-of-2.csv": "old",
-    "predictions/arrest.csv": "with other line ends", "uncertainties/one.csv": "removed",
-    "uncertainties/coarser/one.csv": "edited", "studies/extremes.csv": "grown", f"{FIGURE}.png": "edited",
-    f"{FIGURE}.csv": "removed", "figures/fig02_phase_diagram.pdf": "a dead link", "figures/sweep_mine.csv": "old",
-    "scenes/one.html": "in the future", "scenes/barrier.pdf": "a link to a device", "claims.json": "edited",
-    "findings.json": "removed", "claims.html": "old", "explorer.html": "removed",
-    "manuscript/replication.html": "cut", "manuscript/replication.pdf": "removed",
-    "manuscript/verdicts.yaml": "emptied", "provenance.json": "with zeros", "checksums.txt": "edited",
-    "codecheck.yml": "removed", "index.html": "removed",
-}  # fmt: skip
-# Tables of what is done, and what verify then says of some results. Of a table all is done to one folder, where each is
-# named and repaired by itself.
+    "kernels/localised.txt": "old",
+    "data/barrier.nc": "edited",
+    "data/mine/1-of-2.nc": "removed",
+    "data/mine.nc": "emptied",
+    "measurements/arrest.csv": "in the future",
+    "measurements/mine/2-of-2.csv": "old",
+    "predictions/arrest.csv": "with other line ends",
+    "uncertainties/one.csv": "removed",
+    "uncertainties/coarser/one.csv": "edited",
+    "studies/extremes.csv": "grown",
+    f"{FIGURE}.png": "edited",
+    f"{FIGURE}.csv": "removed",
+    "figures/fig02_phase_diagram.pdf": "a dead link",
+    "figures/sweep_mine.csv": "old",
+    "scenes/one.html": "in the future",
+    "scenes/barrier.pdf": "a link to a device",
+    "claims.json": "edited",
+    "findings.json": "removed",
+    "claims.html": "old",
+    "explorer.html": "removed",
+    "manuscript/replication.html": "cut",
+    "manuscript/replication.pdf": "removed",
+    "manuscript/verdicts.yaml": "emptied",
+    "provenance.json": "with zeros",
+    "checksums.txt": "edited",
+    "codecheck.yml": "removed",
+    "index.html": "removed",
+}
+# Commands, and what verify then says of some results. All commands of a table change one folder,
+# where each change is named and repaired by itself.
+REASONS = dict.fromkeys(HARMS, CHANGED) | dict.fromkeys(GONE, MISSING)
 CONTENT = {
-    **{HARMS[how].format(f"results/{name}"): {name: MISSING if how in GONE else CHANGED}
-       for name, how in FILES.items()},
-    "cd results/data; swap pulse_damping.nc one.nc": {"data/pulse_damping.nc": CHANGED, "data/one.nc": CHANGED},
-    "cd results/figures; cp fig04_space_time.png fig05_scaling.png": {"figures/fig05_scaling.png": CHANGED},
+    HARMS[how].format(f"results/{name}"): {name: REASONS[how]} for name, how in FILES.items()
+}
+MOVES = {
+    "cd results/data; swap pulse_damping.nc one.nc": dict.fromkeys(
+        ("data/pulse_damping.nc", "data/one.nc"), CHANGED
+    ),
+    "cd results/figures; cp fig04_space_time.png fig05_scaling.png": {
+        "figures/fig05_scaling.png": CHANGED
+    },
     "cd results/measurements; mv damping_stress.csv Damping_stress.csv": {
-        "measurements/damping_stress.csv": MISSING, "measurements/Damping_stress.csv": UNKNOWN},
+        "measurements/damping_stress.csv": MISSING,
+        "measurements/Damping_stress.csv": UNKNOWN,
+    },
     "echo mine > results/data/unknown.nc": {"data/unknown.nc": UNKNOWN},
     "echo {} > results/records/gone.csv.json": {"records/gone.csv.json": UNKNOWN},
-}  # fmt: skip
+}
+HARMED_RECORDS = {
+    ("fig01_system_sketch", "removed"): NO_RECORD,
+    ("fig02_phase_diagram", "a dead link"): NO_RECORD,
+    ("fig03_steady_state", "emptied"): UNREADABLE,
+    ("fig04_space_time", "edited"): UNREADABLE,
+    ("fig05_scaling", "grown"): UNREADABLE,
+    ("fig06_burridge_knopoff", "cut"): UNREADABLE,
+}
 RECORDS = {
-    **{HARMS[how].format(f"results/records/figures/{name}.png.json"): {f"figures/{name}.png": reason}
-       for name, how, reason in (
-        ("fig01_system_sketch", "removed", NO_RECORD), ("fig02_phase_diagram", "a dead link", NO_RECORD),
-        ("fig03_steady_state", "emptied", UNREADABLE), ("fig04_space_time", "edited", UNREADABLE),
-        ("fig05_scaling", "grown", UNREADABLE), ("fig06_burridge_knopoff", "cut", UNREADABLE),
-    )},
+    HARMS[how].format(f"results/records/figures/{name}.png.json"): {f"figures/{name}.png": reason}
+    for (name, how), reason in HARMED_RECORDS.items()
+}
+REWRITTEN = {
     f"""rewrite {FIGURE}.png step '"measure"'""": {f"{FIGURE}.csv": RULE},
     "rewrite scenes/one.png outputs {}": {"scenes/one.pdf": RULE},
     "rewrite scenes/barrier.png inputs {}": {"scenes/barrier.html": RULE},
     """rewrite explorer.html outputs '{"explorer.html": "0"}'""": {"explorer.html": CHANGED},
     """rewrite data/arrest.nc sources '""'""": {
-        "data/arrest.nc": SOURCES, "measurements/arrest.csv": OLDER.format("data/arrest.nc")},
+        "data/arrest.nc": SOURCES,
+        "measurements/arrest.csv": OLDER.format("data/arrest.nc"),
+    },
     """rewrite studies/extremes.csv configuration '""'""": {"studies/extremes.csv": CONFIGURATION},
     """rewrite measurements/one.csv inputs '{"data/one.nc": "0"}'""": {
-        "measurements/one.csv": OLDER.format("data/one.nc")},
+        "measurements/one.csv": OLDER.format("data/one.nc")
+    },
     """cd results/measurements; swap scaling_stress.csv damping_stress.csv
        cd ../records/measurements; swap scaling_stress.csv.json damping_stress.csv.json""": {
-        "measurements/scaling_stress.csv": RULE, "measurements/damping_stress.csv": RULE},
-}  # fmt: skip
-NOTHING_LOST = {
-    "rm -r .snakemake": {}, "rm -r results/logs": {}, "cp overlay/index.html results/index.html": {},
-    # Times without order.
-    "find results | sed 'n;d' | xargs touch -d @0; find results | sed '1d;n;d' | xargs touch -d '3 hours'": {},
-    """echo '{"results/kernels/localised.txt": [1]}' > results/records/.digests""": {},
-    # What a kill leaves.
-    "echo half > results/data/.one-12345678.nc": {},
-    "mv results/scenes/one.png elsewhere; ln -s ../../elsewhere results/scenes/one.png": {},
-}  # fmt: skip
+        "measurements/scaling_stress.csv": RULE,
+        "measurements/damping_stress.csv": RULE,
+    },
+}
 OLD_SOURCES = {
     f"edit src/slippulse/{FIGURE}.py": {f"{FIGURE}.png": SOURCES},
     "edit src/slippulse/studies/extremes.py": {"studies/extremes.csv": SOURCES},
@@ -162,46 +195,89 @@ FOLDERS = {
     "rm -r results/records/scenes": {"scenes/one.html": NO_RECORD},
 }
 SOLVER, OTHER = {"data/one.nc": SOURCES}, {"data/one.nc": CONFIGURATION}
-CASES = {
-    "content": CONTENT, "records": RECORDS, "nothing lost": NOTHING_LOST, "sources": OLD_SOURCES, "folders": FOLDERS,
-    "a source under results in the future": {
-        "find results -exec touch -d '3 hours' {} +; edit src/slippulse/solver/taylor.py": SOLVER},
-    "a source, notes removed": {"rm -r .snakemake; edit src/slippulse/solver/taylor.py": SOLVER},
-    "the lock": {"edit requirements.lock": {f"{FIGURE}.png": SOURCES, "data/one.nc": SOURCES}},
-    "a copy put back": {"rm -r results; cp -r overlay results": {}},
-}  # fmt: skip
-# The same with the overlay of the run that follows, of some results alone.
-CASES_OF_OVERLAYS = {
-    "another overlay, notes removed": ({"rm -r .snakemake": OTHER}, "other.yaml"),
-    "another preset, notes removed": ({"rm -r .snakemake": {"data/arrest.nc": CONFIGURATION}}, "paper.yaml"),
-    "results of another overlay swapped in": ({"swap results other": OTHER}, "overlay.yaml"),
-    "results of another preset copied in": (
-        {"rm -r results; cp -r paper results": {"data/arrest.nc": CONFIGURATION}}, "overlay.yaml"),
-    "an old overlay": ({"cp other.yaml overlay.yaml; touch -d @0 overlay.yaml": OTHER}, "overlay.yaml"),
-}  # fmt: skip
+PAPER = {"data/arrest.nc": CONFIGURATION}
+SOLVER_EDIT = "edit src/slippulse/solver/taylor.py"
+FUTURE = "find results -exec touch -d '3 hours' {} +"
+LOCK = {f"{FIGURE}.png": SOURCES, "data/one.nc": SOURCES}
 
 
-@pytest.mark.parametrize("case", [*CASES, *CASES_OF_OVERLAYS])
-def test_what_was_done_to_a_folder_is_named_and_repaired(folder, case):
-    rows, overlay = CASES_OF_OVERLAYS.get(case) or (CASES[case], "overlay.yaml")
-    targets = PART if case in CASES_OF_OVERLAYS else TARGETS
-    for command in rows:
-        subprocess.run(["sh", "-ec", SHELL + command], cwd=folder, check=True)
-    # Of the configuration that stands there then.
-    now = yaml.safe_load((folder / overlay).read_text())
-    expected = digests(folder, next(name for name, one in OVERLAYS.items() if one == now))
-    if targets == PART:
-        expected = {name: expected[name] for name in digests(folder, "paper") if name in expected}
-    named = verify(folder, overlay)
-    for command, reasons in rows.items():
-        assert reasons.items() <= named.items(), command
-    assert named or not any(rows.values())
-    said = run(folder, *targets, overlay=overlay)
-    assert ("and made anew where needed" in said) == bool(named)
+@pytest.mark.parametrize(
+    "changes",
+    [
+        pytest.param(CONTENT | MOVES, id="content"),
+        pytest.param(RECORDS | REWRITTEN, id="records"),
+        pytest.param(OLD_SOURCES, id="sources"),
+        pytest.param(FOLDERS, id="folders"),
+        pytest.param({f"{FUTURE}; {SOLVER_EDIT}": SOLVER}, id="a source, results in the future"),
+        pytest.param({f"rm -r .snakemake; {SOLVER_EDIT}": SOLVER}, id="a source, notes removed"),
+        pytest.param({"edit requirements.lock": LOCK}, id="the lock"),
+    ],
+)
+def test_a_change_of_a_folder_is_named_and_repaired(folder, changes):
+    named = change_and_verify(folder, changes)
+    assert "and made anew where needed" in run(folder, *TARGETS)
+    assert named and digests(folder, "overlay").items() <= digests(folder).items()
+    assert not digests(folder, "overlay").keys() & verify(folder).keys()
+
+
+# Commands that lose nothing: times without order, what a kill leaves, notes of no form.
+HARMLESS = (
+    "rm -r .snakemake",
+    "rm -r results/logs",
+    "cp overlay/index.html results/index.html",
+    "find results | sed 'n;d' | xargs touch -d @0",
+    "find results | sed '1d;n;d' | xargs touch -d '3 hours'",
+    """echo '{"results/kernels/localised.txt": [1]}' > results/records/.digests""",
+    "echo half > results/data/.one-12345678.nc",
+    "mv results/scenes/one.png elsewhere; ln -s ../../elsewhere results/scenes/one.png",
+)
+
+
+@pytest.mark.parametrize("commands", [HARMLESS, ("rm -r results; cp -r overlay results",)])
+def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
+    assert change_and_verify(folder, {command: {} for command in commands}) == {}
+    assert "and made anew where needed" not in run(folder, *TARGETS)
+    assert digests(folder, "overlay").items() <= digests(folder).items()
+    result = snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")
+    assert planned(result) == {}
+
+
+@pytest.mark.parametrize(
+    ("command", "reasons", "overlay", "made"),
+    [
+        pytest.param("rm -r .snakemake", OTHER, "other.yaml", "other", id="another overlay"),
+        pytest.param("rm -r .snakemake", PAPER, "paper.yaml", "paper", id="another preset"),
+        pytest.param("swap results other", OTHER, "overlay.yaml", "overlay", id="swapped"),
+        pytest.param(
+            "rm -r results; cp -r paper results", PAPER, "overlay.yaml", "overlay", id="copied in"
+        ),
+        pytest.param(
+            "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml",
+            OTHER,
+            "overlay.yaml",
+            "other",
+            id="an old overlay",
+        ),
+    ],
+)
+def test_results_of_another_overlay_are_made_anew(folder, command, reasons, overlay, made):
+    """Some results are asked for; ``made`` is a folder with the results of the overlay."""
+    change_and_verify(folder, {command: reasons}, overlay)
+    expected, names = digests(folder, made), digests(folder, "paper").keys()
+    expected = {name: digest for name, digest in expected.items() if name in names}
+    assert "and made anew where needed" in run(folder, *PART, overlay=overlay)
     assert expected.items() <= digests(folder).items()
     assert not expected.keys() & verify(folder, overlay).keys()
-    if not named:
-        assert planned(snakemake(folder, "--dry-run", "--", *targets, overlay=overlay)) == {}
+
+
+def change_and_verify(folder: Path, changes: dict, overlay: str = "overlay.yaml") -> dict[str, str]:
+    """Change a folder by commands; verify must name each change. Returns all reasons by file."""
+    for command in changes:
+        subprocess.run(["sh", "-ec", SHELL + command], cwd=folder, check=True)
+    named = verify(folder, overlay)
+    for command, reasons in changes.items():
+        assert reasons.items() <= named.items(), command
+    return named
 
 
 def test_a_run_of_one_target_says_what_it_leaves_behind_and_touches_nothing_else(folder):
@@ -227,10 +303,8 @@ def test_short_names_are_targets(folder):
         run(folder, name)
         assert (folder / f"results/{FIGURE}.png").exists(), name
     result = snakemake(folder, "--", "fig077", overlay="overlay.yaml")
-    assert (
-        result.returncode
-        and "target: 'fig077' (did you mean 'fig07'?)" in result.stdout + result.stderr
-    )
+    said = result.stdout + result.stderr
+    assert result.returncode and "target: 'fig077' (did you mean 'fig07'?)" in said
 
 
 def test_a_draft_is_verified_as_a_draft(folder):
@@ -248,9 +322,8 @@ def test_a_run_is_not_begun_beside_another(folder):
     assert result.returncode == 1 and "Another run is at work in this folder" in result.stderr
     assert "Traceback" not in result.stderr and (folder / "results/kernels/localised.txt").exists()
     held.close()
-    # What a killed run has left of Snakemake's own lock is in nobody's way.
+    # A lock of Snakemake that a killed run has left is in nobody's way.
     (folder / ".snakemake/locks").mkdir(exist_ok=True)
-    (folder / ".snakemake/locks/0.input.lock").write_text(
-        json.dumps(["results/kernels/localised.txt"])
-    )
+    locked = json.dumps(["results/kernels/localised.txt"])
+    (folder / ".snakemake/locks/0.input.lock").write_text(locked)
     assert "The last run was killed" in run(folder, "everything")
