@@ -1,1 +1,1 @@
-"""Studies of the solver itself: each module's ``table(settings)`` is written to results/studies/NAME.csv."""
+"""Studies of the solver and of the theory: their designs as constants, and their tables."""

@@ -1,12 +1,13 @@
 """Error against cost: what each scheme, order, step and spacing buys, the presets among them.
 
-Cost is counted, not timed: passes of the stencil over a block do not depend on the machine. The exact solution is
-sampled at the spacing of the textbook scheme.
+Cost is counted, not timed: the number of stencil passes over a block does not depend on the
+machine. The exact solution is sampled at the spacing of the textbook scheme.
 """
 
 import math
-from functools import cache
+from functools import cache, partial
 from itertools import product
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -25,106 +26,139 @@ from ..theory.front_speeds import front_speed_undamped, steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
-# Two pulses, without damping and with that of the paper's figures, long enough to be steady.
-EVEN, GAMMA, DAMPING_RATIOS, DURATION = Prestress(0.55, 0.55), 0.65, (0.0, 0.1), 20.0
-# A crack that turns into a pulse at Gamma = 0, the fraction of the way of its left front whose time is compared, its
-# duration in units of that time, and its spacing over that of the pulses, since it is larger.
-UNEVEN, FRACTION, CRACK_DURATION, CRACK_SPACING = Prestress(-1.0, 0.0), 0.95, 3.0, 2.0
-# Every setting; the presets are added. The error of the textbook scheme is that of its step: one spacing is enough.
-SPACINGS, ORDERS, STEPS = (0.08, 0.04, 0.02, 0.01, 0.005), (3, 4, 5, 6, 8), (1.0, 0.5, 0.25)
+# Two pulses, one without damping and one with that of the paper's figures, become steady.
+EVEN, GAMMA = Prestress(0.55, 0.55), 0.65
+DAMPING_RATIOS, DURATION = (0.0, 0.1), 20.0
+# A crack turns into a pulse at Gamma = 0. The time at which its left front has covered a fraction
+# of its way is compared, in a run of three such times.
+UNEVEN = Prestress(-1.0, 0.0)
+FRACTION, CRACK_DURATION = 0.95, 3.0
+# The crack is larger than the pulses, and so is its spacing.
+CRACK_SPACING = 2.0
+SPACINGS = (0.08, 0.04, 0.02, 0.01, 0.005)
+ORDERS, STEPS = (3, 4, 5, 6, 8), (1.0, 0.5, 0.25)
+# The error of the textbook scheme is that of its step: one spacing is enough.
 TEXTBOOK_SPACING, TEXTBOOK_STEPS = 0.02, (0.5, 0.25, 0.125, 0.0625, 0.03125)
-# Front speed against the step, at a level with an irrational speed: the textbook scheme nearly up to its stability
-# bound, the localised one, which does not depend on it, at some of these steps.
-LOCKING, LOCKING_SPACING, LOCKING_DURATION = Prestress(0.5, 0.5), 0.1, 30.0
-LOCKING_STEPS, EVERY = np.linspace(0.1, 0.98, 67).tolist(), 4
+# Front speed against the step, at a level with an irrational speed: the textbook scheme nearly up
+# to its stability bound, the localised one, which does not depend on it, at every fourth step.
+LOCKING = partial(Scene, "stress", Prestress(0.5, 0.5), 30.0, 0.1)
+LOCKING_STEPS = np.linspace(0.1, 0.98, 67).tolist()
 
+PULSE_QUANTITIES = ("front_speed", "peak_velocity", "width", "final_slip", "transition_time")
 # Errors of the scenes, relative to exact theory, the largest over the damping ratios.
-QUANTITIES = (
-    "front_speed", "peak_velocity", "width", "final_slip", "transition_time", "share_time", "arrest_position", "energy",
-)  # fmt: skip
+QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
 
-
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of part "trade": scheme, order, step (in units of dx), dx, preset (its name where it is one), work (stencil
-    passes over one block), block_updates and one error a quantity; of part "locking": scheme, step, front_speed, exact.
-    Exact is the continuum limit at fixed beta/dx.
-    """
-    window = settings["measure"]["front_window"]
-    given = settings["presets"].items()
-    presets = {
-        ("localised", preset["order"], preset["max_step"], preset["dx"]): name
-        for name, preset in given
-    }
-    ladder = [("fixed_step", 1, step, TEXTBOOK_SPACING) for step in TEXTBOOK_STEPS]
-    ladder += [
-        ("localised", order, step, dx) for dx, order, step in product(SPACINGS, ORDERS, STEPS)
-    ]
-    ladder += [("continuum", 1, 1.0, TEXTBOOK_SPACING)]
-    ladder += [setting for setting in presets if setting not in ladder]
-    trade = pd.DataFrame(ladder, columns=["scheme", "order", "step", "dx"])
-    trade = trade.join(pd.DataFrame([errors(*setting, window) for setting in ladder]))
-    trade = trade.assign(preset=[presets.get(setting, "") for setting in ladder], part="trade")
-    steps = [("fixed_step", step) for step in LOCKING_STEPS]
-    steps += [("localised", step) for step in LOCKING_STEPS[::EVERY]]
-    locking, of = [], ("stress", LOCKING, LOCKING_DURATION, LOCKING_SPACING)
-    for scheme, step in steps:
-        speed = front_speed(simulate(Scene(*of, scheme=scheme, max_step=step)), window)[0]
-        locking.append({"scheme": scheme, "step": step, "front_speed": speed})
-    exact = {"exact": front_speed_undamped(LOCKING.left), "dx": LOCKING_SPACING, "part": "locking"}
-    return pd.concat([trade, pd.DataFrame(locking).assign(**exact)], ignore_index=True)
-
-
-# The same for every setting.
-transition_of, crack_of = cache(exact_transition_displacement), cache(ArrestingCrack)
+# These are the same for every setting.
+transition_of = cache(exact_transition_displacement)
+crack_of = cache(ArrestingCrack)
 speed_of = cache(exact_speed)
 
 
-def errors(scheme: str, order: int, step: float, dx: float, window: float) -> dict[str, float]:
-    """Work, and the largest relative error of each quantity, over a pulse at each damping ratio, and at the largest one
-    the crack: without damping the ringing of the lattice decides where its left front stands still.
-    """
-    # The textbook scheme and the exact solution have no order to choose.
-    known = max(order, 3)
+class Setting(NamedTuple):
+    """A scheme with its order, step (in units of dx) and spacing."""
 
-    def run(
-        profile: Prestress, duration: float, dx: float, gamma: float, ratio: float
-    ) -> xr.Dataset:
-        # The step is cut where it would not be stable, as the pipeline does.
-        bound = MARGIN * largest_step(scheme, known, ratio, gamma * dx**2)
-        of = ("displacement" if gamma > 0.0 else "stress", profile, duration, dx, gamma, ratio * dx)
-        return simulate(Scene(*of, scheme=scheme, max_step=min(step, bound), order=known))
+    scheme: str
+    order: int
+    step: float
+    dx: float
 
-    found = []
-    for ratio in DAMPING_RATIOS:
-        data = run(EVEN, DURATION, dx, GAMMA, ratio)
-        pulse, speed = leading_pulse(data, window), float(speed_of(EVEN.left, ratio))
-        # At fixed beta/dx damping acts at the front alone in the continuum.
-        steady = steady_pulse(EVEN.left, GAMMA, 0.0 if scheme == "continuum" else ratio * dx, speed)
-        names = ("speed", "peak_velocity", "width", "slip")
-        ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
-        ratios.append(data.attrs["first_stick_time"] / transition_of(EVEN, GAMMA, ratio).time)
-        found.append(
-            costs(data) | dict(zip(QUANTITIES, np.abs(np.array(ratios) - 1.0), strict=False))
+    def run(self, profile: Prestress, duration: float, gamma: float, ratio: float) -> xr.Dataset:
+        """Simulate a scene, at a step that is cut where it would not be stable."""
+        # The textbook scheme and the exact solution have no order to choose.
+        order = max(self.order, 3)
+        bound = MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2)
+        numbers: dict[str, Any] = {
+            "scheme": self.scheme,
+            "max_step": min(self.step, bound),
+            "order": order,
+        }
+        boundary = "displacement" if gamma > 0.0 else "stress"
+        return simulate(
+            Scene(boundary, profile, duration, self.dx, gamma, ratio * self.dx, **numbers)
         )
-    crack = crack_of(UNEVEN, max(DAMPING_RATIOS))
-    time, distance = crack.time_at_fraction(FRACTION), abs(crack.balance_position)
-    data = run(UNEVEN, CRACK_DURATION * time, CRACK_SPACING * dx, 0.0, max(DAMPING_RATIOS))
-    late, short = (
-        arrival(data, FRACTION * distance, "left")[0] / time,
-        path(data, "left")[1][-1] / distance,
-    )
-    found.append(costs(data) | {"share_time": abs(late - 1.0), "arrest_position": abs(short - 1.0)})
-    out = {
-        name: float(np.max([entry[name] for entry in found if name in entry]))
-        for name in QUANTITIES
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Rows of part "trade": scheme, order, step, dx, preset (its name where it is one), work
+    (stencil passes over one block), block_updates and one error a quantity; of part "locking":
+    scheme, step, front_speed, exact. Exact is the continuum limit at fixed beta/dx.
+    """
+    window = settings["measure"]["front_window"]
+    return pd.concat([trade(settings["presets"], window), locking(window)], ignore_index=True)
+
+
+def trade(presets: dict, window: float) -> pd.DataFrame:
+    """Costs and errors of every setting."""
+    names = {
+        Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
+        for name, preset in presets.items()
     }
-    return out | {name: sum(entry[name] for entry in found) for name in ("block_updates", "work")}
+    ladder = [Setting("fixed_step", 1, step, TEXTBOOK_SPACING) for step in TEXTBOOK_STEPS]
+    for dx, order, step in product(SPACINGS, ORDERS, STEPS):
+        ladder.append(Setting("localised", order, step, dx))
+    ladder.append(Setting("continuum", 1, 1.0, TEXTBOOK_SPACING))
+    ladder += [setting for setting in names if setting not in ladder]
+    rows = pd.DataFrame(ladder).join(pd.DataFrame([errors(one, window) for one in ladder]))
+    return rows.assign(preset=[names.get(setting, "") for setting in ladder], part="trade")
+
+
+def locking(window: float) -> pd.DataFrame:
+    """The front speed over the step, by both schemes."""
+    steps = [("fixed_step", step) for step in LOCKING_STEPS]
+    steps += [("localised", step) for step in LOCKING_STEPS[::4]]
+    rows = pd.DataFrame(steps, columns=["scheme", "step"])
+    scenes = [LOCKING(scheme=scheme, max_step=step) for scheme, step in steps]
+    rows["front_speed"] = [front_speed(simulate(scene), window)[0] for scene in scenes]
+    exact = front_speed_undamped(scenes[0].prestress.left)
+    return rows.assign(exact=exact, dx=scenes[0].dx, part="locking")
+
+
+def errors(setting: Setting, window: float) -> dict[str, float]:
+    """Work, and the largest relative error of each quantity over the pulses and the crack.
+
+    The crack is damped: otherwise the ringing of the lattice decides where its left front stands.
+    """
+    runs = [pulse_errors(setting, ratio, window) for ratio in DAMPING_RATIOS]
+    runs.append(crack_errors(setting))
+
+    def largest(name: str) -> float:
+        return float(np.max([run[name] for run in runs if name in run]))
+
+    numbers = {name: largest(name) for name in QUANTITIES}
+    numbers["block_updates"] = sum(run["block_updates"] for run in runs)
+    return numbers | {"work": sum(run["work"] for run in runs)}
+
+
+def pulse_errors(setting: Setting, ratio: float, window: float) -> dict[str, float]:
+    """Costs and relative errors of a pulse at one damping ratio."""
+    run = setting.run(EVEN, DURATION, GAMMA, ratio)
+    pulse = leading_pulse(run, window)
+    # At fixed beta/dx damping acts at the front alone in the continuum.
+    beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
+    steady = steady_pulse(EVEN.left, GAMMA, beta, float(speed_of(EVEN.left, ratio)))
+    names = ("speed", "peak_velocity", "width", "slip")
+    ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
+    ratios.append(run.attrs["first_stick_time"] / transition_of(EVEN, GAMMA, ratio).time)
+    return costs(run) | dict(zip(PULSE_QUANTITIES, np.abs(np.array(ratios) - 1.0), strict=True))
+
+
+def crack_errors(setting: Setting) -> dict[str, float]:
+    """Costs and relative errors of the crack whose left front slows down."""
+    ratio = max(DAMPING_RATIOS)
+    crack = crack_of(UNEVEN, ratio)
+    time, distance = crack.time_at_fraction(FRACTION), abs(crack.balance_position)
+    coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
+    run = coarser.run(UNEVEN, CRACK_DURATION * time, 0.0, ratio)
+    late = arrival(run, FRACTION * distance, "left")[0] / time
+    reached = path(run, "left")[1][-1] / distance
+    return costs(run) | {"share_time": abs(late - 1.0), "arrest_position": abs(reached - 1.0)}
 
 
 def costs(run: xr.Dataset) -> dict[str, float]:
-    """Residual of the energy balance, block updates, and stencil passes over one block, those of events included.
+    """Residual of the energy balance, block updates, and stencil passes over one block.
 
-    Each order is one pass; the textbook scheme passes once over the whole lattice, the exact solution has none.
+    Each order is one pass; events have theirs. The textbook scheme passes once over the whole
+    lattice, the exact solution has none.
     """
     numbers = run.attrs
     work = {
@@ -132,5 +166,8 @@ def costs(run: xr.Dataset) -> dict[str, float]:
         "fixed_step": numbers["steps"] * run.sizes["x"],
         "continuum": math.nan,
     }
-    found = {"energy": numbers["energy_residual"], "block_updates": numbers["block_updates"]}
-    return found | {"work": float(work[numbers["scheme"]])}
+    return {
+        "energy": numbers["energy_residual"],
+        "block_updates": numbers["block_updates"],
+        "work": float(work[numbers["scheme"]]),
+    }

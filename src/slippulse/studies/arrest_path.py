@@ -9,19 +9,18 @@ from ..theory.arrest import ArrestingCrack
 # The simulation whose parameters the path has.
 NEEDS = {"sweeps": ["arrest"]}
 
-# What is still to go, in units of |x_minus|: denser towards the end, which takes for ever; last a value for the text.
+# Fractions of |x_minus| still to go, denser towards the end, which takes for ever; the last one is
+# for the text.
 TO_GO = np.append(np.geomspace(1.0, 1e-4, 200)[1:], 1e-6)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """When which fraction of the way is still to go, for each damping ratio; time in units of |x_minus|."""
+    """Time, in units of |x_minus|, at which a fraction is still to go, by damping ratio."""
     parts = {}
     for scene in expand(settings["sweeps"]["arrest"])[0]:
         if scene.damping_ratio not in parts:
             crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
-            time = (
-                np.array([crack.time_at_fraction(1.0 - left) for left in TO_GO])
-                / -crack.balance_position
-            )
-            parts[scene.damping_ratio] = pd.DataFrame({"time": time, "to_go": TO_GO})
+            times = np.array([crack.time_at_fraction(1.0 - to_go) for to_go in TO_GO])
+            columns = {"time": times / -crack.balance_position, "to_go": TO_GO}
+            parts[scene.damping_ratio] = pd.DataFrame(columns)
     return pd.concat(parts, names=["damping_ratio"]).reset_index("damping_ratio")

@@ -1,4 +1,4 @@
-"""Pulses sent into barriers: how deep they come, at several spacings, and past which barriers."""
+"""Pulses sent into barriers: how deep they come at several spacings, and which they pass."""
 
 import math
 from itertools import product
@@ -18,78 +18,75 @@ NEEDS = {}  # type: dict[str, list[str]]
 
 # Without damping, and that of the paper's figures.
 DAMPING_RATIOS = (0.0, 0.1)
-# Every pair of levels before and in the barrier, each with one of the gammas as in a Latin square.
-LEVELS, BARRIERS, GAMMAS = (0.3, 0.5, 0.65, 0.8), (-0.2, -0.5, -1.0), (0.3, 0.65, 1.0)
+# Every pair of levels before and in the barrier has one of the gammas, as in a Latin square.
+LEVELS, BARRIERS = (0.3, 0.5, 0.65, 0.8), (-0.2, -0.5, -1.0)
+GAMMAS = (0.3, 0.65, 1.0)
 # Three spacings show the order of convergence.
 SPACINGS = (0.04, 0.02, 0.01)
-# Of the map of exact depths, the barriers about evenly in their logarithm.
+# The map of exact depths has barriers about evenly in their logarithm.
 MAP_LEVELS = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9)
 MAP_BARRIERS = (-1.3, -0.85, -0.55, -0.36, -0.23, -0.15, -0.1)
-# Lengths of barriers over the exact depth, about it; and a spacing at which a block is less than the difference.
+# Lengths of barriers over the exact depth; a block is less than the difference at this spacing.
 LENGTHS, PASSING_SPACING = (0.8, 0.95, 1.05, 1.2), 0.0125
-# Widths of the Gaussian after which the pre-stress is its level, and a width small enough for every pulse.
+# The pre-stress is its level after so many widths of the Gaussian; the width suits every pulse.
 TAIL, WIDTH = 5.0, 1.0
 # A pulse dies or passes before a wave would have gone this many times as deep.
 CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1; it scales like 1/sqrt(gamma)) and
-    paper (the later estimate; it scales like 1/gamma); "depth": gamma and dx too, measured, exact, paper; "passing":
-    length (of the barrier, over the exact depth), measured (1 where the front went past, 0 where it did not). Lattices
-    have the barrier where the pulse is steady, by its finite memory.
+    """Rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1, which scales
+    like 1/sqrt(gamma)) and paper (the later estimate, which scales like 1/gamma); "depth": gamma,
+    dx, measured, exact, paper; "passing": length (of the barrier, over the exact depth), measured
+    (1 where the front went past, 0 where it did not).
     """
     rows, passing = [], []
     for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):
         rows.append(depths(tau0, barrier, 1.0, ratio))
-    for (row, tau0), (column, barrier), ratio in product(
-        enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS
-    ):
-        found = depths(tau0, barrier, GAMMAS[(row + column) % len(GAMMAS)], ratio)
-        pulse = steady_pulse(tau0, found["gamma"], damping_ratio=ratio)
+    pairs = product(enumerate(LEVELS), enumerate(BARRIERS), DAMPING_RATIOS)
+    for (line, tau0), (column, barrier), ratio in pairs:
+        known = depths(tau0, barrier, GAMMAS[(line + column) % len(GAMMAS)], ratio)
+        pulse = steady_pulse(tau0, known["gamma"], damping_ratio=ratio)
         for dx in SPACINGS:
-            depth = entered(found, pulse, dx, (0.0, barrier))
-            rows.append(found | {"part": "depth", "dx": dx, "measured": depth})
+            depth = entered(known, pulse, dx, (0.0, barrier))
+            rows.append(known | {"part": "depth", "dx": dx, "measured": depth})
+        passes = known | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING}
         for length in LENGTHS:
-            depth = entered(
-                found, pulse, PASSING_SPACING, (0.0, barrier), (length * found["exact"], tau0)
-            )
-            past = {"length": length, "measured": float(depth > (length + 0.5) * found["exact"])}
-            passing.append(
-                found | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING} | past
-            )
+            steps = (0.0, barrier), (length * known["exact"], tau0)
+            depth = entered(known, pulse, PASSING_SPACING, *steps)
+            went_past = float(depth > (length + 0.5) * known["exact"])
+            passing.append(passes | {"length": length, "measured": went_past})
     return pd.DataFrame(rows + passing)
 
 
 def depths(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str, Any]:
     """A row of the map, or the beginning of another."""
-    point = {
+    return {
         "part": "map",
         "tau0": tau0,
         "barrier": barrier,
         "gamma": gamma,
         "damping_ratio": ratio,
+        "exact": barrier_depth(tau0, barrier, gamma, ratio),
+        "paper": barrier_depth_estimate(tau0, barrier, gamma),
     }
-    estimate = barrier_depth_estimate(tau0, barrier, gamma)
-    return point | {"exact": barrier_depth(tau0, barrier, gamma, ratio), "paper": estimate}
 
 
 def entered(
-    scene: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[float, float]
+    known: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[float, float]
 ) -> float:
-    """How far the right front of a pulse enters a barrier on a lattice, to half a block beyond the last released one.
+    """Depth at which a pulse has entered a barrier on a lattice, to half a block past the last one.
 
-    The pre-stress has ``steps``, counted from where the barrier begins, on both sides: between two blocks, and farther
-    out than the pulse remembers its nucleation.
+    The pre-stress has ``steps``, counted from where the barrier begins, on both sides. It begins
+    between two blocks, and farther out than the pulse remembers its nucleation.
     """
-    tau0, gamma, ratio = (scene[name] for name in ("tau0", "gamma", "damping_ratio"))
+    tau0, gamma = known["tau0"], known["gamma"]
     start = (math.floor((TAIL * WIDTH + pulse.width / (pulse.speed - 1.0)) / dx) + 0.5) * dx
-    both = tuple(
-        (sign * (start + position), level) for sign in (1.0, -1.0) for position, level in steps
-    )
-    profile = Prestress(tau0, tau0, WIDTH, steps=both)
-    duration = start + CROSSINGS * scene["exact"] + pulse.width
-    run = run_scene(
-        Scene("displacement", profile, duration, dx, gamma, ratio * dx, max_step=0.5, order=4)
-    )
+    right = [(start + position, level) for position, level in steps]
+    left = [(-position, level) for position, level in right]
+    profile = Prestress(tau0, tau0, WIDTH, steps=(*right, *left))
+    duration = start + CROSSINGS * known["exact"] + pulse.width
+    beta = known["damping_ratio"] * dx
+    scene = Scene("displacement", profile, duration, dx, gamma, beta, max_step=0.5, order=4)
+    run = run_scene(scene)
     return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

@@ -1,4 +1,4 @@
-"""Exact numbers that the derivations of the report quote: of the published scene, and of small scenes of their own."""
+"""Exact numbers that the derivations of the report quote, of the published scene and small ones."""
 
 import math
 from collections.abc import Callable
@@ -20,48 +20,46 @@ from .gaussian_transition import over_paper
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
 
-# Positions of the table of stick times, in units of H; nothing is known to more decimals than this, the release at a
-# nucleation point among them.
-POSITIONS, DECIMALS = np.arange(9.0), 8
-# Long enough for the left front of a one-way pulse to stop.
+# Positions of the table of stick times, in units of H.
+POSITIONS = np.arange(9.0)
+# Nothing in it is known to more decimals, the release at a nucleation point among them.
+DECIMALS = 8
+# The left front of a one-way pulse stops within this time.
 ONE_WAY_DURATION = 8.0
-# A softer layer, in which the peak at nucleation is narrow.
+# In a softer layer the peak at nucleation is narrow.
 SOFT = 1.0 / 9.0
-# A derivative in space by a difference over this.
+# A derivative in space is a difference over this distance.
 STEP = 1e-3
-# Fronts that are followed block by block: speeds, damping ratios, and gamma dx^2 of the leaf springs.
+# Fronts that are followed block by block: speeds, damping ratios, and gamma dx^2.
 FOLLOWED = (1.25, 2.0, 4.0), (0.0, 0.2), (0.0, 0.5)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Returns quantity, x (position, of the three that depend on it), value (NaN where theory has no answer)."""
+    """Quantity, x (position, of the three that depend on it), value (NaN where theory has none)."""
     scenes = {name: expand(sweep)[0] for name, sweep in settings["sweeps"].items()}
     published, step = scenes["space_time_displacement"][0], scenes["pulses_across_a_step"][0]
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
     level, gamma = step.prestress.left, step.gamma
     ratio, release = published.damping_ratio, published.release
     rupture = cache(lambda: exact_rupture(published.attributes()))
+    halfway = cache(lambda: 0.5 * rupture().transition_time)
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
-    stop = one_way.front_ends[0][0]
-    # An undamped one at the speed with damping.
+    stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)
+    # It is undamped, at the speed with damping.
     pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
-    admissible = [
-        front["admissible"] for rule in RELEASES for front in admissibility_table(*FOLLOWED, rule)
-    ]
+    fronts = pd.concat([pd.DataFrame(admissibility_table(*FOLLOWED, rule)) for rule in RELEASES])
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
         "pulse_width": lambda: pulse().width,
-        # Over which it forgets what was before.
+        # A pulse forgets over this distance what was before.
         "memory_distance": lambda: pulse().width / (pulse().speed - 1.0),
         "barrier_depth": lambda: barrier_depth(level, -level, gamma, ratio, release),
         "barrier_depth_undamped": lambda: barrier_depth(level, -level, gamma),
         "barrier_depth_estimate": lambda: barrier_depth_estimate(level, -level, gamma),
-        # Where the left front stops between a negative level and a positive one, and the transition there.
+        # The left front stops where a negative level meets a positive one.
         "one_way_stop_position": lambda: stop.x,
         "one_way_stop_time": lambda: stop.time,
-        "one_way_first_stick_position": lambda: (
-            one_way.first_stick[1] if one_way.first_stick else math.nan
-        ),
+        "one_way_first_stick_position": lambda: first_stick[1],
         "one_way_transition_time": lambda: one_way.transition_time,
         "one_way_transition_length": lambda: one_way.transition_length,
         "transition_point_lowest": lambda: over_paper(levels[0]),
@@ -71,20 +69,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "transition_peak_highest": lambda: over_paper(levels[-1], 1.0),
         "transition_peak_level": lambda: over_paper(level, 1.0),
         "transition_peak_level_soft": lambda: over_paper(level, SOFT),
-        # The curvature of slip at the nucleation point halfway to the transition, where the pre-stress is 1.
-        "strain_term": lambda: abs(
-            float(rupture().strain(STEP, 0.5 * rupture().transition_time)) / STEP
-        ),
-        # Steady fronts found block by block, and those of them that are admissible.
-        "fronts_block_by_block": lambda: len(admissible),
-        "fronts_admissible": lambda: sum(admissible),
+        # The curvature of slip at the nucleation point, halfway to the transition; tau is 1 there.
+        "strain_term": lambda: abs(float(rupture().strain(STEP, halfway())) / STEP),
+        "fronts_block_by_block": lambda: len(fronts),
+        "fronts_admissible": lambda: int(fronts["admissible"].sum()),
     }
     rows = [(name, math.nan, or_nan(find)) for name, find in numbers.items()]
-    # Release, sticking and slip at some positions of the published scene.
     for name in ("release_time", "stick_time", "final_slip"):
         try:
-            found = np.round(getattr(rupture(), name)(POSITIONS), DECIMALS)
+            values = np.round(getattr(rupture(), name)(POSITIONS), DECIMALS)
         except (ValueError, ArithmeticError):
-            found = np.full_like(POSITIONS, math.nan)
-        rows += zip([name] * POSITIONS.size, POSITIONS, found, strict=True)
+            values = np.full_like(POSITIONS, math.nan)
+        rows += zip([name] * POSITIONS.size, POSITIONS, values, strict=True)
     return pd.DataFrame(rows, columns=["quantity", "x", "value"])

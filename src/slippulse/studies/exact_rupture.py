@@ -1,4 +1,4 @@
-"""Whole ruptures, exact and on lattices: edges, slip, a map of slip velocity, and how their difference falls."""
+"""Whole ruptures, exact and on lattices: edges, slip, slip velocity, and their differences."""
 
 import numpy as np
 import pandas as pd
@@ -11,40 +11,38 @@ from ..theory.rupture import Rupture
 NEEDS = {"data": ["exact_displacement", "exact_asymmetric", "exact_stress"]}
 
 CURVE_POINTS, MARKS = 201, 41
-# Positions that are compared, between these fractions of the two fronts' ways: a front that stops does so sharply.
-POSITIONS, FRACTIONS = 41, (0.8, 0.9)
+# Positions are compared between these fractions of the ways of the left and the right front. A
+# front that stops does so sharply, so that less of its way is compared.
+POSITIONS = 41
+STOPPING, RUNNING = 0.8, 0.9
 # Time after the release and before the stick that belongs to the layers at both edges.
 LAYER = 0.4
 # The map and the marks are of the run that is nearest this spacing.
 SHOWN = 0.04
-# What is compared of a run, by its name there.
+# Variables of a run, by the name of what is compared.
 EDGES = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
+PARAMETERS = ["boundary", "left", "right", "gamma", "damping_ratio", "dx"]
 
 
 def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Scene and role: scene (boundary, left, right, gamma, damping_ratio), exact and lattice (position, release, stick,
-    slip), map_exact and map_lattice (time, position, slip_velocity > 0), difference (quantity, dx, difference in the
-    mean over the mean, places: how many it is over).
+    """Scene and role: scene (PARAMETERS), exact and lattice (position, release, stick, slip),
+    map_exact and map_lattice (time, position, slip_velocity > 0), difference (quantity, dx,
+    difference in the mean over the mean, places: how many it is over).
     """
     parts = []
     for name in NEEDS["data"]:
         runs = [point(data[name], index) for index in range(data[name].sizes["point"])]
         rupture = exact_rupture(runs[0].attrs)
         shown = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN)))
-        kinds = ("boundary", "left", "right", "gamma", "damping_ratio", "dx")
-        rows = [pd.DataFrame([{key: shown.attrs[key] for key in kinds}]).assign(role="scene")]
-        left, right = rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
+        rows = [pd.DataFrame([shown.attrs])[PARAMETERS].assign(role="scene")]
         if name != NEEDS["data"][-1]:
-            x = np.linspace(left, right, CURVE_POINTS)[1:-1]
-            rows.append(pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)))
-            released = np.flatnonzero(np.isfinite(shown["release_time"].values))
-            kept = shown.isel(x=released[:: max(1, released.size // MARKS)])
-            marks = {key: kept[of].values for key, of in ({"position": "x"} | EDGES).items()}
-            rows.append(pd.DataFrame(marks).assign(role="lattice"))
+            rows += _edges(shown, rupture)
         if name == NEEDS["data"][0]:
             rows += _map(shown, rupture)
-        stops = rupture.front_ends[0][0].reason == "stops" or rupture.gamma == 0.0
-        x = np.linspace(left * FRACTIONS[0 if stops else 1], right * FRACTIONS[1], POSITIONS)
+        left, right = rupture.front_ends[0][0], rupture.front_ends[-1][1]
+        stops = left.reason == "stops" or rupture.gamma == 0.0
+        fraction = STOPPING if stops else RUNNING
+        x = np.linspace(left.x * fraction, right.x * RUNNING, POSITIONS)
         known = _exact(rupture, x)
         known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
         rows += [_differences(run, rupture, x, known) for run in runs]
@@ -57,8 +55,21 @@ def _exact(rupture: Rupture, x: np.ndarray) -> dict[str, np.ndarray]:
     return edges | {"slip": rupture.slip(x, rupture.duration)}
 
 
+def _edges(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
+    """Exact edges and slip as curves, and those of a lattice as marks."""
+    left, right = rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
+    x = np.linspace(left, right, CURVE_POINTS)[1:-1]
+    released = np.flatnonzero(np.isfinite(run["release_time"].values))
+    kept = run.isel(x=released[:: max(1, released.size // MARKS)])
+    marks = {name: kept[variable].values for name, variable in EDGES.items()}
+    return [
+        pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)),
+        pd.DataFrame({"position": kept["x"].values} | marks).assign(role="lattice"),
+    ]
+
+
 def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
-    """The lattice's samples right of the middle and the exact solution left of it, where they slide."""
+    """The exact solution left of the middle and a lattice right of it, where they slide."""
     x, times = run["sample_position"].values, run["sample_time"].values
     left, right = x[x < 1e-9], x[x > -1e-9]
     exact = rupture.map(times, left, ("slip_velocity",))["slip_velocity"]
@@ -74,23 +85,23 @@ def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
 def _differences(
     run: xr.Dataset, rupture: Rupture, x: np.ndarray, exact: dict[str, np.ndarray]
 ) -> pd.DataFrame:
-    """How far a run is from the exact solution of its scene, in each quantity that it has."""
-    found = {name: np.interp(x, run["x"].values, run[of].values) for name, of in EDGES.items()}
-    # Slip velocity at the sampled points that slide, away from both edges.
+    """Differences of a run from the exact solution of its scene, in each quantity that it has."""
+    blocks = run["x"].values
+    lattice = {name: np.interp(x, blocks, run[column].values) for name, column in EDGES.items()}
+    # Slip velocity is compared at the sampled points that slide, away from both edges.
     sampled, times = run["sample_position"].values, run["sample_time"].values
     inside = np.flatnonzero((sampled >= x[0]) & (sampled <= x[-1]))
     x = sampled[inside]
     release, stick = rupture.release_time(x), np.nan_to_num(rupture.stick_time(x), nan=np.inf)
     row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
-    found["velocity"] = run["sample_velocity"].values[row, inside[column]]
+    lattice["velocity"] = run["sample_velocity"].values[row, inside[column]]
     known = exact | {"velocity": rupture.slip_velocity(x[column], times[row])}
     rows = []
-    for quantity in found:
-        both = np.isfinite(found[quantity]) & np.isfinite(known[quantity])
+    for quantity in lattice:
+        both = np.isfinite(lattice[quantity]) & np.isfinite(known[quantity])
         if both.any():
             expected = known[quantity][both]
-            mean = float(
-                np.mean(np.abs(found[quantity][both] - expected)) / np.mean(np.abs(expected))
-            )
+            error = np.mean(np.abs(lattice[quantity][both] - expected))
+            mean = float(error / np.mean(np.abs(expected)))
             rows.append({"quantity": quantity, "difference": mean, "places": int(both.sum())})
     return pd.DataFrame(rows).assign(role="difference", dx=run.attrs["dx"])

@@ -8,12 +8,12 @@ from ..predict.exact_rupture import exact_rupture
 
 NEEDS = {"sweeps": ["space_time_displacement", "space_time_stress"]}
 
-# Positions on each side, most of them close to where the front is at the end: it may have become slow.
+# Most positions on each side are close to the end of the front's path, where it may be slow.
 FRACTIONS = 1.0 - np.linspace(1.0, 0.0, 121)[:-1] ** 3
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Returns simulation, position, release_time, stick_time (NaN where it slides on), in the continuum limit."""
+    """Simulation, position, release_time, stick_time (NaN where it slides on), exact."""
     parts = []
     for name, sweep in settings["sweeps"].items():
         rupture = exact_rupture(expand(sweep)[0][0].attributes())

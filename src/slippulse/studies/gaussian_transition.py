@@ -1,4 +1,4 @@
-"""Exact transitions over the pre-stress, without damping: nucleated at a point, and with a Gaussian peak of W = 1."""
+"""Exact undamped transitions over the pre-stress, nucleated at a point and with a Gaussian."""
 
 import numpy as np
 import pandas as pd
@@ -13,15 +13,19 @@ GAMMAS = (0.01, 0.1, 0.65)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """T_trans sqrt(gamma)/pi at Gamma = 1; no gamma in uniform pre-stress, where it does not depend on it."""
-    rows = [(left, over_paper(left, gamma), gamma) for left in LEVELS for gamma in (None, *GAMMAS)]
+    """T_trans sqrt(gamma)/pi at Gamma = 1, over left and gamma.
+
+    There is no gamma where nucleation is at a point: the number does not depend on it.
+    """
+    rows = []
+    for left in LEVELS:
+        rows += [(left, over_paper(left, gamma), gamma) for gamma in (None, *GAMMAS)]
     return pd.DataFrame(rows, columns=["left", "over_paper", "gamma"])
 
 
 def over_paper(level: float, gamma: float | None = None) -> float:
-    """T_trans sqrt(gamma)/pi with the Gaussian at nucleation; without gamma, nucleated at a point."""
+    """T_trans sqrt(gamma)/pi with a Gaussian of W = 1; nucleated at a point without gamma."""
     if gamma is None:
         return uniform_transition_time(level, 1.0) / np.pi
-    return (
-        exact_transition_displacement(Prestress(level, level), gamma).time * np.sqrt(gamma) / np.pi
-    )
+    exact = exact_transition_displacement(Prestress(level, level), gamma)
+    return exact.time * np.sqrt(gamma) / np.pi

@@ -1,6 +1,4 @@
-"""Exact transitions at every admissible combination of what the paper leaves open, over the grids of figure 5."""
-
-from collections.abc import Iterator
+"""Exact transitions at every combination of what the paper leaves open, as in figure 5."""
 
 import numpy as np
 import pandas as pd
@@ -8,6 +6,7 @@ import pandas as pd
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
 from ..model.roots import roots_between
+from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, slip_velocity
 from ..theory.front_speeds import front_speed
@@ -18,78 +17,89 @@ NEEDS = {
     "sweeps": ["scaling_displacement", "scaling_stress"],
 }
 
-# The first stick, over pi/sqrt(gamma), lies between these; beyond this number of widths a Gaussian is 0 to rounding;
-# the error of a time.
-STICK, FAR, TIME = np.array([0.3, 1.7]), 12.0, 1e-12
-# Nodes of the time that a front takes across a tent.
+# The first stick, over pi/sqrt(gamma), lies between these; the error of its time.
+STICK, TIME = np.array([0.3, 1.7]), 1e-12
+# Beyond so many widths a Gaussian is 0 to rounding.
+FAR = 12.0
+# Nodes and weights of the time that a front takes across a tent.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
+PAPER = ["paper_transition_time", "paper_transition_length"]
+
+
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Of each run of figure 5 boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends),
-    fraction (of the path that counts as arrest, under a stress boundary), left, width, gamma, and exact transition_time
-    and transition_length and the same of the paper.
+    """Exact transition_time and transition_length, and the paper's, of each run of figure 5.
+
+    By boundary, release, damping_ratio, nucleation ("Gaussian", or a tent, whose tail ends), left,
+    width, gamma and, under a stress boundary, fraction (of the path that counts as arrest).
     """
     sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
-    springs, cracks = (pd.DataFrame([scene.attributes() for scene in scenes]) for scenes in sweeps)
+    springs, cracks = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
     springs, cracks = springs.query("left > 0"), cracks.query("left < 0")
     choices = tables["open_choices"].groupby("choice")
-    fractions = [each for each in choices.get_group("fraction")["value"] if isinstance(each, float)]
+    values = choices.get_group("fraction")["value"]
+    fractions = [value for value in values if isinstance(value, float)]
     parts = []
     for ratio, release in choices.get_group("damping_ratio")[["value", "release"]].values:
-        rows = displacement(springs, ratio, release), stress(cracks, ratio, release, fractions)
-        parts += [pd.DataFrame(each).assign(damping_ratio=ratio, release=release) for each in rows]
+        both = displacement(springs, ratio, release), stress(cracks, ratio, release, fractions)
+        parts += [rows.assign(damping_ratio=ratio, release=release) for rows in both]
     return pd.concat(parts, ignore_index=True)
 
 
-def displacement(grid: pd.DataFrame, ratio: float, release: str) -> Iterator[dict]:
+def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame:
     """The first stick of symmetric scenes, at x = 0, by one pair of fronts for every gamma."""
+    parts = []
     for (left, width), rows in grid.groupby(["left", "width"]):
-        gammas, speed = rows["gamma"].to_numpy(), float(front_speed(left, ratio, release))
+        gammas = rows["gamma"].to_numpy()
         first, last = STICK[:, None] * np.pi / np.sqrt(gammas)
         # The past of (0, t) begins at x + T(x) = t, so x < t.
         reach = max(float(last.max()), 2.0 * FAR * width)
         fronts = Fronts(Prestress(left, left, width), ratio, release, reach, gammas.max())
 
-        def velocity(
-            time: np.ndarray, which=slice(None), fronts=fronts, gammas=gammas
-        ) -> np.ndarray:
+        def velocity(time, which=slice(None), fronts=fronts, gammas=gammas) -> np.ndarray:
             return slip_velocity(fronts, gammas[which], 0.0, time)
 
         times = roots_between(velocity, first, last, velocity(first), velocity(last), xtol=TIME)
-        for gamma, time in zip(gammas.tolist(), times.tolist(), strict=True):
-            # How far the right front is then; uniform beyond the Gaussian.
-            late = time - float(fronts.arrival(FAR * width))
-            reached = FAR * width + speed * late if late > 0.0 else fronts.reached(time, 1.0)
-            estimate = paper_transition_displacement(left, gamma)
-            yield {
-                "boundary": "displacement", "nucleation": "Gaussian", "left": left, "width": width, "gamma": gamma,
-                "transition_time": time, "transition_length": 2.0 * reached,
-                "paper_transition_time": estimate[0], "paper_transition_length": estimate[1],
-            }  # fmt: skip
+        # The pre-stress is uniform beyond the Gaussian.
+        end = FAR * width
+        reached = end + float(front_speed(left, ratio, release)) * (times - fronts.arrival(end))
+        for i in np.flatnonzero(reached <= end):
+            reached[i] = fronts.reached(times[i], 1.0)
+        rows = rows[["boundary"]].assign(nucleation="Gaussian", left=left, width=width)
+        rows = rows.assign(gamma=gammas, transition_time=times, transition_length=2.0 * reached)
+        rows[PAPER] = [paper_transition_displacement(left, gamma) for gamma in gammas]
+        parts.append(rows)
+    return pd.concat(parts)
 
 
-def stress(
-    grid: pd.DataFrame, ratio: float, release: str, fractions: list[float]
-) -> Iterator[dict]:
-    """When fractions of |x_minus| are covered, and when all of it is where the tail ends. Without leaf springs nothing
-    but W is a length: every number of a level is proportional to it.
+def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float]) -> pd.DataFrame:
+    """Arrests at each fraction of |x_minus|, and at all of it where the tail ends.
+
+    W is the only length without leaf springs: every number of a level is proportional to it.
     """
-    # A tent of half-width 1 on both sides of x = 0: the last characteristic enters at its end.
+    # A tent has half-width 1 on both sides of x = 0: the last characteristic enters at its end.
     crossing = float(WEIGHTS @ (1.0 / front_speed(0.5 + 0.5 * NODES, ratio, release))) / 2.0
+    columns = ["nucleation", "fraction", "transition_time", "transition_length", *PAPER]
+    parts = []
     for left, rows in grid.groupby("left"):
         crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
         way = -crack.balance_position
-        found = [
-            ("Gaussian", f, crack.time_at_fraction(f), crack.length_at_fraction(f), way)
-            for f in fractions
+        arrests = [
+            (
+                "Gaussian",
+                part,
+                crack.time_at_fraction(part),
+                crack.length_at_fraction(part),
+                way,
+                2.0 * way,
+            )
+            for part in fractions
         ]
         way = 1.0 + (1.0 + 0.5 * left) / -left
-        found.append(("tent", 1.0, way + 1.0 + crossing, 2.0 * way + 2.0, way))
-        for width in rows["width"]:
-            for nucleation, fraction, time, length, way in found:
-                yield {
-                    "boundary": "stress", "nucleation": nucleation, "fraction": fraction, "left": left, "width": width,
-                    "transition_time": time * width, "transition_length": length * width,
-                    "paper_transition_time": way * width, "paper_transition_length": 2.0 * way * width,
-                }  # fmt: skip
+        arrests.append(("tent", 1.0, way + 1.0 + crossing, 2.0 * way + 2.0, way, 2.0 * way))
+        scenes = rows[["boundary", "left", "width"]]
+        rows = scenes.merge(pd.DataFrame(arrests, columns=columns), how="cross")
+        rows[columns[2:]] = rows[columns[2:]].mul(rows["width"], axis=0)
+        parts.append(rows)
+    return pd.concat(parts)

@@ -1,4 +1,6 @@
-"""A pulse sent from one pre-stress into another, exactly: the slip that it leaves, and how far it remembers."""
+"""A pulse sent from one pre-stress into another, exactly: its final slip and its memory."""
+
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -7,34 +9,30 @@ from ..configuration.expand import expand
 from ..predict.exact_rupture import exact_rupture
 from ..theory.front_speeds import steady_pulse
 
-# The simulation whose parameters the curves have.
+# The curves have the parameters of this simulation.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}
 
-# Distances at which the slip is wanted: behind the step, and beyond it in units of the finite memory.
+# Distances at which the slip is tabulated: before the step, and beyond it in units of the memory.
 BEHIND = np.linspace(-10.0, 0.0, 21)[:-1]
 BEYOND = np.concatenate([np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace(1.0, 1.4, 21)])
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Level (beyond the step), x (distance beyond it) and final slip; and the same in every row of a level: before (the
-    level there), steady and steady_before (exact slip of both steady pulses), memory (the distance W_p/(v - 1) beyond
-    which the past of the trailing edge does not reach).
+    """Level (beyond the step), x (distance beyond it) and final slip, and once a level: before (the
+    level there), steady and steady_before (exact slip of both steady pulses), memory (the distance
+    W_p/(v - 1) beyond which the past of the trailing edge does not reach).
     """
     parts = []
     for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:
         position, level = scene.prestress.steps[-1]
         before = scene.prestress.right
         # In the limit dx -> 0 damping acts through the speed alone.
-        old, new = (
-            steady_pulse(
-                each, scene.gamma, damping_ratio=scene.damping_ratio, release=scene.release
-            )
-            for each in (before, level)
-        )
+        damping: dict[str, Any] = {"damping_ratio": scene.damping_ratio, "release": scene.release}
+        old, new = (steady_pulse(tau, scene.gamma, **damping) for tau in (before, level))
         memory = new.width / (new.speed - 1.0)
-        x, exact = np.concatenate([BEHIND, memory * BEYOND]), exact_rupture(scene.attributes())
-        rows = pd.DataFrame({"level": level, "x": x, "slip": exact.final_slip(position + x)})
-        parts.append(
-            rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory)
-        )
+        x = np.concatenate([BEHIND, memory * BEYOND])
+        slip = exact_rupture(scene.attributes()).final_slip(position + x)
+        rows = pd.DataFrame({"level": level, "x": x, "slip": slip})
+        rows = rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory)
+        parts.append(rows)
     return pd.concat(parts, ignore_index=True)

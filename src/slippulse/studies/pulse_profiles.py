@@ -11,20 +11,21 @@ from ..theory.front_speeds import steady_pulse
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 
-# Points of a curve, and how far it goes on ahead of a pulse and behind it, as fractions of the width.
-POINTS, AHEAD, BEHIND = 200, 0.08, 0.25
-# Of the largest velocity: below it the tail of a pulse that never ends is cut.
+POINTS = 200
+# A curve goes on ahead of a pulse and behind it by these fractions of the width.
+AHEAD, BEHIND = 0.08, 0.25
+# The tail of a pulse that never ends is cut below this fraction of the largest velocity.
 TAIL = 1e-3
 FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Returns simulation, run (its row), x (0 at the largest velocity), slip, slip_velocity, slip_acceleration."""
+    """Simulation, run (its row), x (0 at the largest velocity), and FIELDS."""
     parts = []
     for name, sweep in settings["sweeps"].items():
         for run, scene in enumerate(expand(sweep)[0]):
-            found = far_profile(scene) if scene.boundary == "stress" else profile(scene)
-            parts.append(found.assign(simulation=name, run=run))
+            rows = far_profile(scene) if scene.boundary == "stress" else profile(scene)
+            parts.append(rows.assign(simulation=name, run=run))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -40,17 +41,17 @@ def profile(scene: Scene) -> pd.DataFrame:
 
 
 def far_profile(scene: Scene) -> pd.DataFrame:
-    """The pulse far from its nucleation under a stress boundary, with its integral and its derivative."""
-    crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
-    far = np.array(crack.far_pulse())
-    delay, velocity = far[:, np.argsort(far[0], kind="stable")]
+    """The pulse far from its nucleation under a stress boundary, its integral and derivative."""
+    pulse = np.array(
+        ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release).far_pulse()
+    )
+    delay, velocity = pulse[:, np.argsort(pulse[0], kind="stable")]
     start = max(0, int(np.argmax(velocity > TAIL * velocity.max())) - 1)
     x, v = delay[start:] - delay[np.argmax(velocity)], velocity[start:]
     apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
     x, v = x[apart], v[apart]
-    # The pulse moves at the wave speed without changing, so slip is the integral of its velocity over distance.
+    # The pulse moves at the wave speed without changing: slip is the integral of its velocity.
     slip = cumulative_trapezoid(v[::-1], -x[::-1], initial=0.0)[::-1]
-    found = pd.DataFrame(
-        {"x": x, "slip": slip, "slip_velocity": v, "slip_acceleration": -np.gradient(v, x)}
-    )
-    return found.iloc[:: max(1, len(found) // (2 * POINTS))]
+    curves = (slip, v, -np.gradient(v, x))
+    rows = pd.DataFrame({"x": x} | dict(zip(FIELDS, curves, strict=True)))
+    return rows.iloc[:: max(1, len(rows) // (2 * POINTS))]

@@ -1,6 +1,8 @@
-"""The planes of both levels of the pre-stress, cut into the regimes that ruptures end in by exact theory."""
+"""Planes of both levels of the pre-stress, cut into the regimes of ruptures by exact theory."""
 
+from collections.abc import Iterator
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -12,44 +14,64 @@ from ..theory.rupture import Rupture
 NEEDS = {"settings": ["model.damping_ratio", "model.release", "measure.still"]}
 
 GAMMAS = {"displacement": 1.0, "stress": 0.0}
-# Levels on the positive side along the border between crack and pulse, to where the negative one is beyond -1.
+# Levels on the positive side along the border between crack and pulse, until the negative one is
+# below -1.
 BORDER = np.linspace(0.0, 0.15, 31)[1:]
-# Boundary, and levels on the left and on the right, of the velocity profiles; their time and points.
-PROFILES = (
-    ("displacement", 0.5, 0.5), ("displacement", -0.5, 0.5), ("stress", 0.3, 0.3), ("stress", -0.5, 0.0)
-)  # fmt: skip
+# Boundary, and levels on the left and on the right, of the velocity profiles.
+PROFILES = [
+    ("displacement", 0.5, 0.5),
+    ("displacement", -0.5, 0.5),
+    ("stress", 0.3, 0.3),
+    ("stress", -0.5, 0.0),
+]
 TIME, POINTS = 12.0, 241
 
 
+class Outline(NamedTuple):
+    """An area or a line of a plane: its corners in order, and a pair of levels inside."""
+
+    role: str
+    boundary: str
+    corners: np.ndarray
+    inside: np.ndarray
+
+
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Boundary, series, regime, left, right; role area (series: its number; its corners in order), line (the ends of a
-    line on which one level is 0 and the other negative) and profile (time, x, slip_velocity, at W = 1).
+    """Boundary, series, regime, left, right; role area (series: its number; its corners in order),
+    line (the ends of a line on which one level is 0 and the other negative) and profile (time, x,
+    slip_velocity, at W = 1).
     """
     still, model = settings["measure"]["still"], settings["model"]
     rules = model["damping_ratio"], model["release"]
     low = -BORDER / largest_pulse_ratio(BORDER, *rules, still)
     border = np.vstack([[(0.0, 0.0)], np.column_stack([low, BORDER]), [(low[-1], 0.0)]])
-    line = np.array([(-1.0, 0.0), (0.0, 0.0)])
-    # Corners, and levels inside, by boundary; on the right as on the left.
-    outlines: list[tuple[str, str, np.ndarray, np.ndarray]] = []
-    for boundary, gamma in GAMMAS.items():
-        for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
-            corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
-            outlines.append(("area", boundary, corners, 0.5 * levels))
-        for sides in ([0, 1], [1, 0]):
-            if gamma == 0.0:
-                outlines.append(("area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides]))
-            outlines.append(("line", boundary, line[:, sides], 0.5 * line[0, sides]))
     parts: list[pd.DataFrame] = []
-    for role, boundary, corners, (left, right) in outlines:
+
+    def labels(role: str, boundary: str, left: float, right: float) -> dict:
         regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
-        labels = {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
-        parts.append(pd.DataFrame(corners, columns=["left", "right"]).assign(**labels))
+        return {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
+
+    for role, boundary, corners, (left, right) in outlines(border):
+        rows = pd.DataFrame(corners, columns=["left", "right"])
+        parts.append(rows.assign(**labels(role, boundary, left, right)))
     for boundary, left, right in PROFILES:
         rupture = Rupture(Prestress(left, right), GAMMAS[boundary], *rules, TIME)
         x = np.linspace(*rupture.fronts_at(TIME), POINTS)
-        found = pd.DataFrame({"x": x, "slip_velocity": rupture.slip_velocity(x, TIME)})
-        regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
-        labels = {"role": "profile", "boundary": boundary, "series": len(parts), "regime": regime}
-        parts.append(found.assign(time=TIME, left=left, right=right, **labels))
+        rows = pd.DataFrame({"x": x, "slip_velocity": rupture.slip_velocity(x, TIME)})
+        rows = rows.assign(time=TIME, left=left, right=right)
+        parts.append(rows.assign(**labels("profile", boundary, left, right)))
     return pd.concat(parts, ignore_index=True)
+
+
+def outlines(border: np.ndarray) -> Iterator[Outline]:
+    """Quadrants of both planes, the areas of cracks along a border, and lines on the axes."""
+    line = np.array([(-1.0, 0.0), (0.0, 0.0)])
+    for boundary, gamma in GAMMAS.items():
+        for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
+            corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
+            yield Outline("area", boundary, corners, 0.5 * levels)
+        # Each is on the right as on the left.
+        for sides in ([0, 1], [1, 0]):
+            if gamma == 0.0:
+                yield Outline("area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides])
+            yield Outline("line", boundary, line[:, sides], 0.5 * line[0, sides])

@@ -1,4 +1,4 @@
-"""Where a step blows up: the measured boundary on the derived one, for each scheme, order and damping ratio."""
+"""Steps that blow up: the measured bound and the derived one, for every scheme and damping."""
 
 from collections.abc import Callable
 from functools import partial
@@ -13,29 +13,29 @@ from ..solver.lattice import UnstableRun
 
 NEEDS = {}  # type: dict[str, list[str]]
 
-# No damping, that of the paper's figures (0.1), and the decades about it in which the bound changes its law.
+# No damping, that of the paper's figures (0.1), and the decades in which the bound changes its law.
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
 # Bisected between these fractions of the derived bound, down to a resolution.
 BETWEEN, RESOLUTION = (0.7, 1.2), 0.01
-# Enough steps for a mode beyond the bound to grow from rounding, on blocks that a wave does not cross meanwhile.
+# A mode beyond the bound grows from rounding in so many steps, before a wave crosses the blocks.
 BLOCKS, STEPS = 400, 400
-# Far below any stress: blocks there never slide.
+# Blocks never slide this far below any stress.
 HELD = -1.0e9
 WALLS = (BLOCKS + 0.5, HELD), (-BLOCKS - 0.5, HELD)
-# Steps between two looks at whether anything has stuck: a run that blows up sticks and is released over and over.
+# Steps between two counts of sticks: blocks of a run that blows up stick over and over.
 LOOK_AFTER = 100
 PROFILES = {
-    # Blocks between two walls, all released at once by a stress far above the threshold: no event until they turn.
+    # A stress far above the threshold releases all blocks at once: no event until they turn.
     "measured": Prestress(0.9, 0.9, 10.0 * BLOCKS, peak=100.9, steps=WALLS),
-    # A crack that grows for ever: an event in almost every step.
+    # A crack that grows for ever has an event in almost every step.
     "measured_rupture": Prestress(0.5, 0.5, 8.0),
 }
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a scheme, order and damping ratio: derived (the bound, in units of dx), measured (the largest sound step
-    of a chain between walls, nothing but the linear step) and measured_rupture (of fronts, an event in most steps), and
-    their ratios to the bound.
+    """One row a scheme, order and damping ratio: derived (the bound, in units of dx), measured (the
+    largest sound step of a chain between walls, without events), measured_rupture (of a crack),
+    and their ratios to the bound.
     """
     rows = []
     for scheme, order in [("fixed_step", 1), *(("localised", order) for order in ORDERS)]:
@@ -43,8 +43,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             bound = largest_step(scheme, order, ratio, 0.0)
             row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": bound}
             for name, profile in PROFILES.items():
-                found = boundary(partial(sound, profile, bound, scheme, order, ratio), *BETWEEN)
-                row |= {name: bound * found, f"{name}_ratio": found}
+                fraction = boundary(partial(sound, profile, bound, scheme, order, ratio), *BETWEEN)
+                row |= {name: bound * fraction, f"{name}_ratio": fraction}
             rows.append(row)
     return pd.DataFrame(rows)
 
@@ -64,13 +64,12 @@ def boundary(stable: Callable[[float], bool], lower: float, upper: float) -> flo
 def sound(
     profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float
 ) -> bool:
-    """Whether nothing sticks: in these scenes every velocity is positive, and a growing mode throws one below 0."""
+    """Whether nothing sticks: velocities are positive until a growing mode makes one negative."""
     step = fraction * bound
-    # No longer than a wave takes to cross, after which a chain between walls turns back.
+    # A chain between walls turns back after a wave has crossed it.
     duration = min(STEPS * step, 0.8 * BLOCKS)
-    scene = Scene(
-        "stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, max(order, 3)
-    )
+    order = max(order, 3)
+    scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, order)
     # A Scene refuses a step beyond the bound.
     object.__setattr__(scene, "max_step", step)
     lattice = LATTICES[scheme](scene, None, scene.beta)
