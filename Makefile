@@ -1,5 +1,5 @@
 # Two commands: `make replicate` regenerates the whole paper, `make test` verifies it.
-# Options: CORES=4, PRESET=draft|paper|reference, OVERLAY=mine.yaml, TARGET=results/figures/fig05_scaling.png
+# Options: CORES=4, PRESET=draft|paper|reference, OVERLAY=mine.yaml, TARGET=results/figures/NAME.png
 
 SHELL := /bin/sh
 PYTHON ?= python3
@@ -10,19 +10,19 @@ TARGET ?=
 ALLOW_LARGE ?=
 AGAINST ?=
 KILLS ?= 24
-# Through the environment, so that no value is read as a command.
+# The options go through the environment: no value is read as a command.
 export CORES PRESET OVERLAY TARGET AGAINST ALLOW_LARGE KILLS
 # Without compiled modules each process imports for 3 s instead of 1.
 export PYTHONDONTWRITEBYTECODE :=
-# Where else to install is not for this environment.
-unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT PIP_PYTHON \
-    PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
+# Settings of the user for other places to install do not apply to this environment.
+unexport PIP_USER PIP_TARGET PIP_PREFIX PIP_ROOT PIP_REQUIRE_VIRTUALENV PIP_DRY_RUN PIP_CONSTRAINT \
+    PIP_PYTHON PIP_EDITABLE PIP_REQUIREMENT UV_SYSTEM_PYTHON UV_CONSTRAINT UV_OVERRIDE UV_TARGET UV_PREFIX
 VENV := .venv
 LOCK := src/slippulse/data/lock.py
 READY := $(VENV)/.ready
 BIN := $(VENV)/bin
 PIP := "$(BIN)/python" -m pip install --quiet --disable-pip-version-check --no-deps
-# By uv of the lock, or by pip on a machine that has no uv.
+# Install by the uv of the lock, or by pip on a machine without it.
 define install
 if "$(BIN)/uv" --version >/dev/null 2>&1; then \
     "$(BIN)/uv" pip install --quiet --python "$(BIN)/python" --no-deps --require-hashes --only-binary :all: $(1); \
@@ -31,37 +31,43 @@ else \
 fi
 endef
 
-# What Snakemake would stop at late, or never: jobs find no interpreter below a folder with such a name.
-CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$\`]*) echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; exit 1;; esac
-CHECK_COUNT = case "$$$(1)" in ""|*[!0-9]*|0*) echo "$(1): $$$(1); allowed: a whole number from 1 on, such as $(1)=2" >&2; exit 1;; esac
+# Snakemake would stop late or never at these: jobs find no interpreter below such a folder.
+CHECK_PLACE = case "$$PWD" in *[[:space:]\'\"\\$$\`]*) \
+    echo "This folder's path has a space or a quote: $$PWD; move the project to a path without" >&2; \
+    exit 1;; esac
+CHECK_COUNT = case "$$$(1)" in ""|*[!0-9]*|0*) \
+    echo "$(1): $$$(1); allowed: a whole number from 1 on, such as $(1)=2" >&2; exit 1;; esac
 CHECK_OPTIONS = $(CHECK_PLACE); $(call CHECK_COUNT,CORES); \
-    case "$$PRESET" in *[!A-Za-z0-9_-]*) echo "PRESET: $$PRESET; allowed: the name of a preset, such as draft" >&2; exit 1;; esac; \
-    case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
+    case "$$PRESET" in *[!A-Za-z0-9_-]*) \
+        echo "PRESET: $$PRESET; allowed: the name of a preset, such as draft" >&2; exit 1;; esac; \
+    case "$$ALLOW_LARGE" in ""|true|false|yes|no|on|off|1|0) ;; *) \
+        echo "ALLOW_LARGE: $$ALLOW_LARGE; allowed: true or false" >&2; exit 1;; esac
 
-.PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify test test-pages test-slow test-all faults slurm-test benchmark check clean distclean
+.PHONY: help setup slurm lock describe tutorial reference replicate rulegraph verify test \
+    test-pages test-slow test-all faults slurm-test benchmark check clean distclean
 
 help:
 	@echo "make replicate   every figure of the paper, from config/config.yaml, into results/"
-	@echo "make verify      whether results/ is as made by what is here now; AGAINST=other/results compares numbers within uncertainties"
+	@echo "make verify      whether results/ is as made by what is here now; AGAINST=other/results compares numbers"
 	@echo "make rulegraph   which rules make what, as a mermaid graph"
 	@echo "make test        the tests: theory, convergence, conservation, figures, workflow"
-	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility, narrow screens"
+	@echo "make test-pages  the pages of results/ in a headless chromium: links, accessibility"
 	@echo "make test-all    these and the slow ones: edits, every example, kills, Slurm"
 	@echo "make benchmark   speed of the kernels and of a whole scene, as ratios within one run"
-	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must be those of a quiet one"
+	@echo "make faults      kill a reduced run at KILLS=24 random instants; the results must not change"
 	@echo "make slurm       what a Slurm cluster needs besides (docs/cluster.md)"
-	@echo "make slurm-test  the draft through a Slurm of one node, started for it here, against the draft without"
+	@echo "make slurm-test  the draft through a Slurm of one node, against the draft without"
 	@echo "make check       format and lint"
-	@echo "make describe    the tables of config/README.md and the JSON Schema, from the definition of the keys"
+	@echo "make describe    the tables of config/README.md and the JSON Schema of the configuration"
 	@echo "make tutorial    docs/tutorial.md from top to bottom, its pictures into results/tutorial"
-	@echo "make reference   the reference of the Python interface, from its docstrings, into results/reference"
-	@echo "make clean       remove results/ (the environment stays);  make distclean: the environment too"
-	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=results/figures/NAME.png"
+	@echo "make reference   the reference of the Python interface, into results/reference"
+	@echo "make clean       remove results/;  make distclean: the environment too"
+	@echo "options          CORES=2 PRESET=draft|paper|reference OVERLAY=mine.yaml TARGET=fig05"
 
 setup: $(READY)
 
 ifndef LOCKED
-# Of two at once the second waits, and then finds it done.
+# Of two set-ups at once the second waits, and then finds it done.
 $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@$(CHECK_PLACE)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "slippulse needs Python 3.11 or newer; '$(PYTHON)' is `$(PYTHON) --version 2>&1`. Try: make replicate PYTHON=python3.12"; exit 1; }
@@ -78,7 +84,7 @@ $(READY): requirements-build.lock requirements.lock pyproject.toml
 	@touch "$(READY)"
 endif
 
-# Only what a cluster adds: every other package is that of requirements.lock.
+# The packages that a cluster adds; all others are those of requirements.lock.
 $(VENV)/.slurm: $(READY) requirements-slurm.lock
 	@$(call install,-r requirements-slurm.lock)
 	@touch "$@"
@@ -94,7 +100,7 @@ lock:
 	    --group slurm --quiet --constraints requirements.lock -o requirements-slurm.lock \
 	    $$(sed -n 's/^\([^= ]*\)==.*/--no-emit-package \1/p' requirements.lock)
 
-# The JSON Schema and the tables of config/README.md, from the definition of the configuration's keys.
+# Write the JSON Schema and the tables of config/README.md, from the definition of the keys.
 describe: $(READY)
 	@"$(BIN)/python" docs/describe.py
 
