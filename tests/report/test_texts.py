@@ -1,10 +1,10 @@
-"""The texts of the report name only what there is, and no number is typed into them: the rule as code.
+"""The texts of the report name only what exists, and no number is typed into them.
 
-Allowed in prose: what an expression in double braces computes; a formula between dollar signs, if every number in it is
-a single digit or a power of ten (a decimal or a larger number is a result); a reference to a numbered equation,
-section, figure or appendix; a citation; a name in back quotes. Not allowed: any other digit, and a number above three
-in words.
-In code and in expressions, whole numbers below ten (counts of digits, indices, factors) and no others.
+Allowed in prose: the result of an expression in double braces; a formula between dollar signs in
+which every number is a single digit or a power of ten (a decimal or a larger number is a result);
+a reference to a numbered equation, section, figure or appendix; a citation; a name in back quotes.
+Any other digit is not allowed, nor a number above three in words. In code and in expressions whole
+numbers below ten (counts of digits, indices, factors) are allowed, and no others.
 """
 
 import io
@@ -55,11 +55,8 @@ def captions(manuscript) -> dict[str, Caption]:
 
 
 def mentioned(text: str) -> set[str]:
-    return set(
-        re.findall(
-            r"""\b(?:claim(?:\.(?!count\b)\w+)?|off|measured|cite)\(\s*["'](\w+)["']""", text
-        )
-    )
+    calls = r"""\b(?:claim(?:\.(?!count\b)\w+)?|off|measured|cite)\(\s*["'](\w+)["']"""
+    return set(re.findall(calls, text))
 
 
 @pytest.fixture(scope="module")
@@ -78,9 +75,8 @@ def test_every_claim_that_is_mentioned_is_in_the_ledger(source, manuscript, entr
     for line in summary["verdict"]:
         names |= {*line["claims"], *mentioned(line["text"])}
     assert len(names) > 30
-    assert names | mentioned(summary["accuracy"]) <= set(entries["claims"]) | set(
-        entries["findings"]
-    )
+    names |= mentioned(summary["accuracy"])
+    assert names <= {*entries["claims"], *entries["findings"]}
 
 
 def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(
@@ -100,11 +96,8 @@ def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentenc
         assert entry["sentences"] and set(entry["sentences"]) <= set(ids), id
     counts = coverage(statements)
     assert counts["tested"] > 150
-    assert (
-        sum(count for key, count in counts.items() if key != "all")
-        == counts["all"]
-        == len(statements)
-    )
+    assert counts["all"] == len(statements)
+    assert sum(counts.values()) == 2 * counts["all"]
 
 
 def test_every_claim_is_whole_and_has_a_shipped_verdict(manuscript, entries, captions):
@@ -122,16 +115,16 @@ def test_every_erratum_is_shown_and_the_bibliography_is_what_is_cited(manuscript
         for title in re.findall(r'[Dd]erivation "([^"]+)"|Section "([^"]+)"', entry["shown"]):
             assert "".join(title) in headings, entry
     bibliography = (manuscript / "references.bib").read_text(encoding="utf-8")
-    assert set(re.findall(r"@([A-Z]\w+)", source)) == set(
-        re.findall(r"^@\w+\{(\w+),", bibliography, re.M)
-    )
+    cited = set(re.findall(r"@([A-Z]\w+)", source))
+    assert cited == set(re.findall(r"^@\w+\{(\w+),", bibliography, re.M))
 
 
 @pytest.mark.parametrize(("reader", "keys"), [(read_captions, PARTS), (read_errata, ERRATUM)])
 def test_a_text_that_is_not_whole_is_refused(reader, keys, tmp_path):
-    whole = dict.fromkeys(keys, "text")
-    wrong = {f"{key}: missing": whole | {key: " "} for key in keys}
-    for reason, parts in (wrong | {"colour: unknown key": whole | {"colour": "red"}}).items():
+    complete = dict.fromkeys(keys, "text")
+    wrong = {f"{key}: missing": complete | {key: " "} for key in keys}
+    wrong["colour: unknown key"] = complete | {"colour": "red"}
+    for reason, parts in wrong.items():
         content = {"entry 1": parts} if reader is read_captions else [parts]
         (tmp_path / "texts.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
         with pytest.raises(ValueError, match=f"entry 1: {reason}"):
@@ -152,17 +145,10 @@ def test_every_figure_has_one_position_and_a_caption(source, captions, project, 
         assert not set("$*_{") & set(caption.title + caption.alt)
         assert caption.finding.endswith(".") and ". " not in EXPRESSION.sub(" ", caption.finding)
         text = f"{caption.finding} {caption.caption}"
-        assert (
-            20
-            < len(re.findall(r"[^\W\d_][\w'-]+", MATH.sub(" ", EXPRESSION.sub(" ", text))))
-            <= 120
-        ), name
-        assert (
-            "runs(" in text
-            or r"\Gamma=" in text
-            or "no run" in text
-            or name == "user_defined_sweep"
-        ), name
+        words = re.findall(r"[^\W\d_][\w'-]+", MATH.sub(" ", EXPRESSION.sub(" ", text)))
+        assert 20 < len(words) <= 120, name
+        says_runs = any(part in text for part in ("runs(", r"\Gamma=", "no run"))
+        assert says_runs or name == "user_defined_sweep", name
 
 
 def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_path):
@@ -173,31 +159,22 @@ def test_figures_are_numbered_in_the_order_of_the_text_and_keep_their_width(tmp_
     texts = {"report": "figure('a') figure('fig05_scaling') figure('b')", "more": "figure('c')"}
     gallery = Gallery(["new_one", "c", "fig05_scaling", "a"], texts, captions, tmp_path, "report")
     assert gallery.figure("c").startswith(f"![**Figure S1. C.** finding what]({tmp_path}/c){{")
-    assert gallery.figure("fig05_scaling").startswith(
-        "![**Figure 2 (paper, figure 5). FIG05_SCALING.**"
-    )
+    title = "![**Figure 2 (paper, figure 5). FIG05_SCALING.**"
+    assert gallery.figure("fig05_scaling").startswith(title)
     assert "width=49%" in gallery.figure("a") and "width=100%" in gallery.figure("c")
     assert gallery.see("c", " (figure ", ")") == " ([figure S1](more.html#c))"
     assert gallery.see("a", " and ") == " and [1](#a)"
     # One without files is left out; one that the text does not place comes last, with its name.
     assert gallery.figure("b") == gallery.see("b") == ""
-    assert (
-        gallery.further() == gallery.figure("new_one")
-        and "**Figure S2. new one.**" in gallery.further()
-    )
+    assert gallery.further() == gallery.figure("new_one")
+    assert "**Figure S2. new one.**" in gallery.further()
 
 
 def test_the_parameters_of_a_simulation_in_words(shipped):
-    one = {
-        "boundary": "displacement",
-        "left": [0.3],
-        "right": "same",
-        "gamma": [1e-3, 0.1, 0.2, 1.0],
-    }
-    profiles = [
-        {"left": -1.0, "right": 0.0, "width": 1.0},
-        {"left": -0.5, "right": 0.0, "width": 2.0},
-    ]
+    one = {"boundary": "displacement", "left": [0.3], "right": "same"}
+    one |= {"gamma": [1e-3, 0.1, 0.2, 1.0]}
+    profiles = [{"left": -1.0, "right": 0.0, "width": 1.0}]
+    profiles += [{"left": -0.5, "right": 0.0, "width": 2.0}]
     two = {"boundary": "stress", "profiles": profiles, "damping_ratio": [0.0, 0.1, 0.3]}
     two |= {"beyond": {"position": 5.0, "levels": [0.1, 0.3]}}
     config = {"simulations": {"one": one, "two": two}, "model": {"damping_ratio": 0.1}}
@@ -205,7 +182,8 @@ def test_the_parameters_of_a_simulation_in_words(shipped):
         parameters(config, "one") == r"$\Gamma=1$, $\gamma$ = 0.001 to 1, $\tau_0$ = 0.3, $b$ = 0.1"
     )
     assert parameters(config, "two") == (
-        r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
+        r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, "
+        r"then $\tau$ = 0.1 and 0.3, $W$ = 1 and 2, "
         "$b$ = 0, 0.1 and 0.3"
     )
     with pytest.raises(ValueError, match="simulation: 'three'; allowed: one, two"):
@@ -228,80 +206,92 @@ def test_every_derivation_says_where_it_starts_what_it_gives_and_where_it_is_che
     titles = [text.partition(" {")[0] for text in derivations]
     referred = re.findall(r'derivations? "([^"]+)"', source)
     assert len(referred) >= 4
-    assert all(any(title.startswith(name) for title in titles) for name in referred)
+    for name in referred:
+        assert [title for title in titles if title.startswith(name)], name
 
 
 def test_the_table_of_stick_times():
-    values = {
-        "release_time": (0.0, None),
-        "stick_time": (3.93122803, None),
-        "final_slip": (1.94166, 0.0),
-    }
-    table = pd.DataFrame(values, index=pd.Index([0.0, 9.0], name="x")).rename_axis(
-        columns="quantity"
-    )
-    table = table.stack(future_stack=True).rename("value").reset_index()
-    found = sticking(table).splitlines()[2:]
-    assert found == ["| 0 | 0 | 3.9312 | 1.9417 |", "| 9 | not measured | not measured | 0 |"]
+    values = {"release_time": (0.0, None), "stick_time": (3.93122803, None)}
+    values |= {"final_slip": (1.94166, 0.0)}
+    table = pd.DataFrame(values, index=pd.Index([0.0, 9.0], name="x"))
+    table = table.rename_axis(columns="quantity").stack(future_stack=True)
+    table = table.rename("value").reset_index()
+    assert sticking(table).splitlines()[2:] == [
+        "| 0 | 0 | 3.9312 | 1.9417 |",
+        "| 9 | not measured | not measured | 0 |",
+    ]
     assert sticking(table.assign(value=float("nan"))) == ""
 
 
-def in_prose(text: str) -> list[str]:
-    """Numbers typed into Markdown without code cells, each with what surrounds it."""
-    found = []
-    for pattern, check in (
-        (EXPRESSION, in_code),
-        (MATH, lambda formula: re.findall(r"\d+\.\d+|\d{2,}", re.sub(r"\b10\^", "", formula))),
-        (CITATION, lambda _: []),
-        (NAME, lambda name: re.findall(r"(?<![A-Za-z_\d])\d[\d.]*|\d+\.\d+", name)),
-        (REFERENCE, lambda _: []),
-    ):
-        for match in pattern.finditer(text):
-            found += check(match[match.lastindex or 0])
-        text = pattern.sub(" ", text)
-    for match in re.finditer(rf"\d[\d.,]*|{WORD.pattern}", text, re.I):
-        found.append(" ".join(text[max(0, match.start() - 30) : match.end() + 20].split()))
-    return found
+def in_formula(formula: str) -> list[str]:
+    """Numbers in a formula that are neither a digit nor a power of ten."""
+    return re.findall(r"\d+\.\d+|\d{2,}", re.sub(r"\b10\^", "", formula))
+
+
+def in_name(name: str) -> list[str]:
+    """Numbers in a name in back quotes that are not part of a word."""
+    return re.findall(r"(?<![A-Za-z_\d])\d[\d.]*|\d+\.\d+", name)
 
 
 def in_code(code: str) -> list[str]:
-    """Numbers other than small whole ones in Python, and digits in its strings that are not part of a name."""
-    found = []
+    """Numbers in Python other than small whole ones, and digits of its strings outside names."""
+    numbers = []
     for token in tokenize.generate_tokens(io.StringIO(code.strip()).readline):
         if token.type == tokenize.NUMBER and not re.fullmatch(r"\d", token.string):
-            found.append(token.string)
+            numbers.append(token.string)
         if token.type in (tokenize.STRING, getattr(tokenize, "FSTRING_MIDDLE", -1)):
-            found += re.findall(r"\d\S*", re.sub(r"[A-Za-z_]\w*", "", token.string))
-    return found
+            numbers += re.findall(r"\d\S*", re.sub(r"[A-Za-z_]\w*", "", token.string))
+    return numbers
+
+
+def in_prose(text: str) -> list[str]:
+    """Numbers typed into Markdown without code cells, each with the words next to it."""
+    numbers = []
+    checks = {EXPRESSION: in_code, MATH: in_formula, CITATION: None, NAME: in_name, REFERENCE: None}
+    for pattern, check in checks.items():
+        for match in pattern.finditer(text) if check else ():
+            numbers += check(match[match.lastindex or 0])
+        text = pattern.sub(" ", text)
+    for match in re.finditer(rf"\d[\d.,]*|{WORD.pattern}", text, re.I):
+        context = text[max(0, match.start() - 30) : match.end() + 20]
+        numbers.append(" ".join(context.split()))
+    return numbers
 
 
 def typed_numbers(source: str) -> list[str]:
     """Numbers typed into a jupytext Markdown source."""
     source = HEADER.sub("", source)
-    found = [number for code in FENCE.findall(source) for number in in_code(code)]
-    return found + in_prose(FENCE.sub(" ", source))
+    cells = "\n".join(FENCE.findall(source))
+    return in_code(cells) + in_prose(FENCE.sub(" ", source))
 
 
 def test_no_text_has_a_typed_number(manuscript):
     for name in DOCUMENTS:
         assert typed_numbers((manuscript / f"{name}.md").read_text(encoding="utf-8")) == []
-    texts = [text for entry in read(manuscript / "errata.yaml") for text in entry.values()]
-    texts += [
-        text for parts in read(manuscript / "captions.yaml").values() for text in parts.values()
-    ]
+    entries = [*read(manuscript / "errata.yaml"), *read(manuscript / "captions.yaml").values()]
     summary = read(manuscript / "summary.yaml")
-    texts += [line[key] for line in summary["verdict"] for key in ("topic", "named", "text")]
-    texts.append(summary["accuracy"])
-    assert [number for text in texts for number in in_prose(text)] == []
+    for line in summary["verdict"]:
+        entries.append({key: line[key] for key in ("topic", "named", "text")})
+    for entry in [*entries, {"accuracy": summary["accuracy"]}]:
+        assert list(filter(None, map(in_prose, entry.values()))) == []
 
 
 TYPED = (
-    "The front runs at 1.25 wave speeds.", "We made 81 runs.", "It deviates by 7 %.", "It takes eleven figures.",
-    "It is off by ten per cent.", "The speed is $v = 1.25$.", "After $T = 39$ it stops.", "It is `1.25` exactly.",
-    "The speed is {{ 1.25 | number }}.", "The speed is {{ (claim.measured('x') + 12) | number }}.",
-    "```python\nshow('the speed is 5')\n```\n", "```python\nspeed = 1.25\n```\n",
-    "```python\nshow(f'{speed} is 5 more')\n```\n", "In 2021 it was found.",
-)  # fmt: skip
+    "The front runs at 1.25 wave speeds.",
+    "We made 81 runs.",
+    "It deviates by 7 %.",
+    "It takes eleven figures.",
+    "It is off by ten per cent.",
+    "The speed is $v = 1.25$.",
+    "After $T = 39$ it stops.",
+    "It is `1.25` exactly.",
+    "The speed is {{ 1.25 | number }}.",
+    "The speed is {{ (claim.measured('x') + 12) | number }}.",
+    "```python\nshow('the speed is 5')\n```\n",
+    "```python\nspeed = 1.25\n```\n",
+    "```python\nshow(f'{speed} is 5 more')\n```\n",
+    "In 2021 it was found.",
+)
 ALLOWED = (
     r"By equations (B9), (B11) and (5) the damping $\beta=10^{-3}$ is $1/\sqrt{1-\tau_0^2}$.",
     "Known [@Amundsen2015] from figure 4 and section 3.",
