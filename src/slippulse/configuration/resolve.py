@@ -77,7 +77,7 @@ def _speed_bound(scene: NamedScene, model: Model) -> float:
 
 
 def corners(simulation: Mapping) -> dict[str, Any]:
-    """A resolved simulation with only the ends of its lists; a refusal shows at the ends."""
+    """A resolved simulation with only the ends of its lists, at which any refusal shows."""
     ends = {key: value for key, value in simulation.items() if key != "chunk"}
     if "beyond" in ends:
         ends["beyond"] = corners(ends["beyond"])

@@ -10,7 +10,7 @@ from ..claims.rules import WORST_FIRST
 from ..data.numerals import setting
 
 ERRATUM = ("where", "printed", "right", "shown")
-# Of more values than this, a text names only the ends.
+# A text names only the ends of more values than this.
 FEW = 3
 # Words of the answer for one thing with a verdict, and for several.
 EXCEPTIONS = {
