@@ -24,7 +24,7 @@ from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
 from slippulse.solver.fixed_step import FixedStepLattice
 from slippulse.solver.lattice import Lattice
-from slippulse.solver.run import run_scene
+from slippulse.solver.solution import solve_on_lattice
 from slippulse.theory.front_speeds import front_speed as exact_speed
 from slippulse.theory.front_speeds import steady_pulse
 
@@ -70,10 +70,10 @@ def stencil_rates(blocks: int, seconds: float) -> dict[str, float]:
 def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
     """Block updates a second from ``scene.duration`` to ``until``, with everything, and the mean sliding blocks."""
     lattice = Lattice(scene, None, scene.beta)
-    lattice.run(None)
+    lattice.advance_to_end(None)
     updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
     lattice.scene = replace(scene, duration=until)
-    taken = best(lambda: lattice.run(None), 1)
+    taken = best(lambda: lattice.advance_to_end(None), 1)
     updates = int(lattice.tally.block_updates) - updates
     return updates / taken, updates / (int(lattice.tally.steps) - steps)
 
@@ -114,8 +114,8 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
     scene = _scene(DURATION, DX, accuracy)
     exact = float(exact_speed(LEVEL, RATIO))
     error = abs(front_speed(simulate(scene), window)[0] / exact - 1.0)
-    seconds = best(lambda: run_scene(scene))
-    twice = best(lambda: run_scene(_scene(2.0 * DURATION, DX, accuracy)))
+    seconds = best(lambda: solve_on_lattice(scene))
+    twice = best(lambda: solve_on_lattice(_scene(2.0 * DURATION, DX, accuracy)))
     errors = textbook_errors(window)
     step = error / float(np.median([entry["error"] / entry["step"] for entry in errors[-9:]]))
     blocks = int(2.0 * exact * DURATION / DX)
@@ -169,7 +169,7 @@ def textbook_numba_step(blocks: int) -> float:
         half_lattice=False,
     )
     size = FixedStepLattice(scene, None, scene.beta).size
-    seconds = best(lambda: FixedStepLattice(scene, None, scene.beta).run(None), 2)
+    seconds = best(lambda: FixedStepLattice(scene, None, scene.beta).advance_to_end(None), 2)
     return seconds / (scene.duration / (scene.max_step * DX)) * blocks / size
 
 

@@ -17,7 +17,7 @@ from slippulse.claims.paper import SIMULATIONS, all_claims, written
 from slippulse.claims.reading import read_entries, read_text
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
 from slippulse.measure.uncertainty import grid_tables
-from slippulse.model.quantities import QUANTITIES
+from slippulse.model.measured_columns import RECORD_FOR
 
 YES, CAVEAT, DEPENDS, NO, OPEN, NONE = VERDICTS
 NAN = float("nan")
@@ -156,7 +156,7 @@ def test_no_claim_compares_a_function_with_itself(project):
         for part in lattices:
             sweeps, _, quantities = part.partition(":")
             assert {*sweeps.split(", ")} <= {*SIMULATIONS, "every simulation here"}, id
-            assert quantities and {*quantities.strip().split(", ")} <= {*QUANTITIES, *OF_RUNS}, id
+            assert quantities and {*quantities.strip().split(", ")} <= {*RECORD_FOR, *OF_RUNS}, id
 
 
 ENTRIES = {

@@ -10,8 +10,8 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.model.scene import ORDERS
 from slippulse.model.stability import WEAK_ORDERS, largest_step
-from slippulse.simulation.runs import judge
-from slippulse.solver.fixed_step import LATTICES, run_by_scheme
+from slippulse.simulation.flags import flags_of
+from slippulse.solver.fixed_step import LATTICES, solve_by_scheme
 from slippulse.solver.lattice import UnstableRun
 from slippulse.studies.stability import boundary
 
@@ -79,13 +79,13 @@ STRONG = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.3), "duration"
 def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps_it_just_below():
     """A slowly growing mode that is thrown below zero sticks: the balance tells. A fast one blows up."""
     sound = beyond_the_bound("localised", tol.BELOW_BOUND, **STRONG, beta=1.0)
-    run = run_by_scheme(sound)
+    run = solve_by_scheme(sound)
     assert run.numbers["energy_residual"] < tol.ENERGY and run.numbers["sticks"] == 0
-    assert judge(sound, run)["run_flags"] == ""
+    assert flags_of(sound, run)["run_flags"] == ""
     broken = beyond_the_bound("localised", tol.ABOVE_BOUND, **STRONG, beta=1.0)
-    run = run_by_scheme(broken)
+    run = solve_by_scheme(broken)
     assert run.numbers["sticks"] > 0
-    assert "energy" in judge(broken, run)["run_flags"].split(",")
+    assert "energy" in flags_of(broken, run)["run_flags"].split(",")
 
 
 @pytest.mark.parametrize(
@@ -93,10 +93,10 @@ def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps
 )
 def test_a_run_that_blows_up_names_the_step(scheme, ratio):
     above = tol.WELL_ABOVE_BOUND if scheme == "localised" else tol.ABOVE_BOUND
-    sound = run_by_scheme(beyond_the_bound(scheme, tol.BELOW_BOUND, **STRONG, beta=0.1 * ratio))
+    sound = solve_by_scheme(beyond_the_bound(scheme, tol.BELOW_BOUND, **STRONG, beta=0.1 * ratio))
     assert sound.slip_velocity.max() < STRONG["duration"]
     with pytest.raises(UnstableRun, match=r"unstable at t = .*max_step"):
-        run_by_scheme(beyond_the_bound(scheme, above, **STRONG, beta=0.1 * ratio))
+        solve_by_scheme(beyond_the_bound(scheme, above, **STRONG, beta=0.1 * ratio))
 
 
 @pytest.mark.parametrize("scheme", LATTICES)

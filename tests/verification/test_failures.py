@@ -5,7 +5,7 @@ import pytest
 
 import slippulse as sp
 from slippulse.solver.fixed_step import LATTICES
-from slippulse.solver.run import run_scene
+from slippulse.solver.solution import solve_on_lattice
 
 
 def displacement(
@@ -31,8 +31,8 @@ def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
     """The published scene with -beta: modes grow at up to 2 beta/dx^2, 20 per unit of time."""
     scene = displacement(0.25, 10.8, 0.01, gamma=0.55, beta=1e-3, scheme=scheme, release=release)
     with pytest.raises(sp.UnstableRun, match=r"t = \d"):
-        run_scene(scene, progress=at_most(40), damping_sign=-1, kind=LATTICES[scheme])
-    assert run_scene(scene, kind=LATTICES[scheme]).numbers["end_time"] == scene.duration
+        solve_on_lattice(scene, progress=at_most(40), damping_sign=-1, kind=LATTICES[scheme])
+    assert solve_on_lattice(scene, kind=LATTICES[scheme]).numbers["end_time"] == scene.duration
 
 
 @pytest.mark.parametrize("row", [0, 1])
@@ -42,7 +42,7 @@ def test_the_printed_sign_of_the_damping_ends_a_run(scheme, release):
 def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     scene = displacement(0.5, 4.0, 0.05, right=0.4, beta=0.005, scheme=scheme)
     lattice = LATTICES[scheme](scene, None, scene.beta)
-    lattice.run(None)
+    lattice.advance_to_end(None)
     object.__setattr__(scene, "duration", 8.0)
     moving = np.flatnonzero(lattice.motion.w[1] > 0.0)
     block = moving[int(place * moving.size)]
@@ -50,7 +50,7 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     if row == 0 and scheme == "localised":
         lattice.motion.strain[block] = value
     with pytest.raises(sp.UnstableRun, match="not finite"):
-        lattice.run(at_most(20))
+        lattice.advance_to_end(at_most(20))
 
 
 @pytest.mark.parametrize(

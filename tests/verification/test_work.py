@@ -9,7 +9,7 @@ import tolerances as tol
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.solver.lattice import Lattice
-from slippulse.solver.run import run_scene
+from slippulse.solver.solution import solve_on_lattice
 
 PULSE = Scene(
     "displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, beta=0.1 * 0.04, max_step=0.5
@@ -32,7 +32,7 @@ WORK = {
 def test_only_sliding_blocks_are_updated_and_events_change_few(name):
     """An event changes as many on a side as the order, for a release and a stick; sliding changes all meanwhile."""
     scene, expected, most, least = WORK[name]
-    run = run_scene(scene)
+    run = solve_on_lattice(scene)
     released, end = np.isfinite(run.release_time), run.numbers["end_time"]
     stopped = np.where(np.isfinite(run.stick_time), run.stick_time, end)
     sliding = float(np.sum(stopped[released] - run.release_time[released])) / end
@@ -50,7 +50,9 @@ def test_only_sliding_blocks_are_updated_and_events_change_few(name):
     ],
 )
 def test_a_pulse_costs_linearly_in_time_and_quadratically_in_spacing(changes, exponent):
-    work = [run_scene(replace(PULSE, **change)).numbers["block_updates"] for change in changes]
+    work = [
+        solve_on_lattice(replace(PULSE, **change)).numbers["block_updates"] for change in changes
+    ]
     values = [next(iter(change.values())) for change in changes]
     assert np.polyfit(np.log(values), np.log(work), 1)[0] == pytest.approx(
         exponent, abs=tol.EXPONENT
@@ -67,7 +69,7 @@ def bytes_in(value, size: int) -> int:
 def test_a_block_takes_few_bytes_and_an_order_eight_more():
     def bytes_a_block(order: int) -> float:
         lattice = Lattice(replace(PULSE, order=order), None, PULSE.beta)
-        lattice.run(None)
+        lattice.advance_to_end(None)
         return sum(bytes_in(value, lattice.size) for value in vars(lattice).values()) / lattice.size
 
     assert bytes_a_block(4) < 200.0

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from pydantic_core import PydanticCustomError
 
 from ..model.checks import short_repr
-from ..model.quantities import QUANTITIES
+from ..model.measured_columns import RECORD_FOR
 from .problems import nearest
 
 T = TypeVar("T")
@@ -327,7 +327,7 @@ class Configuration(Block):
 
     def _check_reading(self, key: str, reading: Reading) -> None:
         trailing = {f"trailing_edge_{time:g}": "fronts" for time in self.measure.trailing_times}
-        known = QUANTITIES | trailing
+        known = RECORD_FOR | trailing
         quantity, sweep = reading.quantity, reading.simulation
         check_name(f"{key}.simulation", sweep, self.simulations, "a name under simulations")
         check_name(f"{key}.quantity", quantity, known, "a column of the measured table")

@@ -55,7 +55,7 @@ def point(sweep: xr.Dataset, index: int) -> xr.Dataset:
     if not isinstance(sweep, xr.Dataset) or "point" not in sweep.sizes:
         allowed = "a Dataset that run_sweep returned, or of results/data"
         raise TypeError(f"sweep: {short_repr(sweep)}; allowed: {allowed}")
-    check_number("index", index, whole=True, at_least=0, at_most=sweep.sizes["point"] - 1)
+    check_number("index", index, integer=True, at_least=0, at_most=sweep.sizes["point"] - 1)
     (run,) = runs_in(sweep, [index])
     return run.dataset()
 

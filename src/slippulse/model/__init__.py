@@ -1,1 +1,4 @@
-"""What is modelled: the scene, its pre-stress, what it records, and the step that it allows. Imports nothing else."""
+"""The model: the scene, its pre-stress, what is recorded, and the allowed step.
+
+This package imports no other.
+"""

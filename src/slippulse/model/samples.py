@@ -1,4 +1,4 @@
-"""What a run records on its way."""
+"""What is recorded during a simulation."""
 
 from dataclasses import dataclass
 
@@ -6,15 +6,29 @@ import numpy as np
 
 from .checks import as_numbers
 
-# What a run may keep: release and stick times, fields at the end, samples on its way.
+# What a sweep may keep: release and stick times, fields at the end, samples on the way.
 RECORDS = ("fronts", "fields", "samples")
 
 
 @dataclass
 class Samples:
-    """Where and when slip and slip velocity are recorded, of the nearest block; ValueError for other arrays than these.
+    """Times and positions at which slip and slip velocity are recorded.
 
-    times, positions : of one dimension; times increase from 0 or later to the duration of the scene at most
+    Parameters
+    ----------
+    times : array of shape (T,), units of H / wave speed
+        Increasing, from 0 or later to the duration of the scene at most.
+    positions : array of shape (P,), units of H
+        On the lattice the nearest block is recorded; beyond its ends slip is 0.
+
+    Raises
+    ------
+    ValueError
+        If an array is not one-dimensional or has other numbers than these.
+
+    Examples
+    --------
+    >>> samples = Samples(times=np.linspace(0.0, 10.0, 101), positions=np.array([0.0, 5.0]))
     """
 
     times: np.ndarray
@@ -26,12 +40,12 @@ class Samples:
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
-            raise ValueError(
-                "samples.times: not increasing or negative; allowed: increasing times >= 0"
-            )
+            allowed = "increasing times >= 0"
+            raise ValueError(f"samples.times: not increasing or negative; allowed: {allowed}")
 
-    def check_within(self, duration: float) -> None:
-        """Refuse samples after the end of a run."""
-        if np.any(self.times > duration):
-            allowed = f"up to the duration of the scene, {duration:g}"
-            raise ValueError(f"samples.times: {self.times[-1]:g}; allowed: {allowed}")
+
+def check_within(samples: Samples | None, duration: float) -> None:
+    """Refuse samples after the end of a scene."""
+    if samples is not None and np.any(samples.times > duration):
+        allowed = f"up to the duration of the scene, {duration:g}"
+        raise ValueError(f"samples.times: {samples.times[-1]:g}; allowed: {allowed}")

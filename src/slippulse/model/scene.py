@@ -1,4 +1,4 @@
-"""What is modelled: one scene, its parameters, and what is refused."""
+"""One scene, its parameters, and the values that are refused."""
 
 import json
 import math
@@ -19,15 +19,16 @@ SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
 # A lattice holds every bump from the start, at 200 bytes a block.
 FARTHEST_BUMP = 10**6
-# After this number a step no longer moves the time.
+# After this number of steps, one more no longer moves the time.
 MOST_STEPS = 2.0**52
-# What a data file has of each run.
-ATTRIBUTES = (
-    "boundary", "gamma", "beta", "damping_ratio", "left", "right", "width", "peak", "steps_and_bumps", "duration", "dx",
-    "release", "scheme", "max_step", "order", "half_lattice", "friction_ratio", "resolved_blocks", "rate_strengthening",
-)  # fmt: skip
-# As Python has them: a data file has numbers of its own.
+# The attributes of each simulation in a data file.
+ATTRIBUTES = """
+    boundary gamma beta damping_ratio left right width peak steps_and_bumps duration dx release
+    scheme max_step order half_lattice friction_ratio resolved_blocks rate_strengthening
+"""
+# Parameters that are not floats. A data file has number types of its own for them.
 KINDS = {"half_lattice": bool, "order": int, "resolved_blocks": int}
+FLOATS = ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio", "rate_strengthening")
 
 
 @dataclass(frozen=True)
@@ -36,33 +37,55 @@ class Scene:
 
     The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
 
-        dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2
-                  - alpha v_i.
+        dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i
+                  + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2 - alpha v_i.
 
     A block is released when its stress reaches 1 and sticks when its velocity reaches 0.
 
+    Source: equation (5) of the paper with the sign of its damping corrected, section II A and
+    appendix B. The rate strengthening is an addition of this project.
+
     Parameters
     ----------
-    boundary : "displacement" or "stress", the condition at the top of the layer: Gamma = 1 or Gamma = 0
-    prestress : the profile of the pre-stress tau(x)
-    duration : time to simulate (units of H / wave speed), > 0
-    dx : block spacing (units of H), >= 1e-100; 1 is the Burridge-Knopoff model
-    gamma : elasticity ratio 2G/(lambda + 2G); > 0 under "displacement", left at 0 under "stress"
-    beta : damping, >= 0; what selects the front speed is beta/dx
-    release : "total" or "elastic", whether the released stress includes the damping force
-    scheme : "localised" (Taylor steps with each release and stick at its instant), "fixed_step" (symplectic Euler,
-        events checked once a step) or "continuum" (the exact solution of the continuum limit)
-    max_step : largest time step in units of dx; the step itself under "fixed_step"; not used by "continuum"
-    order : of the Taylor step, 3 to 8; used by "localised" alone
-    half_lattice : simulate x >= 0 only when the pre-stress is symmetric
-    friction_ratio : mu_k/(mu_s - mu_k), >= 0; sets the threshold of reverse sliding, -(1 + 2 friction_ratio)
-    resolved_blocks : a pulse of fewer sliding blocks is flagged as unresolved: its width errs by about a block
-    rate_strengthening : alpha (units of wave speed / H), by which friction grows (> 0) or weakens (< 0) with slip rate;
-        refused where slip would run away: alpha <= -2 sqrt(gamma), alpha < 0 under "stress"
+    boundary : {"displacement", "stress"}
+        Condition at the top of the layer: Gamma = 1 or Gamma = 0.
+    prestress : Prestress
+        Profile of the pre-stress tau(x).
+    duration : float, units of H / wave speed
+        Time to simulate, > 0.
+    dx : float, units of H
+        Block spacing, >= 1e-100. At 1 the lattice is the Burridge-Knopoff model.
+    gamma : float
+        Elasticity ratio 2G/(lambda + 2G): > 0 under "displacement", 0 under "stress".
+    beta : float, units of H times the wave speed
+        Damping, >= 0. The ratio beta/dx selects the front speed.
+    release : {"total", "elastic"}
+        The stress compared with 1 includes the damping force ("total") or not.
+    scheme : {"localised", "fixed_step", "continuum"}
+        Taylor steps with each release and stick at its instant; symplectic Euler with events
+        checked once a step; or the exact solution of the continuum limit.
+    max_step : float, units of dx / wave speed
+        Largest time step, the step itself under "fixed_step"; not used by "continuum".
+    order : int
+        Order of the Taylor step, 3 to 8; used by "localised" alone.
+    half_lattice : bool
+        Simulate only x >= 0 when the pre-stress is symmetric.
+    friction_ratio : float
+        mu_k/(mu_s - mu_k), >= 0. Reverse sliding begins at the stress -(1 + 2 friction_ratio).
+    resolved_blocks : int
+        A pulse of fewer sliding blocks is flagged: its width errs by about a block.
+    rate_strengthening : float, units of wave speed / H
+        Growth alpha of friction with slip rate. Refused where slip would run away:
+        alpha <= -2 sqrt(gamma), and alpha < 0 under "stress".
 
-    Raises ValueError: one line naming the key, the value and what is allowed.
+    Raises
+    ------
+    ValueError
+        In one line that names the key, the value and what is allowed.
 
-    Source: equation (5) of the paper with the damping's sign corrected, its section II A, and its appendix B.
+    Examples
+    --------
+    >>> scene = Scene("displacement", Prestress(0.6, 0.6), duration=15.0, dx=0.01, gamma=0.65)
     """
 
     boundary: str
@@ -81,6 +104,16 @@ class Scene:
     rate_strengthening: float = 0.0
 
     def __post_init__(self) -> None:
+        self._check_kinds()
+        self._check_numbers()
+        # Single-precision or integer parameters would be computed with as such, and compiled for.
+        for name in FLOATS:
+            object.__setattr__(self, name, float(getattr(self, name)))
+        check_runaway(self.gamma, self.rate_strengthening)
+        self._check_resolution()
+        self._check_step()
+
+    def _check_kinds(self) -> None:
         check_choice("boundary", self.boundary, BOUNDARIES)
         check_choice("release", self.release, RELEASES)
         check_choice("scheme", self.scheme, SCHEMES)
@@ -90,8 +123,10 @@ class Scene:
                 allowed = "true or false" if kind is bool else "a whole number >= 1"
                 raise ValueError(f"{name}: {short_repr(getattr(self, name))}; allowed: {allowed}")
         check_kind("prestress", self.prestress, Prestress)
+
+    def _check_numbers(self) -> None:
         check_number("duration", self.duration, above=0.0)
-        # Its square must be one.
+        # The square of this least spacing is still a number.
         check_number("dx", self.dx, above=0.0, at_least=1e-100)
         check_number("beta", self.beta, at_least=0.0)
         check_number("friction_ratio", self.friction_ratio, at_least=0.0)
@@ -102,57 +137,47 @@ class Scene:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
             raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
         check_number("rate_strengthening", self.rate_strengthening)
-        check_runaway(float(self.gamma), float(self.rate_strengthening))
+        check_number("max_step", self.max_step, above=0.0)
+
+    def _check_resolution(self) -> None:
+        width = self.prestress.width
+        if width < self.dx:
+            allowed = f">= dx = {self.dx:g}, which must resolve the peak"
+            raise ValueError(f"prestress.width: {width!r}; allowed: {allowed}")
+        farthest = FARTHEST_BUMP * self.dx
         for centre, _, width in self.prestress.bumps:
-            check_number(
-                "prestress.bumps reach", abs(centre) + 4.0 * width, at_most=FARTHEST_BUMP * self.dx
-            )
-        if self.prestress.width < self.dx:
-            raise ValueError(
-                f"prestress.width: {self.prestress.width!r}; allowed: >= dx = {self.dx:g}, which must see the peak"
-            )
-        stiffness = float(self.gamma) * float(self.dx) ** 2
-        bound = self._stable_step(
-            self.max_step / MARGIN if isinstance(self.max_step, float) else math.inf
-        )
-        at = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
+            check_number("prestress.bumps reach", abs(centre) + 4.0 * width, at_most=farthest)
+
+    def _check_step(self) -> None:
+        stiffness = self.gamma * self.dx**2
+        bound = self._stable_step(enough=self.max_step / MARGIN)
+        ratios = f"beta/dx = {self.damping_ratio:.4g}, gamma dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
-            raise ValueError(f"gamma: {self.gamma!r}, at {at}; allowed: {allowed}")
-        check_number("max_step", self.max_step, above=0.0)
+            raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
         if self.scheme != "continuum":
             check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
-        # Single-precision or integer parameters would be computed with as such, and compiled for.
-        for name in (
-            "duration",
-            "dx",
-            "gamma",
-            "beta",
-            "max_step",
-            "friction_ratio",
-            "rate_strengthening",
-        ):
-            object.__setattr__(self, name, float(getattr(self, name)))
         if self.max_step > bound:
-            drag = f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
+            if self.rate_strengthening:
+                ratios += f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
             raise ValueError(
-                f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the stability bound of scheme"
-                f" {self.scheme!r} at {at}{drag if self.rate_strengthening else ''}"
+                f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the"
+                f" stability bound of scheme {self.scheme!r} at {ratios}"
             )
 
     @property
     def damping_ratio(self) -> float:
-        """beta/dx, which selects the front speed."""
+        """The ratio beta/dx, which selects the front speed."""
         return self.beta / self.dx
 
     @property
     def symmetric(self) -> bool:
-        """Whether the scene is simulated on half the lattice."""
+        """True where half the lattice is simulated."""
         return self.half_lattice and self.prestress.symmetric
 
     @property
     def reverse_threshold(self) -> float:
-        """Stress at which a block would slide backwards, -(1 + 2 mu_k/(mu_s - mu_k))."""
+        """Stress -(1 + 2 mu_k/(mu_s - mu_k)) at which a block would slide backwards."""
         return -(1.0 + 2.0 * self.friction_ratio)
 
     @property
@@ -165,11 +190,18 @@ class Scene:
         return largest_step(self.scheme, self.order, self.damping_ratio, stiffness, drag, enough)
 
     def attributes(self) -> dict:
-        """Every parameter as plain numbers and text, for attributes of a data file; inverse of `from_attributes`."""
-        parts = {name: getattr(self.prestress, name) for name in ("steps", "bumps")}
-        values = vars(self.prestress) | vars(self) | {"half_lattice": int(self.half_lattice)}
+        """Every parameter as a plain number or text, for a data file.
+
+        Returns
+        -------
+        dict
+            `from_attributes` makes the scene of it.
+        """
+        profile = self.prestress
+        parts = {"steps": profile.steps, "bumps": profile.bumps}
+        values = vars(profile) | vars(self) | {"half_lattice": int(self.half_lattice)}
         values |= {"damping_ratio": self.damping_ratio, "steps_and_bumps": json.dumps(parts)}
-        return {name: values[name] for name in ATTRIBUTES}
+        return {name: values[name] for name in ATTRIBUTES.split()}
 
     def _repr_html_(self) -> str:
         """The parameters as a table, for a notebook."""
@@ -179,36 +211,37 @@ class Scene:
 
     @classmethod
     def from_attributes(cls, attributes: Mapping) -> Self:
-        """The scene of a run, of the attributes of its Dataset or its row of a measured table.
+        """The scene of a simulation's attributes, or of its row in a measured table.
 
-        Raises ValueError: if a parameter is missing or is none that `attributes` writes.
+        Parameters
+        ----------
+        attributes : mapping of names to values
+            As `attributes` writes them; rate_strengthening may be missing and is then 0.
+
+        Returns
+        -------
+        Scene
         """
         if not hasattr(attributes, "keys"):
-            raise ValueError(
-                f"attributes: {short_repr(attributes)}; allowed: a mapping of names to values"
-            )
+            allowed = "a mapping of names to values"
+            raise ValueError(f"attributes: {short_repr(attributes)}; allowed: {allowed}")
         try:
             for name, kind in KINDS.items():
-                most = 1 if kind is bool else None
-                check_number(name, attributes[name], whole=True, at_least=0, at_most=most)
-            # Data files of the paper's model need not name the rate strengthening.
-            given = {
-                "rate_strengthening": 0.0,
-                **attributes,
-                "prestress": prestress_from(attributes),
-            }
-            given |= {name: kind(given[name]) for name, kind in KINDS.items()}
-            return cls(**{name: given[name] for name in cls.__dataclass_fields__})
+                largest = 1 if kind is bool else None
+                check_number(name, attributes[name], integer=True, at_least=0, at_most=largest)
+            values = {"rate_strengthening": 0.0, **attributes}
+            values["prestress"] = prestress_from(attributes)
+            values |= {name: kind(values[name]) for name, kind in KINDS.items()}
+            return cls(**{name: values[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
-            raise ValueError(
-                f"{error.args[0]}: missing; allowed: every attribute of a run"
-            ) from None
+            allowed = "every attribute of a run"
+            raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
 
 
 def scene_of(run: Any) -> Scene:
-    """The scene of a run: of a Dataset, of its attributes, or of a row of a measured table (itertuples or Series).
+    """The scene of a Dataset, of its attributes, or of a row of a measured table.
 
-    Raises as `Scene.from_attributes` does.
+    A row comes from itertuples or is a Series. Raises as `Scene.from_attributes` does.
     """
     attributes = run._asdict() if hasattr(run, "_asdict") else getattr(run, "attrs", None)
     return Scene.from_attributes(attributes or run)

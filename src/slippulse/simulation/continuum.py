@@ -1,85 +1,106 @@
-"""The exact solution of the continuum limit, as a run: the same arrays and numbers as a lattice leaves behind."""
+"""The exact solution of a scene in the continuum limit, in the form that the lattice's has."""
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..solver.run import LatticeRun
+from ..solver.solution import MARGIN, Solution
 from ..theory.fronts import nucleations
 from ..theory.rupture import Rupture
+from .exact_rupture import exact_rupture
 
-# Positions at rest that are kept beyond the outermost released one, as on the lattice.
-MARGIN = 16
 # The acceleration at the end is the slope of slip velocity over this fraction of the duration.
-SHORTLY = 1e-5
-# Positions, at some 300 bytes each.
+LAST_FRACTION = 1e-5
+# Each position takes some 300 bytes.
 MOST_POSITIONS = 10**6
 
 
-def solve_scene(
+def solve_exactly(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
-) -> LatticeRun:
-    """Solve a scene exactly in the limit dx -> 0 at its damping ratio; dx is where it is sampled.
+) -> Solution:
+    """Solve a scene exactly in the limit dx -> 0 at its damping ratio, at multiples of dx.
 
-    ``progress`` is called once, before it begins. Where the construction ends before the scene does, what it cannot
-    tell is NaN and the numbers say where and why (``limit_position``, ``limit_time``, ``limit_reason``).
+    ``progress`` is called once, at the start. The construction of the exact rupture may end before
+    the scene does. What is unknown then is NaN, and the numbers ``limit_position``, ``limit_time``
+    and ``limit_reason`` tell where and why.
 
-    Raises ValueError: if `Rupture` refuses the scene, or dx is too small for its fronts.
+    Raises ValueError if `Rupture` refuses the scene, or dx is too small for its fronts.
     """
     if progress is not None:
         progress(0.0)
-    # Where nothing nucleates, all stays at rest.
-    ends, first, limit = [0.0], None, None
-    if starts := nucleations(scene.prestress):
-        rupture = Rupture(
-            scene.prestress, scene.gamma, scene.damping_ratio, scene.release, scene.duration,
-            rate_strengthening=scene.rate_strengthening,
-        )  # fmt: skip
-        ends = [end.x for pair in rupture.front_ends for end in pair]
-        first, limit = rupture.first_stick, rupture.limit
-    check_number("dx", scene.dx, at_least=(max(ends) - min(ends)) / MOST_POSITIONS)
-    # Multiples of dx over all that is released until the end.
-    span = math.floor(min(ends) / scene.dx) - MARGIN, math.ceil(max(ends) / scene.dx) + MARGIN
-    x = np.arange(span[0], span[1] + 1) * scene.dx
-    release = stick = np.full(x.size, np.nan)
-    slip = velocity = acceleration = np.zeros(x.size)
-    recorded: tuple[Any, Any] = (None, None)
-    if samples is not None:
-        recorded = 2 * (np.zeros((samples.times.size, samples.positions.size)),)
-    if starts:
-        release, stick = rupture.release_time(x), rupture.stick_time(x)
-        slip, velocity = rupture.slip(x, scene.duration), rupture.slip_velocity(x, scene.duration)
-        shortly = SHORTLY * scene.duration
-        before = rupture.slip_velocity(x, scene.duration - shortly)
-        acceleration = np.where(velocity > 0.0, (velocity - before) / shortly, 0.0)
-        if samples is not None:
-            found = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
-            recorded = found["slip"], found["slip_velocity"]
-    numbers = {
-        "end_time": scene.duration,
-        "stopped_because": "duration reached" if np.any(velocity > 0.0) else "everything is stuck",
+    # Without a nucleation everything stays at rest.
+    rupture = exact_rupture(scene) if nucleations(scene.prestress) else None
+    x = _positions(scene, rupture)
+    fields = _fields(rupture, x, scene.duration)
+    numbers = _numbers(rupture, fields, scene.duration)
+    recorded = _sampled(rupture, samples) if samples is not None else {}
+    return Solution(x, scene.prestress(x), numbers=numbers, **fields | recorded)
+
+
+def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
+    """Multiples of dx over all that is released until the end, and a margin."""
+    first, last = 0.0, 0.0
+    if rupture is not None:
+        first = min(left.x for left, _ in rupture.front_ends)
+        last = max(right.x for _, right in rupture.front_ends)
+    check_number("dx", scene.dx, at_least=(last - first) / MOST_POSITIONS)
+    numbers = np.arange(
+        math.floor(first / scene.dx) - MARGIN, math.ceil(last / scene.dx) + MARGIN + 1
+    )
+    return numbers * scene.dx
+
+
+def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:
+    if rupture is None:
+        times = dict.fromkeys(("release_time", "stick_time"), np.full(x.size, np.nan))
+        return times | dict.fromkeys(
+            ("slip", "slip_velocity", "slip_acceleration"), np.zeros(x.size)
+        )
+    interval = LAST_FRACTION * end
+    velocity = rupture.slip_velocity(x, end)
+    change = velocity - rupture.slip_velocity(x, end - interval)
+    return {
+        "release_time": rupture.release_time(x),
+        "stick_time": rupture.stick_time(x),
+        "slip": rupture.slip(x, end),
+        "slip_velocity": velocity,
+        "slip_acceleration": np.where(velocity > 0.0, change / interval, 0.0),
+    }
+
+
+def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]:
+    if rupture is None:
+        rest = np.zeros((samples.times.size, samples.positions.size))
+        return {"sample_slip": rest, "sample_velocity": rest}
+    maps = rupture.map(samples.times, samples.positions, ("slip", "slip_velocity"))
+    return {"sample_slip": maps["slip"], "sample_velocity": maps["slip_velocity"]}
+
+
+def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float) -> dict:
+    stick, limit = rupture and rupture.first_stick, rupture and rupture.limit
+    sliding = np.any(fields["slip_velocity"] > 0.0)
+    return {
+        "end_time": end,
+        "stopped_because": "duration reached" if sliding else "everything is stuck",
         "steps": 0,
         "block_updates": 0,
         "event_updates": 0,
-        "releases": int(np.isfinite(release).sum()),
-        "sticks": int(np.isfinite(stick).sum()),
+        "releases": int(np.isfinite(fields["release_time"]).sum()),
+        "sticks": int(np.isfinite(fields["stick_time"]).sum()),
         "re_releases": 0,
         "min_velocity": 0.0,
-        # Between the waves and the threshold a stuck point's stress is not looked at.
+        # The stress of a stuck point between the waves and the threshold is not computed.
         "min_stuck_stress": math.nan,
         "friction_ratio_needed": math.nan,
-        "first_stick_time": first[0] if first else math.nan,
-        "first_stick_position": first[1] if first else math.nan,
+        "first_stick_time": stick[0] if stick else math.nan,
+        "first_stick_position": stick[1] if stick else math.nan,
         "half_lattice_used": 0,
         "energy_residual": math.nan,
         "limit_position": limit.x if limit else math.nan,
         "limit_time": limit.time if limit else math.nan,
         "limit_reason": limit.reason if limit else "",
     }
-    fields = (x, scene.prestress(x), release, stick, slip, velocity, acceleration)
-    return LatticeRun(*fields, *recorded, numbers)

@@ -1,4 +1,4 @@
-"""Scenes in, Datasets out: one scene on the lattice or exactly, by its scheme, or a sweep of many."""
+"""Simulation of one scene, or of a sweep of many, each by the scheme that it names."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -7,17 +7,18 @@ import xarray as xr
 
 from ..data.variables import described
 from ..model.checks import check_number, short_repr
-from ..model.samples import RECORDS, Samples
+from ..model.samples import RECORDS, Samples, check_within
 from ..model.scene import Scene
-from ..solver.fixed_step import run_by_scheme
+from ..solver.fixed_step import solve_by_scheme
 from ..solver.lattice import UnstableRun
-from ..solver.run import LatticeRun
-from .continuum import solve_scene
-from .runs import ENERGY_RESIDUAL, recorded, run_all
+from ..solver.solution import Solution
+from .continuum import solve_exactly
+from .flags import ENERGY_RESIDUAL
+from .sweep import recorded, solve_sweep
 
 
 class UnresolvedRun(RuntimeError):
-    """A run finished, but its numbers are not those of the model; raised on request, otherwise flagged."""
+    """A run whose numbers are not those of the model; raised by `simulate` if it is strict."""
 
 
 def simulate(
@@ -30,38 +31,57 @@ def simulate(
 
     Parameters
     ----------
-    scene : the scene
-    samples : where and when to record slip and slip velocity during the run; nothing when left out
-    progress : called with the fraction of the duration done; True draws a bar with the time that is left
-    strict : raise UnresolvedRun where a run would be flagged
+    scene : Scene
+    samples : Samples, optional
+        Times and positions at which slip and slip velocity are recorded.
+    progress : callable or bool, optional
+        Called with the fraction of the duration done; True draws a bar with the time that is left.
+    strict : bool
+        Raise UnresolvedRun where a run would be flagged.
 
-    Returns a Dataset over x with prestress, release_time, stick_time, slip, slip_velocity and slip_acceleration at the
-    end. Attributes: every scene parameter, steps, block_updates, event_updates (blocks that events changed), energy
-    balance and energy_residual, min_velocity, re_releases, run_flags ("" or a comma-separated list), versions.
+    Returns
+    -------
+    xarray.Dataset
+        Over x: prestress, release_time, stick_time, and at the end slip, slip_velocity and
+        slip_acceleration. Attributes: every parameter of the scene, steps, block_updates,
+        event_updates (blocks that events changed), the energy balance and energy_residual,
+        min_velocity, re_releases, run_flags ("" or names separated by commas), versions.
 
-    Raises TypeError: if an argument is of another type; ValueError: if a sample is after the end; UnstableRun: if slip
-    velocity is not finite or beyond anything the pre-stress can drive.
+    Raises
+    ------
+    TypeError
+        If an argument is of another type.
+    ValueError
+        If a sample is after the end.
+    UnstableRun
+        If slip velocity is not finite or beyond anything the pre-stress can drive.
+    UnresolvedRun
+        If the run is flagged and ``strict`` is true.
+
+    Examples
+    --------
+    >>> scene = Scene("displacement", Prestress(0.6, 0.6), duration=15.0, dx=0.01, gamma=0.65)
+    >>> slip = simulate(scene).slip
     """
     _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
     _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
     known = isinstance(progress, bool | None) or callable(progress)
-    _require(
-        known, "progress", progress, "a function of the fraction done, True, or None", TypeError
-    )
+    allowed = "a function of the fraction done, True, or None"
+    _require(known, "progress", progress, allowed, TypeError)
     _require(isinstance(strict, bool), "strict", strict, "true or false", TypeError)
-    if samples is not None:
-        samples.check_within(scene.duration)
+    check_within(samples, scene.duration)
     if isinstance(progress, bool):
         progress = bar() if progress else None
-    data = described(recorded(scene, samples, _run(scene, samples, progress)).dataset())
+    data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())
     numbers = data.attrs
     if strict and numbers["run_flags"]:
         raise UnresolvedRun(
             f"the run is flagged: {numbers['run_flags']} (lowest stress of a stuck block"
-            f" {numbers['min_stuck_stress']:.4g}, reverse sliding at {scene.reverse_threshold:.4g}; blocks in the"
-            f" narrowest pulse {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
-            f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g}, allowed"
-            f" {ENERGY_RESIDUAL:g})"
+            f" {numbers['min_stuck_stress']:.4g}, reverse sliding at"
+            f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse"
+            f" {numbers['pulse_blocks']}, needed {scene.resolved_blocks}; smallest velocity"
+            f" {numbers['min_velocity']:.3g}; energy residual {numbers['energy_residual']:.2g},"
+            f" allowed {ENERGY_RESIDUAL:g})"
         )
     return data
 
@@ -73,89 +93,111 @@ def run_sweep(
     threads: int = 1,
     progress: Callable[[float, int], None] | None = None,
 ) -> xr.Dataset:
-    """Run scenes in a pool of threads.
+    """Simulate scenes in a pool of threads.
 
     Parameters
     ----------
-    scenes : the scenes, one point each
-    samples : per scene, where and when to record; all of one shape
-    record : what is kept per block: "fronts" (release and stick times), "fields" (slip, velocity, acceleration at
-        the end); "samples" (the recorded samples)
-    threads : how many run at once; the result does not depend on it
-    progress : called with (done, all) after each scene; of a single one, with the fraction done as it goes
+    scenes : sequence of Scene
+        One a point of the sweep; by the scheme "continuum" all or none.
+    samples : sequence of Samples, optional
+        One a scene, all of one shape.
+    record : sequence of {"fronts", "fields", "samples"}
+        What is kept: release and stick times; slip, slip velocity and acceleration at the end;
+        the recorded samples.
+    threads : int
+        Number of scenes at a time, 1 to 1024; the result does not depend on it.
+    progress : callable, optional
+        Called with (done, all) after each scene; for a single scene, with the fraction done.
 
-    Returns a Dataset with every parameter and number of the runs over ``point``; per-block variables as contiguous
-    ragged arrays over ``block``, ``row_size`` blocks a point; samples over (point, time, position).
+    Returns
+    -------
+    xarray.Dataset
+        Every parameter and number over ``point``; contiguous ragged arrays over ``block``, with
+        ``row_size`` blocks a point; samples over (point, time, position).
 
-    Raises ValueError: naming the argument and what is allowed.
+    Raises
+    ------
+    ValueError
+        In one line that names the argument and what is allowed.
+    UnstableRun
+        As `simulate` does.
+
+    Examples
+    --------
+    >>> levels = (0.5, 0.6)
+    >>> profiles = [Prestress(level, level) for level in levels]
+    >>> sweep = run_sweep([Scene("stress", profile, 5.0, 0.05) for profile in profiles], threads=2)
     """
-    listed = (
-        isinstance(scenes, Sequence)
-        and scenes
-        and all(isinstance(scene, Scene) for scene in scenes)
-    )
-    _require(bool(listed), "scenes", scenes, "a list of Scenes, at least one")
-    schemes = sorted({scene.scheme for scene in scenes})
-    alike = schemes[0] != "continuum" or len(schemes) == 1
-    _require(alike, "scheme", schemes, "'continuum' for all, or for none")
+    _check_scenes(scenes)
     samples = [None] * len(scenes) if samples is None else samples
-    listed = isinstance(samples, Sequence) and all(
-        isinstance(each, Samples | None) for each in samples
-    )
-    one_each = listed and len(samples) == len(scenes)
-    _require(
-        one_each,
-        "samples",
-        samples,
-        f"a list of Samples, {len(scenes)} for as many scenes, or None",
-    )
-    for scene, of_scene in zip(scenes, samples, strict=True):
-        if of_scene is not None:
-            of_scene.check_within(scene.duration)
-    words = record if isinstance(record, Sequence) and not isinstance(record, str) else ()
-    known = bool(words) and all(isinstance(word, str) and word in RECORDS for word in words)
-    _require(known, "record", record, f"a list of {', '.join(RECORDS)}")
-    if "samples" in words:
-        shapes = {
-            of_scene and (of_scene.times.shape, of_scene.positions.shape) for of_scene in samples
-        }
-        if None in shapes:
-            raise ValueError(
-                "record: 'samples' without samples; allowed: Samples for each scene, the second argument"
-            )
-        _require(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
-    check_number("threads", threads, whole=True, at_least=1, at_most=1024)
+    _check_samples(samples, scenes)
+    _check_record(record, samples)
+    check_number("threads", threads, integer=True, at_least=1, at_most=1024)
     known = progress is None or callable(progress)
     _require(known, "progress", progress, "a function of (done, all), or None")
-    return described(run_all(_run, scenes, samples, record, int(threads), progress))
+    return described(solve_sweep(_solve, scenes, samples, record, int(threads), progress))
+
+
+def _check_scenes(scenes: Sequence[Scene]) -> None:
+    listed = isinstance(scenes, Sequence) and len(scenes) > 0
+    known = listed and all(isinstance(scene, Scene) for scene in scenes)
+    _require(known, "scenes", scenes, "a list of Scenes, at least one")
+    schemes = sorted({scene.scheme for scene in scenes})
+    alike = "continuum" not in schemes or len(schemes) == 1
+    _require(alike, "scheme", schemes, "'continuum' for all, or for none")
+
+
+def _check_samples(samples: Sequence[Samples | None], scenes: Sequence[Scene]) -> None:
+    listed = isinstance(samples, Sequence) and len(samples) == len(scenes)
+    known = listed and all(isinstance(item, Samples | None) for item in samples)
+    allowed = f"a list of Samples, {len(scenes)} for as many scenes, or None"
+    _require(known, "samples", samples, allowed)
+    for scene, samples_of_scene in zip(scenes, samples, strict=True):
+        check_within(samples_of_scene, scene.duration)
+
+
+def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> None:
+    listed = isinstance(record, Sequence) and not isinstance(record, str) and len(record) > 0
+    known = listed and all(isinstance(word, str) and word in RECORDS for word in record)
+    _require(known, "record", record, f"a list of {', '.join(RECORDS)}")
+    if "samples" not in record:
+        return
+    given = [item for item in samples if item is not None]
+    if len(given) < len(samples):
+        allowed = "Samples for each scene, the second argument"
+        raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
+    shapes = {(item.times.shape, item.positions.shape) for item in given}
+    _require(len(shapes) == 1, "samples", samples, "as many times and positions for each scene")
 
 
 def bar(stream=None) -> Callable[[float], None]:
-    """A function of the fraction done that draws a bar with the time left on a stream, standard error if left out."""
+    """A function of the fraction done that draws a bar with the time left, on standard error."""
     from tqdm import tqdm
 
-    shown = tqdm(
-        total=1.0, delay=0.2, mininterval=0.2, file=stream or sys.stderr,
+    drawn = tqdm(
+        total=1.0,
+        delay=0.2,
+        mininterval=0.2,
+        file=stream or sys.stderr,
         bar_format="[{bar:30}] {percentage:3.0f}%  {elapsed}, {remaining} left",
-    )  # fmt: skip
+    )
 
     def draw(done: float) -> None:
-        shown.update(done - shown.n)
+        drawn.update(done - drawn.n)
         if done >= 1.0:
-            shown.close()
+            drawn.close()
 
     return draw
 
 
-def _run(
+def _solve(
     scene: Scene, samples: Samples | None, progress: Callable[[float], None] | None
-) -> LatticeRun:
-    solve = solve_scene if scene.scheme == "continuum" else run_by_scheme
+) -> Solution:
+    solve = solve_exactly if scene.scheme == "continuum" else solve_by_scheme
     return solve(scene, samples, progress)
 
 
 def _require(holds: bool, name: str, value: object, allowed: str, error: type = ValueError) -> None:
-    """Refuse an argument in one line."""
     if not holds:
         raise error(f"{name}: {short_repr(value)}; allowed: {allowed}")
 

@@ -6,7 +6,7 @@ import numba
 
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from .fixed_step import LATTICES, run_by_scheme
+from .fixed_step import LATTICES, solve_by_scheme
 
 
 def compile_all(schemes: Iterable[str] = LATTICES) -> None:
@@ -14,6 +14,6 @@ def compile_all(schemes: Iterable[str] = LATTICES) -> None:
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
     for scheme in schemes:
-        run_by_scheme(
+        solve_by_scheme(
             Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme)
         )

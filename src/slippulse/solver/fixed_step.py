@@ -11,7 +11,7 @@ from ..model.scene import Scene
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
 from .jit import entry, inner
 from .lattice import Lattice
-from .run import LatticeRun, run_scene
+from .solution import Solution, solve_on_lattice
 from .taylor import BLOW_UP, note_release, note_stick
 
 
@@ -142,12 +142,12 @@ class FixedStepLattice(Lattice):
         )
 
 
-# By the scheme of a scene.
+# The lattice of each scheme.
 LATTICES = {"localised": Lattice, "fixed_step": FixedStepLattice}
 
 
-def run_by_scheme(
+def solve_by_scheme(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
-) -> LatticeRun:
-    """Run a scene on the lattice by its scheme, as `run_scene` does by the localised one."""
-    return run_scene(scene, samples, progress, kind=LATTICES[scene.scheme])
+) -> Solution:
+    """Solve a scene on the lattice by its scheme."""
+    return solve_on_lattice(scene, samples, progress, kind=LATTICES[scene.scheme])

@@ -143,7 +143,7 @@ class Lattice:
         settings = f"dx = {self.scene.dx:g}, beta = {self.medium.beta:g}, max_step = {self.scene.max_step:g}"
         return UnstableRun(f"the run became unstable at t = {time:.6g}: {reason} ({settings})")
 
-    def run(self, progress: Callable[[float], None] | None) -> int:
+    def advance_to_end(self, progress: Callable[[float], None] | None) -> int:
         """Advance to the end of the scene; progress is told the fraction of the duration done, several times a second.
 
         Returns why the kernel stopped, DONE or ALL_STUCK.

@@ -8,15 +8,15 @@ from functools import partial
 from ..configuration.expand import expand
 from ..data.store import save_dataset
 from ..data.variables import described
-from ..simulation.runs import run_all
-from ..solver.run import run_scene
+from ..simulation.sweep import solve_sweep
+from ..solver.solution import solve_on_lattice
 
 
 def simulate(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: data. Settings: simulation (its name), sweep (resolved), threads, progress."""
     sweep, threads = settings["sweep"], settings["threads"]
     scenes, samples = expand(sweep)
-    data = run_all(solve, scenes, samples, sweep["record"], threads, settings.get("progress"))
+    data = solve_sweep(solve, scenes, samples, sweep["record"], threads, settings.get("progress"))
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
         flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"
@@ -24,4 +24,4 @@ def simulate(solve: Callable, files: dict, outputs: dict, settings: dict) -> Non
     save_dataset(described(data), outputs["data"])
 
 
-run = partial(simulate, run_scene)
+run = partial(simulate, solve_on_lattice)

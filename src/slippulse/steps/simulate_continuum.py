@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..simulation.continuum import solve_scene
+from ..simulation.continuum import solve_exactly
 from .simulate import simulate
 
-run = partial(simulate, solve_scene)
+run = partial(simulate, solve_exactly)

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..solver.fixed_step import run_by_scheme
+from ..solver.fixed_step import solve_by_scheme
 from .simulate import simulate
 
-run = partial(simulate, run_by_scheme)
+run = partial(simulate, solve_by_scheme)

@@ -12,8 +12,8 @@ from ..measure.promise import judged, summary
 from ..measure.table import PARAMETERS
 from ..measure.uncertainty import grid_tables
 from ..predict.comparison import measured_table
-from ..simulation.runs import run_all
-from ..solver.run import run_scene
+from ..simulation.sweep import solve_sweep
+from ..solver.solution import solve_on_lattice
 
 
 def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
@@ -26,7 +26,7 @@ def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
     for factor in sorted(sweeps):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
         scenes, samples = expand(sweeps[factor])
-        data = run_all(solve, scenes, samples, sweeps[factor]["record"], settings["threads"])
+        data = solve_sweep(solve, scenes, samples, sweeps[factor]["record"], settings["threads"])
         tables[factor] = measured_table(data, settings["measure"])
     # In a chunk, a column of fractions may happen to have integers alone.
     in_chunk = any("chunk" in sweep for sweep in sweeps.values())
@@ -41,4 +41,4 @@ def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
 
 
-run = partial(study, run_scene)
+run = partial(study, solve_on_lattice)

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..simulation.continuum import solve_scene
+from ..simulation.continuum import solve_exactly
 from .study_grid import study
 
-run = partial(study, solve_scene)
+run = partial(study, solve_exactly)

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..solver.fixed_step import run_by_scheme
+from ..solver.fixed_step import solve_by_scheme
 from .study_grid import study
 
-run = partial(study, run_by_scheme)
+run = partial(study, solve_by_scheme)

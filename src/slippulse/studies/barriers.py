@@ -9,7 +9,7 @@ import pandas as pd
 
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..solver.run import run_scene
+from ..solver.solution import solve_on_lattice
 from ..theory.front_speeds import steady_pulse
 from ..theory.pulse import SteadyPulse
 from ..theory.slow_front import barrier_depth, barrier_depth_estimate
@@ -88,5 +88,5 @@ def entered(
     duration = start + CROSSINGS * known["exact"] + pulse.width
     beta = known["damping_ratio"] * dx
     scene = Scene("displacement", profile, duration, dx, gamma, beta, max_step=0.5, order=4)
-    run = run_scene(scene)
+    run = solve_on_lattice(scene)
     return float(run.x[np.isfinite(run.release_time)].max()) + 0.5 * dx - start

@@ -10,8 +10,8 @@ import pandas as pd
 from ..configuration.expand import expand
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES
-from ..predict.exact_rupture import exact_rupture
 from ..predict.numbers import or_nan
+from ..simulation.exact_rupture import exact_rupture
 from ..theory.front_motion import admissibility_table
 from ..theory.front_speeds import front_speed, steady_pulse
 from ..theory.rupture import Rupture
@@ -41,7 +41,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
     level, gamma = step.prestress.left, step.gamma
     ratio, release = published.damping_ratio, published.release
-    rupture = cache(lambda: exact_rupture(published.attributes()))
+    rupture = cache(lambda: exact_rupture(published))
     halfway = cache(lambda: 0.5 * rupture().transition_time)
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)

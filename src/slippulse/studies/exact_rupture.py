@@ -5,7 +5,8 @@ import pandas as pd
 import xarray as xr
 
 from ..data.points import point
-from ..predict.exact_rupture import exact_rupture
+from ..model.scene import scene_of
+from ..simulation.exact_rupture import exact_rupture
 from ..theory.rupture import Rupture
 
 NEEDS = {"data": ["exact_displacement", "exact_asymmetric", "exact_stress"]}
@@ -32,7 +33,7 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
     parts = []
     for name in NEEDS["data"]:
         runs = [point(data[name], index) for index in range(data[name].sizes["point"])]
-        rupture = exact_rupture(runs[0].attrs)
+        rupture = exact_rupture(scene_of(runs[0]))
         shown = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN)))
         rows = [pd.DataFrame([shown.attrs])[PARAMETERS].assign(role="scene")]
         if name != NEEDS["data"][-1]:

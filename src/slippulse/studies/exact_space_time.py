@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..predict.exact_rupture import exact_rupture
+from ..simulation.exact_rupture import exact_rupture
 
 NEEDS = {"sweeps": ["space_time_displacement", "space_time_stress"]}
 
@@ -16,7 +16,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Simulation, position, release_time, stick_time (NaN where it slides on), exact."""
     parts = []
     for name, sweep in settings["sweeps"].items():
-        rupture = exact_rupture(expand(sweep)[0][0].attributes())
+        rupture = exact_rupture(expand(sweep)[0][0])
         ends = rupture.front_ends
         x = np.concatenate([ends[0][0].x * FRACTIONS[:0:-1], ends[-1][1].x * FRACTIONS])
         edges = {"release_time": rupture.release_time(x), "stick_time": rupture.stick_time(x)}

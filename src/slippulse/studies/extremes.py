@@ -16,9 +16,9 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step
 from ..predict.comparison import pulse_state
-from ..simulation.runs import simulate_on_lattice
+from ..simulation.sweep import simulate_on_lattice
 from ..solver.lattice import UnstableRun
-from ..solver.run import run_scene
+from ..solver.solution import solve_on_lattice
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import Fronts, exact_transition_displacement
 from ..theory.front_speeds import front_speed as exact_speed
@@ -224,7 +224,7 @@ def single_precision() -> Iterator[Edge]:
     dx: Any = np.float32(0.1)
     gamma: Any = np.float32(GAMMA)
     double = Setup(float(dx), 5.0, gamma=float(gamma), ratio=0.0)
-    slip = float(run_scene(double.scene()).slip.max())
+    slip = float(solve_on_lattice(double.scene()).slip.max())
     yield Edge("parameters", "slip", "right", slip, Setup(dx, 5.0, gamma=gamma, ratio=0.0))
     for soft in (0.01, 1e-3):
         crack = Setup(0.1, 0.9 * math.pi / math.sqrt(soft), width=0.8, gamma=soft, ratio=0.0)
@@ -334,7 +334,9 @@ def measured(edge: Edge, window: float) -> Outcome:
         return Outcome(single_precision_error(edge.setup), NOT_OFFERED)
     scene = edge.setup.scene()
     if edge.quantity == "slip":
-        return Outcome(float(run_scene(scene, damping_sign=edge.setup.damping_sign).slip.max()))
+        return Outcome(
+            float(solve_on_lattice(scene, damping_sign=edge.setup.damping_sign).slip.max())
+        )
     run = simulated(scene)
     if edge.quantity == "releases":
         # A run without a release is flagged, and right here.

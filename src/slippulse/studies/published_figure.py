@@ -19,7 +19,7 @@ from ..measure.transition import between_fronts
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import RELEASES, Scene
-from ..simulation.runs import simulate_on_lattice
+from ..simulation.sweep import simulate_on_lattice
 from ..theory.arrest import ArrestingCrack
 from ..theory.rupture import Rupture
 

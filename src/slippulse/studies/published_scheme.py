@@ -6,7 +6,7 @@ import pandas as pd
 from ..measure.fronts import straight_line
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..simulation.runs import simulate_on_lattice
+from ..simulation.sweep import simulate_on_lattice
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_speeds import steady_pulse
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
-from ..predict.exact_rupture import exact_rupture
+from ..simulation.exact_rupture import exact_rupture
 from ..theory.front_speeds import steady_pulse
 
 # The curves have the parameters of this simulation.
@@ -31,7 +31,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         old, new = (steady_pulse(tau, scene.gamma, **damping) for tau in (before, level))
         memory = new.width / (new.speed - 1.0)
         x = np.concatenate([BEHIND, memory * BEYOND])
-        slip = exact_rupture(scene.attributes()).final_slip(position + x)
+        slip = exact_rupture(scene).final_slip(position + x)
         rows = pd.DataFrame({"level": level, "x": x, "slip": slip})
         rows = rows.assign(before=before, steady=new.slip, steady_before=old.slip, memory=memory)
         parts.append(rows)

@@ -11,7 +11,7 @@ import xarray as xr
 from ..model.prestress import Prestress, prestress_balance_position
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..simulation.runs import simulate_on_lattice
+from ..simulation.sweep import simulate_on_lattice
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import critical_rate_strengthening, pulse_behind_front
 from ..theory.rupture import Rupture

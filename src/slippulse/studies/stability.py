@@ -80,7 +80,7 @@ def sound(
             raise UnstableRun
 
     try:
-        lattice.run(stop_at_the_first_stick)
+        lattice.advance_to_end(stop_at_the_first_stick)
     except UnstableRun:
         return False
     return bool(lattice.tally.sticks == 0)

@@ -80,7 +80,7 @@ class ArrestingCrack:
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
         """x - t of characteristics far to the right and du/dt on them, ``count`` (2 to 10000) of each third."""
-        check_number("count", count, whole=True, at_least=2, at_most=10_000)
+        check_number("count", count, integer=True, at_least=2, at_most=10_000)
         right, left = (
             np.linspace(2.0 * self.far, 0.0, count),
             np.linspace(0.0, self.zero, count)[1:],

@@ -66,7 +66,7 @@ def steady_front(
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=100.0)
     check_number("springs", springs, at_least=0.0, at_most=100.0)
     check_choice("release", release, RELEASES)
-    check_number("blocks", blocks, whole=True, at_least=10, at_most=500)
+    check_number("blocks", blocks, integer=True, at_least=10, at_most=500)
     # Slow to load, and needed here only.
     from scipy.linalg import expm
 

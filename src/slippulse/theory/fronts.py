@@ -126,7 +126,7 @@ class FrontLaw:
         check_number("gamma", gamma, at_least=0.0)
         check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
         check_choice("release", release, RELEASES)
-        check_number("refinement", refinement, whole=True, at_least=1, at_most=FINEST)
+        check_number("refinement", refinement, integer=True, at_least=1, at_most=FINEST)
         check_number("rate_strengthening", alpha)
         check_runaway(gamma, alpha)
         self.prestress, self.gamma, self.alpha = prestress, float(gamma), float(alpha)

@@ -1,0 +1,16 @@
+"""The exact rupture of a scene."""
+
+from ..model.scene import Scene
+from ..theory.rupture import Rupture
+
+
+def exact_rupture(scene: Scene) -> Rupture:
+    """The exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
+    return Rupture(
+        scene.prestress,
+        scene.gamma,
+        scene.damping_ratio,
+        scene.release,
+        scene.duration,
+        rate_strengthening=scene.rate_strengthening,
+    )

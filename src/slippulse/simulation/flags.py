@@ -1,0 +1,98 @@
+"""Flags of a solution: the reasons why its numbers are not those of the model."""
+
+import math
+
+import numpy as np
+
+from ..model.scene import Scene
+from ..solver.solution import Solution
+
+# A velocity this far below zero, as a fraction of the largest, shows a stick that was stepped over.
+# The textbook scheme steps over each, by the deceleration of one step.
+NEGATIVE_VELOCITY = {"localised": 1e-9, "fixed_step": 1e-2}
+# An energy balance that misses this fraction of its largest part shows a step too long for the
+# damping.
+ENERGY_RESIDUAL = 1e-2
+# A front of the textbook scheme that takes equally many steps for each of these last blocks runs at
+# a fraction of dx/dt. With fewer steps than this, that speed errs by up to 1 per cent.
+LAST_BLOCKS, FEW_STEPS = 30, 50
+
+
+def flags_of(scene: Scene, solution: Solution) -> dict:
+    """The blocks across the narrowest pulse, and the names of the flags, separated by commas."""
+    blocks, numbers = narrowest_pulse(scene, solution), solution.numbers
+    if numbers["releases"] == 0:
+        return {"pulse_blocks": blocks, "run_flags": "nothing_released"}
+    flags = {"nothing_sticks": nothing_sticks(scene, solution)}
+    if scene.scheme == "continuum":
+        flags["construction_ended"] = numbers["limit_reason"] != ""
+    else:
+        fastest = max(1.0, float(np.max(solution.slip_velocity)))
+        lowest_velocity = -NEGATIVE_VELOCITY[scene.scheme] * fastest
+        flags |= {
+            "reverse_sliding": numbers["min_stuck_stress"] <= scene.reverse_threshold,
+            "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
+            "died_out": died_out(solution),
+            "negative_velocity": numbers["min_velocity"] < lowest_velocity,
+            # A residual of NaN is flagged, too.
+            "energy": not numbers["energy_residual"] <= ENERGY_RESIDUAL,
+            "locked_front": scene.scheme == "fixed_step" and locked_front(solution),
+        }
+    return {"pulse_blocks": blocks, "run_flags": ",".join(flag for flag in flags if flags[flag])}
+
+
+def nothing_sticks(scene: Scene, solution: Solution) -> bool:
+    """True if rate-dependent friction let nothing stick for two times the paper's pi/sqrt(gamma)."""
+    if scene.rate_strengthening == 0.0 or scene.gamma == 0.0:
+        return False
+    if not np.any(solution.slip_velocity > 0.0):
+        return False
+    last = np.max(solution.stick_time, initial=0.0, where=np.isfinite(solution.stick_time))
+    return scene.duration - last > 2.0 * math.pi / math.sqrt(scene.gamma)
+
+
+def locked_front(solution: Solution) -> bool:
+    """True if a front of the textbook scheme is locked to a fraction of dx/dt."""
+    step = solution.numbers["end_time"] / solution.numbers["steps"]
+    for side in (-1.0, 1.0):
+        released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)
+        times = np.sort(solution.release_time[released])
+        counts = np.rint(np.diff(times[-LAST_BLOCKS:]) / step)
+        if counts.size == LAST_BLOCKS - 1 and counts.min() == counts.max() < FEW_STEPS:
+            return True
+    return False
+
+
+def narrowest_pulse(scene: Scene, solution: Solution) -> int:
+    """Number of blocks across the narrowest pulse at the end.
+
+    Under a stress boundary nucleation sets the scale: the width of the Gaussian, or the distance
+    from its peak to where it falls to 0 on the way to a strongly negative level.
+    """
+    if scene.boundary == "stress":
+        profile = scene.prestress
+        widths = [profile.width]
+        for level in (profile.left, profile.right):
+            if level < 0.0 < profile.peak:
+                widths.append(profile.width * math.sqrt(2.0 * math.log1p(-profile.peak / level)))
+        return int(min(widths) / scene.dx)
+    sliding = np.isfinite(solution.release_time) & ~np.isfinite(solution.stick_time)
+    edges = np.flatnonzero(np.diff(sliding, prepend=False, append=False))
+    lengths = edges[1::2] - edges[0::2]
+    # The pulses are the outermost segments. Those between them are remains of the nucleation.
+    return int(min(lengths[0], lengths[-1])) if lengths.size else 0
+
+
+def died_out(solution: Solution) -> bool:
+    """True if a front stands still although the pre-stress ahead of it would drive it on."""
+    released = np.isfinite(solution.release_time)
+    sliding = released & ~np.isfinite(solution.stick_time)
+    for side in (1, -1):
+        # The blocks of one side, from x = 0 outwards.
+        start = np.searchsorted(side * solution.x[::side], 0.0)
+        reached = np.flatnonzero(released[::side][start:])
+        if reached.size and not np.any(sliding[::side][start:]):
+            ahead = solution.prestress[::side][start + reached[-1] + 1 :]
+            if ahead.size and ahead[0] > 0.0:
+                return True
+    return False

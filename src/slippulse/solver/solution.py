@@ -1,0 +1,152 @@
+"""The solution of a scene: energies, counters, and the lattice unfolded and trimmed."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.samples import Samples
+from ..model.scene import Scene
+from .arrays import ALL_STUCK, TALLY
+from .lattice import Lattice
+
+# Blocks at rest that are kept beyond the outermost released one.
+MARGIN = 16
+# Counters and extremes of the tally that are kept as they are.
+KEPT = "steps block_updates event_updates releases sticks re_releases min_velocity"
+
+
+@dataclass
+class Solution:
+    """The solution of a scene, from the lattice or exact.
+
+    Arrays go from left to right over all that was released and a margin; a mirrored half is
+    restored.
+    """
+
+    x: np.ndarray
+    prestress: np.ndarray
+    release_time: np.ndarray
+    stick_time: np.ndarray
+    slip: np.ndarray
+    slip_velocity: np.ndarray
+    slip_acceleration: np.ndarray
+    numbers: dict
+    sample_slip: np.ndarray | None = None
+    sample_velocity: np.ndarray | None = None
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The arrays by name."""
+        values = vars(self)
+        return {name: values[name] for name in values if isinstance(values[name], np.ndarray)}
+
+
+def energies(lattice: Lattice, totals: dict) -> dict:
+    """Energy balance per unit depth of the whole lattice, and its residual over its largest part."""
+    medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
+    slip, velocity, strain = motion.w[0], motion.w[1], motion.strain
+    if not lattice.localised:
+        strain = np.append(np.diff(slip) / dx, 0.0)
+    weight, bond = np.full((2, lattice.size), 2.0 if medium.mirror else 1.0)
+    if medium.mirror:
+        weight[:2], bond[0] = (0.0, 1.0), 0.0
+    parts = {
+        "work_of_prestress": float(np.sum(weight * motion.tau * slip) * dx),
+        "kinetic_energy": float(0.5 * np.sum(weight * velocity * velocity) * dx),
+        "elastic_energy": float(0.5 * np.sum(bond * strain * strain) * dx),
+        "leaf_spring_energy": float(0.5 * medium.leaf * np.sum(weight * slip * slip) * dx),
+        "viscous_loss": totals["viscous_loss"],
+        "event_loss": totals["stick_loss"],
+    }
+    work, *others = parts.values()
+    largest = max(map(abs, parts.values()))
+    return parts | {"energy_residual": abs(work - sum(others)) / largest if largest else 0.0}
+
+
+def numbers_of(lattice: Lattice, status: int) -> dict:
+    """Energies, counters and extremes of a simulation that ended with a status of the kernel."""
+    totals = dict(zip(TALLY.names or (), lattice.tally.tolist(), strict=True))
+    lowest = _lowest_stuck_stress(lattice, totals["min_stuck_stress"])
+    first_stuck = (totals["first_stuck_block"] + lattice.first_block) * lattice.scene.dx
+    return energies(lattice, totals) | {
+        "end_time": totals["time"],
+        "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",
+        **{name: totals[name] for name in KEPT.split()},
+        "min_stuck_stress": lowest,
+        "friction_ratio_needed": max(0.0, -(lowest + 1.0) / 2.0),
+        "first_stick_time": totals["first_stick_time"],
+        "first_stick_position": float(first_stuck) if totals["sticks"] else math.nan,
+        "half_lattice_used": int(lattice.mirror),
+    }
+
+
+def _lowest_stuck_stress(lattice: Lattice, lowest: float) -> float:
+    """Lowest stress of a stuck block at the end, or until then, as the release rule takes it."""
+    medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
+    slip, velocity = motion.w[0], motion.w[1]
+    elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
+    stress = (motion.tau - medium.leaf * slip)[1:-1] + elastic
+    if medium.total:
+        stress += medium.beta * np.diff(velocity, 2) / dx**2
+    return float(np.min(stress[~lattice.sliding[1:-1]], initial=lowest))
+
+
+def kept_blocks(lattice: Lattice) -> np.ndarray:
+    """Mask of the blocks that are kept: those released and a margin, without ghosts."""
+    blocks = np.arange(lattice.size) + lattice.first_block
+    released = blocks[np.isfinite(lattice.history.release_time)]
+    first, last = (released.min(), released.max()) if released.size else (0, 0)
+    keep = (blocks >= first - MARGIN) & (blocks <= last + MARGIN)
+    if lattice.mirror:
+        keep &= blocks >= 0
+    keep[0] = keep[-1] = False
+    return keep
+
+
+def solution_of(lattice: Lattice, status: int) -> Solution:
+    """The solution of a lattice whose kernel ended with a status."""
+    if lattice.localised:
+        lattice.sliding[:] = False
+        n = lattice.segments.count.n
+        for start, end in zip(lattice.segments.starts[:n], lattice.segments.ends[:n], strict=True):
+            lattice.sliding[start:end] = True
+    motion, history, recorder = lattice.motion, lattice.history, lattice.recorder
+    # After a kernel that stopped early, the samples that it did not take are of a lattice at rest.
+    inside = recorder.blocks >= 0
+    rest = slice(lattice.tally.samples_taken, None)
+    recorder.slip[rest, inside] = motion.w[0, recorder.blocks[inside]]
+    recorder.velocity[rest, inside] = motion.w[1, recorder.blocks[inside]]
+    keep = kept_blocks(lattice)
+
+    def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
+        kept = values[keep]
+        return np.concatenate([sign * kept[:0:-1], kept]) if lattice.mirror else kept.copy()
+
+    return Solution(
+        x=unfold(np.arange(lattice.size) + lattice.first_block, -1) * lattice.scene.dx,
+        prestress=unfold(motion.tau),
+        release_time=unfold(history.release_time),
+        stick_time=unfold(history.stick_time),
+        slip=unfold(motion.w[0]),
+        slip_velocity=unfold(motion.w[1]),
+        slip_acceleration=unfold(np.where(lattice.sliding, motion.w[2], 0.0)),
+        numbers=numbers_of(lattice, status),
+        sample_slip=recorder.slip if lattice.samples else None,
+        sample_velocity=recorder.velocity if lattice.samples else None,
+    )
+
+
+def solve_on_lattice(
+    scene: Scene,
+    samples: Samples | None = None,
+    progress: Callable[[float], None] | None = None,
+    damping_sign: int = 1,
+    kind: type[Lattice] = Lattice,
+) -> Solution:
+    """Solve a scene by the localised scheme, or by another kind of lattice.
+
+    ``damping_sign = -1`` gives the damping the sign that is printed in the paper, and blows up.
+    """
+    lattice = kind(scene, samples, damping_sign * scene.beta)
+    return solution_of(lattice, lattice.advance_to_end(progress))
