@@ -142,7 +142,7 @@ class Scene:
     def _check_resolution(self) -> None:
         width = self.prestress.width
         if width < self.dx:
-            allowed = f">= dx = {self.dx:g}, which must resolve the peak"
+            allowed = f">= dx = {self.dx:g}, which must see the peak"
             raise ValueError(f"prestress.width: {width!r}; allowed: {allowed}")
         farthest = FARTHEST_BUMP * self.dx
         for centre, _, width in self.prestress.bumps:

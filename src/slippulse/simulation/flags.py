@@ -42,7 +42,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
 
 
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:
-    """True if rate-dependent friction let nothing stick for two times the paper's pi/sqrt(gamma)."""
+    """True if rate-dependent friction let nothing stick for 2 pi/sqrt(gamma)."""
     if scene.rate_strengthening == 0.0 or scene.gamma == 0.0:
         return False
     if not np.any(solution.slip_velocity > 0.0):

@@ -1,1 +1,1 @@
-"""How the lattice is advanced. Knows nothing of the theory, so that their agreement means something."""
+"""The lattice and its schemes. They know nothing of the theory, so that agreement is evidence."""

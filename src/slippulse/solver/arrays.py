@@ -1,39 +1,46 @@
-"""What the kernels work on: arrays, constants and counters, in groups.
+"""Arrays, constants and counters of the kernels, in groups.
 
-Shapes: K = order + 2 derivatives of slip (rows 0 to order + 1), N blocks of the lattice, the ghost block at each end
-included. Lengths are in units of H, times in units of H over the wave speed, stresses in units of the stress drop.
+Shapes: K = order + 2 derivatives of slip (rows 0 to order + 1), N blocks of the lattice, with the
+ghost block at each end. Lengths are in units of H, times in units of H over the wave speed,
+stresses in units of the stress drop.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-# Reach of an event on either side at order 8, the highest: one block for each derivative from the third on.
+# At order 8, the highest, an event reaches this far on either side: one block for each derivative
+# from the third on.
 REACH = 7
-# Columns of the difference that an event makes: its reach on either side of its centre, a block at rest at each end.
+# The difference that an event makes has its reach on either side of its centre, and a block at rest
+# at each end.
 CENTRE = REACH + 1
 COLUMNS = 2 * CENTRE + 1
-# A step ends early at the next event after this many.
+# After this number of events, a step ends early at the next one.
 MOST_EVENTS = 64
-# Blocks that must be left beyond the outermost sliding one, for the events of one step.
+# The events of one step need this number of blocks beyond the outermost sliding one.
 ROOM = COLUMNS + MOST_EVENTS
 
-# Why a kernel returned.
-DONE, CONTINUE, GROW, UNSTABLE, ALL_STUCK = 0, 1, 2, 3, 4
+# A kernel returns the reason why it stopped. CONTINUE: all steps of the call are done.
+DONE = 0
+CONTINUE = 1
+GROW = 2
+UNSTABLE = 3
+ALL_STUCK = 4
 
-# Records whose fields are attributes, for kernels and for Python alike. One dtype object for each kind: numba knows it
-# again by its address, and would find the type of a copy anew in each call.
-# pending_step: the step whose viscous loss still lacks the part of the dissipation at its end.
+# Kernels and Python read the fields of these records as attributes. There is one dtype object of
+# each kind: numba recognises it by its address, and would find the type of a copy in each call.
+# The viscous loss of pending_step still lacks the part of the dissipation at its end.
 _FLOATS = "time first_stick_time pending_step viscous_loss stick_loss min_velocity min_stuck_stress"
 _COUNTS = (
     "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
 )
-_FIELDS = [(name, np.float64) for name in _FLOATS.split()] + [
-    (name, np.int64) for name in _COUNTS.split()
-]
+_FIELDS: list[tuple[str, type]] = [(name, np.float64) for name in _FLOATS.split()]
+_FIELDS += [(name, np.int64) for name in _COUNTS.split()]
 TALLY = np.dtype((np.record, _FIELDS))
 COUNT = np.dtype((np.record, [("n", np.int64)]))
-# Sums over the events of a step of k, k s and k s^2: the event at time s changes dD/dt, D the dissipation, by k.
+# The event at time s of a step changes dD/dt, where D is the dissipation, by k. These are the sums
+# over the events of k, k s and k s^2.
 KINKS = np.dtype((np.record, [("k", np.float64), ("ks", np.float64), ("kss", np.float64)]))
 
 
@@ -59,7 +66,8 @@ class Medium(NamedTuple):
 class Motion(NamedTuple):
     """State of the blocks; everything at rest is 0."""
 
-    w: np.ndarray  # (K, N), time derivatives of slip u at the start of the step: w[0] = u, w[1] = v
+    # (K, N), time derivatives of slip at the start of the step: slip w[0], velocity w[1], ...
+    w: np.ndarray
     offset: np.ndarray  # (N,), change of w[0] by the events of this step, added at its end
     velocity: np.ndarray  # (N,), slip velocity at the end of the step
     strain: np.ndarray  # (N,), (u_{i+1} - u_i)/dx
@@ -85,9 +93,8 @@ class Event(NamedTuple):
 class Forecast(NamedTuple):
     """Events foreseen within the step."""
 
-    release: (
-        np.ndarray
-    )  # (N,), time of each stuck neighbour of a segment; inf: none, or a mirror image
+    # (N,), release time of each stuck neighbour of a segment; inf: none, or a mirror image
+    release: np.ndarray
     stick_block: np.ndarray  # (N,), blocks that stick, the first ``sticks.n`` entries
     stick_time: np.ndarray  # (N,)
     sticks: np.record
@@ -96,10 +103,10 @@ class Forecast(NamedTuple):
 
 
 class Difference(NamedTuple):
-    """Scratch of an event: what it changes in the blocks within its reach."""
+    """Scratch of an event: the change that it makes in the blocks within its reach."""
 
     rows: np.ndarray  # (K, COLUMNS), time derivatives at the event of the change of slip
-    own: np.ndarray  # (K + 2,), those of the block of the event
+    centre: np.ndarray  # (K + 2,), those of the block of the event
     values: np.ndarray  # (COLUMNS,)
 
 
@@ -123,7 +130,7 @@ class Scratch(NamedTuple):
 
 
 class History(NamedTuple):
-    """What is known of the run so far."""
+    """Releases and sticks until now, and counters."""
 
     release_time: np.ndarray  # (N,), first release; NaN: none
     stick_time: np.ndarray  # (N,), last stick; NaN: none, or released again
@@ -140,19 +147,19 @@ class Recorder(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """The step, and how far to go."""
+    """The step, and the end of a call."""
 
     order: int
     largest_step: float
     end_time: float
     largest_force: float  # largest |tau|
-    steps: int  # in one call
+    steps: int  # most steps of one call
 
 
 def make_motion(rows: int, size: int) -> Motion:
-    """Everything at rest, in one block of memory, so that all rows begin a known distance apart, see `lattice.PAGE`."""
-    block = np.zeros((rows + 4, size))
-    return Motion(block[:rows], *block[rows:])
+    """Blocks at rest. All rows lie in one piece of memory, equally spaced: see `lattice.PAGE`."""
+    memory = np.zeros((rows + 4, size))
+    return Motion(memory[:rows], *memory[rows:])
 
 
 def make_segments(size: int) -> Segments:
@@ -163,8 +170,15 @@ def make_segments(size: int) -> Segments:
 
 def make_forecast(size: int, order: int) -> Forecast:
     """No events, on a lattice of ``size`` blocks."""
-    release, block, time = np.full(size, np.inf), np.zeros(size, dtype=np.int64), np.zeros(size)
-    return Forecast(release, block, time, record(COUNT), *np.zeros((2, order + 2)))
+    coefficients, slopes = np.zeros((2, order + 2))
+    return Forecast(
+        release=np.full(size, np.inf),
+        stick_block=np.zeros(size, dtype=np.int64),
+        stick_time=np.zeros(size),
+        sticks=record(COUNT),
+        coefficients=coefficients,
+        slopes=slopes,
+    )
 
 
 def make_scratch(size: int, order: int) -> Scratch:
@@ -181,5 +195,5 @@ def make_scratch(size: int, order: int) -> Scratch:
 def make_medium(
     dx: float, leaf: float, beta: float, mirror: bool, total: bool, alpha: float = 0.0
 ) -> Medium:
-    """Constants of one run."""
+    """Constants of one scene."""
     return Medium(dx, 1.0 / dx, 1.0 / (dx * dx), leaf, beta, beta / (dx * dx), alpha, mirror, total)

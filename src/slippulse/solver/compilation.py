@@ -10,10 +10,9 @@ from .fixed_step import LATTICES, solve_by_scheme
 
 
 def compile_all(schemes: Iterable[str] = LATTICES) -> None:
-    """Compile the kernels of schemes, unless they are in the cache or the compiler is switched off."""
+    """Compile the kernels of schemes that are not in the cache, unless the compiler is off."""
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
     for scheme in schemes:
-        solve_by_scheme(
-            Scene("displacement", Prestress(0.5, 0.5), 1.0, 0.5, gamma=0.5, scheme=scheme)
-        )
+        prestress = Prestress(0.5, 0.5)
+        solve_by_scheme(Scene("displacement", prestress, 1.0, 0.5, gamma=0.5, scheme=scheme))

@@ -1,9 +1,10 @@
-"""What a release or a stick changes: a difference that spreads one block a derivative.
+"""The change that a release or a stick makes: a difference that spreads one block a derivative.
 
-The sliding lattice is linear, so what an event changes is a polynomial, which is added to the present ones. Its lowest
-derivative that is not zero is the second, at the block of the event; each further derivative reaches one block more,
-since damping couples neighbours through their velocities (without damping it takes two derivatives). It is cut off at
-the order of the step, so the few blocks within reach change exactly as in a new expansion of the whole lattice.
+The sliding lattice is linear, so an event adds a polynomial to the present ones. The lowest
+derivative of this difference that is not zero is the second, at the block of the event. Each
+further derivative reaches one block more, since damping couples neighbours through their velocities
+(without damping, one block more takes two derivatives). The difference is cut off at the order of
+the step, so the few blocks within reach change as in a new expansion of the whole lattice.
 """
 
 import numpy as np
@@ -17,7 +18,7 @@ from .stencils import blocks, derivative, strengthen
 
 @inner()
 def taylor_shift(derivatives, lowest, last, top, s):
-    """Replace derivatives lowest..last of a polynomial by those a time s later; ``top`` is the highest."""
+    """Replace derivatives lowest..last of a polynomial of degree ``top`` by those a time s later."""
     for m in range(lowest, last + 1):
         value = derivatives[top]
         for j in range(top - 1, m - 1, -1):
@@ -26,7 +27,7 @@ def taylor_shift(derivatives, lowest, last, top, s):
 
 
 @inner(inline=True)
-def velocity_at(w, i, top, s):
+def later_velocity(w, i, top, s):
     """Velocity of a block a time s after the step began."""
     value = w[top, i]
     for k in range(top - 1, 0, -1):
@@ -35,54 +36,56 @@ def velocity_at(w, i, top, s):
 
 
 @inner(inline=True)
-def start(own, medium, motion, block, now, top):
-    """Fill ``own`` with the derivatives of slip that its neighbours give a block released at ``now``."""
-    w, offset, strain = motion.w, motion.offset, motion.strain
+def start(centre, medium, motion, block, now, top):
+    """Derivatives of the slip of a block released at ``now``, as its neighbours drive it."""
+    w, offset = motion.w, motion.offset
+    strain = motion.strain
     per_dx2, damping = medium.per_dx2, medium.damping
     ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
     force = (strain[block] - strain[block - 1]) / medium.dx + per_dx2 * ahead + motion.tau[block]
     force -= medium.leaf * (w[0, block] + offset[block])
-    own[2] = force + damping * (w[1, block - 1] + w[1, block + 1])
-    # On the way from the start of the step to ``now``, two derivatives more than are kept contribute.
+    centre[2] = force + damping * (w[1, block - 1] + w[1, block + 1])
+    # Between the start of the step and ``now``, two derivatives more than are kept contribute.
     for k in range(1, top + 1):
-        own[k + 2] = per_dx2 * (w[k, block - 1] + w[k, block + 1])
+        centre[k + 2] = per_dx2 * (w[k, block - 1] + w[k, block + 1])
         if k < top:
-            own[k + 2] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1])
-    taylor_shift(own, np.int64(2), top, top + 2, now)
+            centre[k + 2] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1])
+    taylor_shift(centre, np.int64(2), top, top + 2, now)
 
 
 @inner(inline=True)
-def stop(own, w, offset, block, now, top):
-    """Hold a block where it is at ``now``; minus its derivatives then are left in ``own``. Returns its velocity."""
-    own[0] = 0.0
+def stop(centre, w, offset, block, now, top):
+    """Hold a block at ``now``; ``centre`` gets minus its derivatives. Returns its velocity."""
+    centre[0] = 0.0
     for k in range(1, top + 1):
-        own[k] = w[k, block]
+        centre[k] = w[k, block]
         w[k, block] = 0.0
-    taylor_shift(own, np.int64(0), top, top, now)
-    offset[block] += own[0]
+    taylor_shift(centre, np.int64(0), top, top, now)
+    offset[block] += centre[0]
     for k in range(2, top + 1):
-        own[k] = -own[k]
-    return own[1]
+        centre[k] = -centre[k]
+    return centre[1]
 
 
 @inner(inline=True)
 def spread(difference, medium, left, right, stick, top):
-    """Derivatives of what an event changes, from those of its block, over ``left`` and ``right`` sliding blocks."""
-    rows, own = difference.rows, difference.own
+    """Derivatives of the difference from those of its centre, over the sliding blocks beside it."""
+    rows, centre = difference.rows, difference.centre
     for k in range(2, top + 1):
         for p in range(np.uint64(COLUMNS)):
             rows[k, p] = 0.0
-        far = k - 2 if medium.damping != 0.0 else (k - 2) // 2
-        for p in blocks(CENTRE - min(left, far), CENTRE + min(right, far) + 1):
+        reach = k - 2 if medium.damping != 0.0 else (k - 2) // 2
+        first, last = CENTRE - min(left, reach), CENTRE + min(right, reach) + 1
+        for p in blocks(first, last):
             rows[k, p] = derivative(rows, k, p, medium.per_dx2, medium.leaf, medium.damping)
         if medium.alpha != 0.0:
-            strengthen(rows, k, CENTRE - min(left, far), CENTRE + min(right, far) + 1, medium.alpha)
-        rows[k, CENTRE] = own[k] + (0.0 if stick else rows[k, CENTRE])
+            strengthen(rows, k, first, last, medium.alpha)
+        rows[k, CENTRE] = centre[k] + (0.0 if stick else rows[k, CENTRE])
 
 
 @inner(inline=True)
 def evaluate(out, rows, lowest, top, s):
-    """Derivative ``lowest`` of what an event changes a time s after it, in all columns but the last."""
+    """Derivative ``lowest`` of the difference at time s, in all columns but the last."""
     columns = np.uint64(COLUMNS - 1)
     j = top - 1
     if (top - lowest) % 2 == 1:
@@ -103,7 +106,7 @@ def evaluate(out, rows, lowest, top, s):
 
 @inner(inline=True)
 def add_difference(motion, difference, first, last, block, now, h, top):
-    """Add what an event at ``now`` changes to the polynomials and to the velocities at h of blocks first..last-1."""
+    """Add the difference to the polynomials of blocks first..last-1 and their velocities at h."""
     w, offset, velocity = motion.w, motion.offset, motion.velocity
     rows, values = difference.rows, difference.values
     column = np.uint64(CENTRE) - np.uint64(block)
@@ -121,34 +124,35 @@ def add_difference(motion, difference, first, last, block, now, h, top):
 
 @once
 def change_course(medium, motion, segments, forecast, difference, event, h, top):
-    """Change the polynomials within reach of an event, and foresee the releases and sticks there until h.
+    """Change the polynomials within reach of an event, and foresee further events there until h.
 
     ``segments`` are those after the event.
 
-    Returns whether all velocities are finite, first block that changed and the one after the last, velocity of the
-    block before the event, lowest stress of a stuck block, sum over neighbours of dv times the change of da.
+    Returns: all velocities are finite; the first block that changed and the one after the last; the
+    velocity of the block before the event; the lowest stress of a stuck block; and the sum over
+    neighbours of dv times the change of da.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
-    block, now, stick = event.block, event.time, event.stick
+    block, now, stick = event
     speed, kink = 0.0, 0.0
     left, right = sliding_beside(segments, block)
     middle = medium.mirror and block == 1
     if middle:
         left = right
     if stick:
-        speed = stop(difference.own, w, offset, block, now, top)
+        speed = stop(difference.centre, w, offset, block, now, top)
         velocity[block] = 0.0
     else:
-        start(difference.own, medium, motion, block, now, top)
+        start(difference.centre, medium, motion, block, now, top)
     if medium.beta > 0.0:
         # Only the block of the event changes its acceleration, and it is at rest.
-        neighbours = velocity_at(w, block + 1, top, now)
+        neighbours = later_velocity(w, block + 1, top, now)
         if not middle:
-            neighbours += velocity_at(w, block - 1, top, now)
-        kink = -difference.own[2] * neighbours
+            neighbours += later_velocity(w, block - 1, top, now)
+        kink = -difference.centre[2] * neighbours
     spread(difference, medium, left, right, stick, top)
     if stick:
-        # `stop` has changed it already.
+        # `stop` has changed the block of the event already.
         for k in range(2, top + 1):
             difference.rows[k, CENTRE] = 0.0
 
@@ -161,7 +165,7 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
         for m in range(1, top + 1):
             w[m, 0] = w[m, 2]
 
-    lowest = foresee_releases(medium, motion, segments, forecast, first - 1, last + 1, now, h, top)
+    lowest = foresee_releases(medium, motion, segments, forecast, first - 1, last + 1, now, h)
     forget_sticks(forecast, first, last)
     finite = find_sticks(motion, forecast, first, last, last - first, now, h, top)
     return finite, 0 if with_ghost else first, last, speed, lowest, kink

@@ -1,6 +1,6 @@
-"""The textbook scheme, for comparison: symplectic Euler over the whole lattice, events checked once a step.
+"""The textbook scheme, for comparison: symplectic Euler, with events checked once a step.
 
-First order in the step, and its measured front speed locks on dx / (n dt) for whole n.
+It is of first order in the step, and its front speed locks to dx / (n dt) with an integer n.
 """
 
 import math
@@ -17,14 +17,15 @@ from .taylor import BLOW_UP, note_release, note_stick
 
 @inner()
 def forces(medium, motion, sliding, history, t):
-    """Fill w[2] with the force on each block, and release those at the threshold. Returns how many slide."""
-    slip, velocity, force, tau = motion.w[0], motion.w[1], motion.w[2], motion.tau
-    per_dx2, damping, tally = medium.per_dx2, medium.damping, history.tally
+    """Force on each block, in w[2], and releases at the threshold. Returns how many slide."""
+    slip, velocity = motion.w[0], motion.w[1]
+    force, tau = motion.w[2], motion.tau
+    per_dx2, damping = medium.per_dx2, medium.damping
+    tally = history.tally
     moving, lowest = 0, tally.min_stuck_stress
     for i in range(1, tau.shape[0] - 1):
-        stress = (
-            per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1]) - medium.leaf * slip[i] + tau[i]
-        )
+        elastic = per_dx2 * (slip[i + 1] - 2.0 * slip[i] + slip[i - 1])
+        stress = elastic - medium.leaf * slip[i] + tau[i]
         drag = damping * (velocity[i + 1] - 2.0 * velocity[i] + velocity[i - 1])
         force[i] = stress + drag - medium.alpha * velocity[i]
         if not sliding[i]:
@@ -41,9 +42,12 @@ def forces(medium, motion, sliding, history, t):
 
 @inner()
 def move(medium, motion, sliding, history, dt, end):
-    """Advance velocity, then slip, and hold what would move backwards. Returns the largest velocity, or inf."""
-    slip, velocity, force = motion.w[0], motion.w[1], motion.w[2]
-    tally = history.tally
+    """Advance velocity, then slip, and hold blocks that would move backwards.
+
+    Returns the largest velocity, or inf where one is not finite.
+    """
+    slip, velocity = motion.w[0], motion.w[1]
+    force, tally = motion.w[2], history.tally
     fastest = 0.0
     for i in range(1, slip.shape[0] - 1):
         if not sliding[i]:
@@ -79,15 +83,15 @@ def viscous_loss(medium, velocity, dt):
 
 @inner()
 def take_samples(recorder, motion, tally, end):
-    """Take the samples that are due by ``end``, on a straight line back from there."""
+    """Take the samples that are due by ``end``, with the velocity at that time."""
     times, blocks = recorder.times, recorder.blocks
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
-        back = end - times[n]
+        since = end - times[n]
         for p in range(blocks.shape[0]):
             i = blocks[p]
             if i >= 0:
-                recorder.slip[n, p] = motion.w[0, i] - back * motion.w[1, i]
+                recorder.slip[n, p] = motion.w[0, i] - since * motion.w[1, i]
                 recorder.velocity[n, p] = motion.w[1, i]
         tally.samples_taken += 1
 
@@ -96,9 +100,9 @@ def take_samples(recorder, motion, tally, end):
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
     """Advance by at most ``limits.steps`` steps, to ``limits.end_time`` at most.
 
-    w has three rows: slip, velocity, force. ``sliding`` tells whether each block slides.
+    w has three rows: slip, velocity, force. ``sliding`` is true for each block that slides.
 
-    Returns why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK.
+    Returns the reason why it stopped.
     """
     size, tally = motion.tau.shape[0], history.tally
     slip, velocity = motion.w[0], motion.w[1]
@@ -132,7 +136,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
 
 
 class FixedStepLattice(Lattice):
-    """State of one run by this scheme."""
+    """The state of a scene that is solved by this scheme."""
 
     localised = False
 

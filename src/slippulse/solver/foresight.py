@@ -1,4 +1,4 @@
-"""When the next block is released or sticks: the first root of a stress or of a velocity within the step."""
+"""Time of the next release or stick: the first root of a stress or a velocity within the step."""
 
 import math
 
@@ -7,12 +7,12 @@ import numpy as np
 from .arrays import REACH, Event
 from .jit import inner, once
 
-# 1/j, for Taylor polynomials in derivatives.
+# The factors 1/j of Taylor polynomials in derivatives.
 RECIPROCAL = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * REACH))
-# How many times within a step a stress is evaluated, besides where its slope changes sign.
+# A stress is evaluated this number of times in a step, and where its slope changes sign.
 LOOKS = 4
-# A velocity this little below zero at the instant of a stick is the rounding of the root, not another stick; a stress
-# this little above the threshold may be on its way down.
+# A velocity this little below zero at the instant of a stick is the rounding of the root, not
+# another stick. A stress this little above the threshold may be on its way down.
 ROUNDING = 1e-12
 
 
@@ -27,9 +27,11 @@ def polynomial(coefficients, degree, h):
 
 @inner()
 def crossing(coefficients, degree, lower, upper):
-    """Root of a polynomial that changes sign between two times: Newton steps from the secant root, kept by bisection.
+    """Root of a polynomial that changes sign between two times.
 
-    The sign at ``lower`` tells the direction; the one at ``upper`` may be lost to rounding, then ``upper`` is the root.
+    Newton's steps begin at the root of the secant; bisection keeps them between the two times. The
+    sign at ``lower`` tells the direction. The sign at ``upper`` may be lost to rounding; then
+    ``upper`` is the root.
     """
     start = polynomial(coefficients, degree, lower)
     end = polynomial(coefficients, degree, upper)
@@ -37,7 +39,7 @@ def crossing(coefficients, degree, lower, upper):
     root = 0.5 * (lower + upper)
     if (end > 0.0) == rising and end != start:
         root = lower + (upper - lower) * start / (start - end)
-    # Newton's steps converge quadratically: after one of 1e-9 the root is exact to rounding.
+    # Newton's steps converge quadratically: after a step of 1e-9 the root is exact to rounding.
     close = 1e-9 * upper
     for _ in range(100):
         value = coefficients[degree]
@@ -58,9 +60,9 @@ def crossing(coefficients, degree, lower, upper):
 
 @inner()
 def turning_point(coefficients, slopes, degree, lower, upper):
-    """Where a polynomial turns, at the one change of sign of its slope between two times; else ``upper``.
+    """Time at which a polynomial turns, if its slope changes sign between them; else ``upper``.
 
-    Coefficients of its slope are left in ``slopes``.
+    The coefficients of its slope are left in ``slopes``.
     """
     for k in range(degree):
         slopes[k] = (k + 1) * coefficients[k + 1]
@@ -80,8 +82,9 @@ def highest_possible(coefficients, degree, h):
 
 @inner(inline=True)
 def stress_polynomial(out, medium, motion, block, top):
-    """Coefficients of the stress of a stuck block minus 1, in powers of the time since the step began."""
-    w, offset, strain = motion.w, motion.offset, motion.strain
+    """Coefficients of the stress of a stuck block minus 1, in powers of the time of the step."""
+    w, offset = motion.w, motion.offset
+    strain = motion.strain
     ahead = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
     slip = w[0, block] + offset[block]
     elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.per_dx2 * ahead
@@ -96,8 +99,8 @@ def stress_polynomial(out, medium, motion, block, top):
 
 @inner()
 def first_reach_of_threshold(coefficients, slopes, degree, lower, upper):
-    """Time after ``lower`` at which a stress, minus 1, reaches 0; inf where it does not until ``upper``."""
-    # It can pass the threshold and fall back within a step, between blocks that slow down.
+    """First time from ``lower`` to ``upper`` at which a stress, minus 1, reaches 0; inf if none."""
+    # Between blocks that slow down, a stress can pass the threshold and fall again within a step.
     for k in range(1, LOOKS + 1):
         part = lower + (upper - lower) * k / LOOKS
         if polynomial(coefficients, degree, part) > ROUNDING:
@@ -110,7 +113,7 @@ def first_reach_of_threshold(coefficients, slopes, degree, lower, upper):
 
 @inner(inline=True)
 def foresee_release(medium, motion, forecast, block, now, h, top):
-    """Time at which a stuck block is released between ``now`` and h (inf: it is not), and its stress at ``now``."""
+    """Time at which a stuck block is released until h, or inf, and its stress at ``now``."""
     coefficients = forecast.coefficients
     stress_polynomial(coefficients, medium, motion, block, top)
     below = polynomial(coefficients, top, now)
@@ -122,11 +125,12 @@ def foresee_release(medium, motion, forecast, block, now, h, top):
 
 
 @inner(inline=True)
-def foresee_releases(medium, motion, segments, forecast, first, last, now, h, top):
-    """Find when each stuck neighbour of a segment is released between ``now`` and h, among the blocks first..last-1.
+def foresee_releases(medium, motion, segments, forecast, first, last, now, h):
+    """Find when the stuck neighbours of segments among blocks first..last-1 are released until h.
 
     Returns the lowest of their stresses at ``now``.
     """
+    top = motion.w.shape[0] - 1
     lowest = math.inf
     for r in range(segments.count.n):
         for side in range(2):
@@ -143,22 +147,24 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h, to
 @once
 def next_event(segments, forecast):
     """The first event foreseen; its time is inf where there is none."""
-    block, earliest, stick = -1, math.inf, False
+    block, stick = -1, False
+    earliest = math.inf
     for r in range(segments.count.n):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
             if forecast.release[edge] < earliest:
                 block, earliest = edge, forecast.release[edge]
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] < earliest:
-            block, earliest, stick = forecast.stick_block[q], forecast.stick_time[q], True
+            block, stick = forecast.stick_block[q], True
+            earliest = forecast.stick_time[q]
     return Event(block, earliest, stick)
 
 
 @once
 def simultaneous(segments, forecast, mirror, block, latest):
-    """Whether the reach of an event meets that of another until ``latest``, its own mirror image included.
+    """True if the reach of an event meets that of another until ``latest``, or its mirror image.
 
-    Taken one after the other they would not come out as they do in the mirror.
+    If one was taken after the other, the result would differ from that of the mirrored scene.
     """
     near = 2 * REACH + 1
     others = 1 if mirror and 1 < block <= 1 + REACH else 0
@@ -166,15 +172,14 @@ def simultaneous(segments, forecast, mirror, block, latest):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
             others += 0 < abs(edge - block) <= near and forecast.release[edge] <= latest
     for q in range(forecast.sticks.n):
-        others += (
-            0 < abs(forecast.stick_block[q] - block) <= near and forecast.stick_time[q] <= latest
-        )
+        distance = abs(forecast.stick_block[q] - block)
+        others += 0 < distance <= near and forecast.stick_time[q] <= latest
     return others > 0
 
 
 @inner()
 def due_releases(segments, forecast, latest, due):
-    """Fill ``due`` with the stuck neighbours of the segments that are released until ``latest``. Returns how many."""
+    """Fill ``due`` with the blocks that are released until ``latest``. Returns their number."""
     count = 0
     for r in range(segments.count.n):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
@@ -187,7 +192,7 @@ def due_releases(segments, forecast, latest, due):
 
 @inner()
 def foresee_stick(coefficients, slopes, degree, after, now, h):
-    """Time at which a velocity passes below 0 between ``now`` and h, where it is ``after``; inf where it does not."""
+    """Time at which a velocity falls below 0 until h, where it is ``after``; inf if it does not."""
     before = polynomial(coefficients, degree, now)
     if after >= 0.0:
         if after <= ROUNDING:
@@ -207,11 +212,12 @@ def foresee_stick(coefficients, slopes, degree, after, now, h):
 
 @inner(inline=True)
 def find_sticks(motion, forecast, first, last, suspects, now, h, top):
-    """Add the sticks between ``now`` and h of the blocks first..last-1; at most ``suspects`` of them may stick.
+    """Add the sticks until h of the blocks first..last-1, of which at most ``suspects`` may stick.
 
-    Returns whether the velocities of the suspects at h are finite.
+    Returns False where the velocity of a suspect at h is not finite.
     """
-    w, velocity, coefficients = motion.w, motion.velocity, forecast.coefficients
+    w, velocity = motion.w, motion.velocity
+    coefficients = forecast.coefficients
     for i in range(first, last):
         if velocity[i] >= 0.0 and w[1, i] + h * w[2, i] >= 0.0:
             continue

@@ -1,4 +1,4 @@
-"""Runs one scene on the lattice: allocation, growth, calls of the kernels. Arrays in, arrays out."""
+"""The lattice of one scene: its memory, its growth, and the calls of the kernels."""
 
 from collections.abc import Callable
 
@@ -8,29 +8,39 @@ from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, taylor
 
-# Steps between two returns to Python, for progress and interruption, at most; and steps times the blocks that they
-# update, about a tenth of a second.
+# A call of a kernel makes at most this number of steps, and of updates of a block, which take about
+# a tenth of a second. Between calls Python tells the progress and can be interrupted.
 CALL_STEPS, CALL_WORK = 20_000, 1e7
-# Blocks on each side at first; the lattice doubles whenever a front comes near its end.
+# The lattice begins with these blocks on each side, and doubles when a front nears its end.
 FIRST_BLOCKS = 512
-# Length of a row modulo a page of memory, in blocks. Rows that begin at one position in their pages compete for the
-# same lines of the cache: cracks took a quarter to a third longer.
+# The length of a row modulo a page of memory, in blocks. Rows that begin at equal positions in
+# their pages compete for the same lines of the cache: cracks took a quarter to a third longer.
 PAGE, BEYOND_PAGES = 512, 200
 
 
 class UnstableRun(RuntimeError):
-    """A run blew up or met a value that is not finite."""
+    """A simulation that blew up, met a value that is not finite, or no longer advanced."""
 
 
 def _row_length(size: int) -> int:
-    """The next length from ``size`` on at which rows begin at different positions in their pages."""
+    """The least length from ``size`` on with rows at different positions in their pages."""
     return size + (BEYOND_PAGES - size) % PAGE
 
 
-class Lattice:
-    """State of one run, in arrays with one ghost block at each end; beta is the scene's, or with the other sign."""
+def _make_recorder(samples: Samples | None) -> arrays.Recorder:
+    """A recorder of these samples, whose blocks are yet to be found."""
+    blocks = np.zeros(0, dtype=np.int64)
+    times = samples.times if samples else np.zeros(0)
+    slip, velocity = np.zeros((2, times.size, samples.positions.size if samples else 0))
+    return arrays.Recorder(times, blocks, slip, velocity)
 
-    # By the localised scheme; that of fixed steps has a class of its own.
+
+class Lattice:
+    """The state of a scene, in arrays with a ghost block at each end, by the localised scheme.
+
+    ``beta`` is that of the scene, or has the other sign.
+    """
+
     localised = True
 
     def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
@@ -42,15 +52,15 @@ class Lattice:
         self.medium = arrays.make_medium(
             scene.dx, leaf, beta, self.mirror, scene.release == "total", scene.rate_strengthening
         )
-        # Slip velocity under a constant force grows by at most this more where friction weakens with it.
-        self.growth = float(
-            np.exp(min(max(-scene.rate_strengthening, 0.0) * scene.duration, 600.0))
-        )
+        # Where friction weakens with slip rate, velocity can grow by this factor more.
+        weakening = max(-scene.rate_strengthening, 0.0) * scene.duration
+        self.growth = float(np.exp(min(weakening, 600.0)))
         # The block at array position 0; block 0 lies at x = 0.
         self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
         size = _row_length(FIRST_BLOCKS + 2 if self.mirror else 2 * FIRST_BLOCKS + 3)
-        # So that all that is released at t = 0 lies on it, far bumps included.
-        reach = max((abs(c) + 4.0 * w for c, _, w in scene.prestress.bumps), default=0.0)
+        # All blocks that are released at t = 0 are on it, those of distant bumps included.
+        bumps = scene.prestress.bumps
+        reach = max((abs(centre) + 4.0 * width for centre, _, width in bumps), default=0.0)
         blocks = (int(np.ceil(reach / scene.dx)) + arrays.ROOM) * (1 if self.mirror else 2)
         while blocks > size - arrays.ROOM:
             left, right = self._extension(size)
@@ -60,9 +70,7 @@ class Lattice:
         self.segments = arrays.make_segments(0)
         self.sliding = np.zeros(0, dtype=bool)
         self.history = arrays.History(np.zeros(0), np.zeros(0), arrays.record(arrays.TALLY))
-        times = samples.times if samples else np.zeros(0)
-        recorded = np.zeros((2, times.size, samples.positions.size if samples else 0))
-        self.recorder = arrays.Recorder(times, np.zeros(0, dtype=np.int64), *recorded)
+        self.recorder = _make_recorder(samples)
         self._extend(0, size)
         self.sliding[1:-1] = self.motion.tau[1:-1] >= 1.0
         self.history.release_time[self.sliding] = 0.0
@@ -79,14 +87,14 @@ class Lattice:
 
     @property
     def tally(self) -> np.record:
-        """Counters and totals of the run."""
+        """Counters and totals."""
         return self.history.tally
 
     def _sampled_blocks(self, size: int) -> np.ndarray:
-        """Array position of the block nearest to each sampled position; -1 outside the lattice."""
+        """Index of the block nearest to each sampled position; -1 outside the lattice."""
         if not self.samples:
             return np.zeros(0, dtype=np.int64)
-        # Half away from zero, so that mirrored positions stay mirrored.
+        # Halves are rounded away from zero, so that mirrored positions stay mirrored.
         scaled = self.samples.positions / self.scene.dx
         number = (np.sign(scaled) * np.floor(np.abs(scaled) + 0.5)).astype(np.int64)
         blocks = (np.abs(number) if self.mirror else number) - self.first_block
@@ -104,52 +112,50 @@ class Lattice:
         self._extend(left, right)
 
     def _extend(self, left: int, right: int) -> None:
-        """Arrays with these numbers of further blocks at rest on the left and on the right."""
-        old, inside, n = self.motion, slice(left, left + self.size), self.segments.count.n
+        """Put these numbers of further blocks at rest on the left and on the right."""
+        old, segments = self.motion, self.segments
+        inside = slice(left, left + self.size)
         size = left + self.size + right
         self.motion = arrays.make_motion(old.w.shape[0], size)
-        self.motion.w[:, inside], self.motion.strain[inside], self.motion.tau[inside] = (
-            old.w,
-            old.strain,
-            old.tau,
-        )
+        self.motion.w[:, inside] = old.w
+        self.motion.strain[inside] = old.strain
+        self.motion.tau[inside] = old.tau
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
         if self.mirror:
             self.motion.tau[0] = self.motion.tau[2]
         self.largest_force = float(np.abs(self.motion.tau).max())
-        sliding, release, stick = np.zeros(size, dtype=bool), *np.full((2, size), np.nan)
-        sliding[inside], release[inside] = self.sliding, self.history.release_time
-        stick[inside] = self.history.stick_time
-        self.sliding, self.history = sliding, arrays.History(release, stick, self.tally)
-        grown = arrays.make_segments(size)
-        grown.starts[:n], grown.ends[:n] = (
-            self.segments.starts[:n] + left,
-            self.segments.ends[:n] + left,
-        )
-        grown.count.n = n
-        self.segments = grown
+        self.sliding = np.pad(self.sliding, (left, right))
+        release, stick = np.full((2, size), np.nan)
+        release[inside], stick[inside] = self.history.release_time, self.history.stick_time
+        self.history = arrays.History(release, stick, self.tally)
+        n = segments.count.n
+        self.segments = arrays.make_segments(size)
+        self.segments.starts[:n] = segments.starts[:n] + left
+        self.segments.ends[:n] = segments.ends[:n] + left
+        self.segments.count.n = n
         self.tally.first_stuck_block += left
         self.recorder = self.recorder._replace(blocks=self._sampled_blocks(size))
         self.scratch = arrays.make_scratch(size, self.scene.order)
 
     def _advance(self, limits: arrays.Limits) -> int:
-        """Call the kernel; returns why it stopped."""
+        """Call the kernel. Returns the reason why it stopped."""
         state = (self.medium, self.motion, self.segments, self.scratch, self.history, self.recorder)
         return taylor.advance(*state, limits)
 
     def _unstable(self, time: float, reason: str) -> UnstableRun:
-        settings = f"dx = {self.scene.dx:g}, beta = {self.medium.beta:g}, max_step = {self.scene.max_step:g}"
+        scene = self.scene
+        settings = f"dx = {scene.dx:g}, beta = {self.medium.beta:g}, max_step = {scene.max_step:g}"
         return UnstableRun(f"the run became unstable at t = {time:.6g}: {reason} ({settings})")
 
     def advance_to_end(self, progress: Callable[[float], None] | None) -> int:
-        """Advance to the end of the scene; progress is told the fraction of the duration done, several times a second.
+        """Advance to the end of the scene. Returns why the kernel stopped, DONE or ALL_STUCK.
 
-        Returns why the kernel stopped, DONE or ALL_STUCK.
+        ``progress`` is told the fraction of the duration done, several times a second.
 
-        Raises UnstableRun: when slip velocity is not finite or beyond anything the pre-stress can drive, or time no
-        longer advances.
+        Raises UnstableRun if slip velocity is not finite or beyond anything the pre-stress can
+        drive, or time no longer advances.
         """
         scene = self.scene
         step = scene.max_step * scene.dx
@@ -169,7 +175,7 @@ class Lattice:
             elif status != arrays.CONTINUE:
                 return status
             elif self.tally.time - before < steps * taylor.SIMULTANEOUS * step:
-                reason = "it no longer advances, blocks stick and are released over and over at one instant"
-                raise self._unstable(before, reason)
+                reason = "it no longer advances, blocks stick and are released over and over"
+                raise self._unstable(before, f"{reason} at one instant")
             if progress is not None:
                 progress(float(min(1.0, self.tally.time / scene.duration)))

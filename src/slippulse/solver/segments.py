@@ -1,4 +1,4 @@
-"""The sliding blocks as a sorted list of segments: contiguous stretches, [start, end) each."""
+"""The sliding blocks as a sorted list of segments, contiguous stretches [start, end)."""
 
 from .jit import inner
 
@@ -6,7 +6,8 @@ from .jit import inner
 @inner()
 def release_block(segments, block):
     """Add a stuck block to the segments: extend, join or begin one."""
-    starts, ends, n = segments.starts, segments.ends, segments.count.n
+    starts, ends = segments.starts, segments.ends
+    n = segments.count.n
     r = 0
     while r < n and ends[r] < block:
         r += 1
@@ -62,7 +63,7 @@ def remove(segments, r):
 
 @inner(inline=True)
 def holds(segments, block):
-    """Whether a block is in one of the segments."""
+    """True if a block is in one of the segments."""
     r = 0
     while r < segments.count.n and segments.ends[r] <= block:
         r += 1

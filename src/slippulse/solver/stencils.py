@@ -1,8 +1,9 @@
 """Inner loops of the Taylor step: each a plain pass over the blocks first..last-1 of whole rows.
 
-Row k of ``w`` is the k-th time derivative of slip. The loops count in unsigned integers, since an index that could be
-negative would have to be tested for wrapping, which costs a factor 4 to 10; and they take ``w`` whole, since every view
-of a row that is handed to a function costs 30 ns, more than a narrow pulse needs for the pass.
+Row k of ``w`` is the k-th time derivative of slip. The loops count in unsigned integers, since an
+index that could be negative would be tested for wrapping, which costs a factor 4 to 10. They take
+``w`` as one array, since every view of a row that is handed to a function costs 30 ns, more than
+the pass over a narrow pulse.
 """
 
 import numpy as np
@@ -49,21 +50,21 @@ def next_derivative(w, k, first, last, per_dx2, leaf, damping):
 
 @inner()
 def strengthen(w, k, first, last, alpha):
-    """Take from time derivative k of slip what friction gains with slip rate."""
+    """Subtract from time derivative k of slip the growth of friction with slip rate."""
     for i in blocks(first, last):
         w[k, i] -= alpha * w[k - 1, i]
 
 
 @inner(inline=True)
 def nest(inner, w, k, weight, lower_weight, first, last):
-    """Two levels of a Taylor polynomial from the inside out, in place: w[k-1] + lower_weight (w[k] + weight inner)."""
+    """Two levels of a Taylor polynomial, in place: w[k-1] + lower_weight (w[k] + weight inner)."""
     for i in blocks(first, last):
         inner[i] = w[k - 1, i] + lower_weight * (w[k, i] + weight * inner[i])
 
 
 @inner(inline=True)
 def velocity_after(out, w, first, last, step, order):
-    """Velocity of blocks first..last-1 a time ``step`` later, and how many of them may stop on the way."""
+    """Velocity of blocks first..last-1 after a time ``step``. Returns how many may stop by then."""
     k = order
     if order % 2 == 1:
         for i in blocks(first, last):
@@ -81,20 +82,22 @@ def velocity_after(out, w, first, last, step, order):
     for i in blocks(first, last):
         after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
         out[i] = after
-        # Below 0 after the step, or no number; one that dips below 0 and returns is seen by its tangent at the start.
+        # A block may stop if its velocity is below 0 or NaN after the step. If it dips below 0 and
+        # returns, its tangent at the start shows it.
         count += (not (after >= 0.0)) | (w[1, i] + step * w[2, i] < 0.0)
     return count
 
 
 @inner(inline=True)
 def advance_slip(w, velocity, first, last, step, order):
-    """Advance slip by its Taylor polynomial and take over the new velocity; the slip increment is left in w[2]."""
+    """Advance slip by its Taylor polynomial, and velocity; the slip increment is left in w[2]."""
     inner = w[order + 1]
     k = order
     while k > 4:
         nest(inner, w, k, step / (k + 1), step / k, first, last)
         k -= 2
-    half, third, fourth, fifth = step / 2.0, step / 3.0, step / 4.0, step / 5.0
+    half, third = step / 2.0, step / 3.0
+    fourth, fifth = step / 4.0, step / 5.0
     for i in blocks(first, last):
         rest = w[3, i] + fourth * (w[4, i] + fifth * inner[i] if k == 4 else inner[i])
         increment = step * (w[1, i] + half * (w[2, i] + third * rest))
@@ -112,7 +115,7 @@ def advance_strain(strain, w, first, last, per_dx):
 
 @inner(reorder=True)
 def stretching(w, first, last):
-    """Sums of (dv)^2 and dv da between each block and the next: viscous dissipation and half its slope."""
+    """Sums of (dv)^2 and dv da between neighbours: viscous dissipation and half its slope."""
     square, product = 0.0, 0.0
     for i in blocks(first, last):
         dv = w[1, i + ONE] - w[1, i]
@@ -122,7 +125,7 @@ def stretching(w, first, last):
 
 
 @inner(reorder=True)
-def motion_of(w, first, last):
+def sums_of_motion(w, first, last):
     """Sums of v^2 and v a over blocks: dissipation by rate strengthening, and half its slope."""
     square, product = 0.0, 0.0
     for i in blocks(first, last):

@@ -1,10 +1,11 @@
-"""The localised scheme: Taylor steps of any order over all that slides, with releases and sticks inside them.
+"""The localised scheme: Taylor steps over the sliding blocks, with releases and sticks inside them.
 
-Between events the sliding lattice is linear with constant coefficients, so its Taylor polynomial is cheap, and it
-is its own dense output: the stress of a stuck neighbour and the velocity of a sliding block are polynomials in the
-time since the step began, and the next event is the first root of either (`foresight`). What an event changes is added
-to the polynomials within its reach (`events`). Only the segments of sliding blocks and their neighbours are touched;
-everything else is at rest and its derivatives are zero.
+Between events the sliding lattice is linear with constant coefficients, so its Taylor polynomial is
+cheap to compute and gives the motion at any time of the step. The stress of a stuck neighbour and
+the velocity of a sliding block are polynomials in the time since the step began; the next event is
+the first root of these (`foresight`). The change that an event makes is added to the polynomials
+within its reach (`events`). Only segments of sliding blocks and their neighbours are touched: the
+derivatives of all other blocks are zero.
 """
 
 import math
@@ -20,22 +21,23 @@ from .stencils import (
     advance_slip,
     advance_strain,
     first_acceleration,
-    motion_of,
     next_derivative,
     strengthen,
     stretching,
+    sums_of_motion,
     velocity_after,
 )
 
-# Events closer than this fraction of the largest step are one: fronts of a symmetric scene that meet.
+# Events closer than this fraction of the largest step are one, as where the fronts of a symmetric
+# scene meet.
 SIMULTANEOUS = 1e-11
-# Velocities beyond this many times the largest that any pre-stress could have driven by now mean a blow-up.
+# A velocity beyond this many times the largest that the pre-stress can have driven is a blow-up.
 BLOW_UP = 100.0
 
 
 @inner()
 def note_release(history, block, time):
-    """Keep the time of a first release; a later one takes back the stick."""
+    """Keep the time of a first release. A later release removes the stick."""
     if math.isnan(history.release_time[block]):
         history.release_time[block] = time
     else:
@@ -46,7 +48,7 @@ def note_release(history, block, time):
 
 @inner()
 def note_stick(history, block, time):
-    """Keep the time of a stick; of the first one, its block too."""
+    """Keep the time of a stick, and the block of the first one."""
     history.stick_time[block] = time
     if history.tally.sticks == 0:
         history.tally.first_stick_time = time
@@ -57,7 +59,8 @@ def note_stick(history, block, time):
 @inner()
 def take_samples(recorder, motion, tally, start, end, order):
     """Take the samples that are due by ``end``, from polynomials about ``start``."""
-    times, blocks, w = recorder.times, recorder.blocks, motion.w
+    times, blocks = recorder.times, recorder.blocks
+    w = motion.w
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
         s = min(max(times[n], start), end) - start
@@ -77,10 +80,10 @@ def take_samples(recorder, motion, tally, start, end, order):
 
 @inner()
 def dissipation_by_rate(medium, w, segments):
-    """D = alpha dx sum of v_i^2 over all segments, and dD/dt."""
+    """Dissipation D = alpha dx sum of v_i^2 over all segments, and dD/dt."""
     square, product = 0.0, 0.0
     for r in range(segments.count.n):
-        s, p = motion_of(w, segments.starts[r], segments.ends[r])
+        s, p = sums_of_motion(w, segments.starts[r], segments.ends[r])
         # The block at x = 0 has no mirror image.
         once = 0.5 if medium.mirror and segments.starts[r] == 1 else 0.0
         square += s - once * w[1, 1] * w[1, 1]
@@ -91,8 +94,12 @@ def dissipation_by_rate(medium, w, segments):
 
 @once
 def dissipation(medium, motion, segments):
-    """D = beta dx sum ((v_{i+1} - v_i)/dx)^2 over all segments and what rate strengthening adds, and dD/dt."""
-    square, product, rate, change = 0.0, 0.0, 0.0, 0.0
+    """Dissipation D and dD/dt, where D = beta dx sum of ((v_{i+1} - v_i)/dx)^2 over all segments.
+
+    The dissipation by rate strengthening is included.
+    """
+    square, product = 0.0, 0.0
+    rate, change = 0.0, 0.0
     for r in range(segments.count.n):
         start = segments.starts[r]
         left = 1 if medium.mirror and start == 1 else start - 1
@@ -107,11 +114,12 @@ def dissipation(medium, motion, segments):
 
 @inner()
 def viscous_loss(h, rate, change, kinks):
-    """Viscous loss of a step h, rate strengthening's included, without h D_1/3, which is added when D_1 is known.
+    """Viscous loss of a step h and that to rate strengthening, without its last part h D_1/3.
 
-    Third order in h from the dissipation D_0 and its derivative D_0' at the start and D_1 at the end, which is the next
-    start since velocities are continuous: h (2 D_0 + D_1)/3 + h^2 D_0'/6. An event at s that changes D' by k adds
-    k (h - s)^2/2, and takes back h k (h - s)/3, its part of h D_1/3.
+    The loss h (2 D_0 + D_1)/3 + h^2 D_0'/6 is of third order in h. It is made of the dissipation
+    D_0 and its derivative D_0' at the start, and D_1 at the end. D_1 is known at the next start,
+    since velocities are continuous, and its part is added then. An event at s that changes D' by k
+    adds k (h - s)^2/2, and subtracts h k (h - s)/3, its part of h D_1/3.
     """
     without_events = h * 2.0 * rate / 3.0 + h * h * change / 6.0
     first = kinks.k * h - kinks.ks
@@ -145,13 +153,13 @@ def derivatives(medium, motion, segments, alpha, top):
 
 @inner()
 def strengthened_derivatives(medium, motion, segments, top):
-    """The same where friction depends on slip rate, out of the way of other runs."""
+    """Fill w[2..top] where friction depends on slip rate: apart, so that other scenes stay fast."""
     derivatives(medium, motion, segments, medium.alpha, top)
 
 
 @once
 def foresee(medium, motion, segments, forecast, tally, h, top):
-    """Velocity at h of all segments, the sticks and releases until then. Returns whether all velocities are finite."""
+    """Velocity of all segments at h, sticks and releases until then. Returns False at a blow-up."""
     forecast.sticks.n = 0
     for r in range(segments.count.n):
         a, b = segments.starts[r], segments.ends[r]
@@ -159,26 +167,27 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
         if suspects > 0 and not find_sticks(motion, forecast, a, b, suspects, 0.0, h, top):
             return False
     size = motion.tau.shape[0]
-    lowest = foresee_releases(medium, motion, segments, forecast, np.int64(0), size, 0.0, h, top)
+    lowest = foresee_releases(medium, motion, segments, forecast, np.int64(0), size, 0.0, h)
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     return True
 
 
 @once
 def end_early(motion, scratch, h, order):
-    """Velocities at h of all that moved, where the step ends before its time."""
+    """Velocities at h of all blocks that moved, where the step ends before its time."""
     moved, changed = scratch.moved, scratch.changed
     for r in range(moved.count.n):
         velocity_after(motion.velocity, motion.w, moved.starts[r], moved.ends[r], h, order)
     for q in range(changed.count.n):
-        # Released a moment ago: nothing but rounding is below 0.
+        # A block that was released a moment ago is below 0 only by rounding.
         for i in range(changed.first[q], changed.last[q]):
             motion.velocity[i] = max(motion.velocity[i], 0.0)
 
 
 @once
-def take_event(medium, motion, segments, scratch, history, event, instant, h, top):
-    """Let one event happen. Returns whether all velocities are finite."""
+def take_event(medium, motion, segments, scratch, history, event, instant, h):
+    """Let one event happen. Returns False where a velocity is not finite."""
+    top = motion.w.shape[0] - 1
     changed, tally = scratch.changed, history.tally
     block, stick = event.block, event.stick
     if stick:
@@ -197,12 +206,14 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h, to
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     if stick:
         tally.min_velocity = min(tally.min_velocity, speed)
-    k, s = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx), event.time
+    k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
+    s = event.time
     changed.kinks.k += k
     changed.kinks.ks += k * s
     changed.kinks.kss += k * s * s
     n = changed.count.n
-    changed.first[n], changed.last[n], changed.stuck[n] = first, last, block if stick else -1
+    changed.first[n], changed.last[n] = first, last
+    changed.stuck[n] = block if stick else -1
     changed.count.n = n + 1
     tally.event_updates += last - first
     return True
@@ -210,8 +221,9 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h, to
 
 @once
 def take_over(medium, motion, scratch, order, h):
-    """Advance slip, velocity and strain of all that moved by h. Returns the largest velocity among a few."""
-    w, offset, moved, changed = motion.w, motion.offset, scratch.moved, scratch.changed
+    """Advance slip, velocity and strain of all that moved. Returns the largest of some velocities."""
+    w, offset = motion.w, motion.offset
+    moved, changed = scratch.moved, scratch.changed
     fastest = 0.0
     for r in range(moved.count.n):
         a, b = moved.starts[r], moved.ends[r]
@@ -235,7 +247,7 @@ def take_over(medium, motion, scratch, order, h):
 
 @once
 def take_events_at_once(medium, motion, segments, scratch, history, end, latest, top):
-    """At the end of a step that ended early: release and hold all blocks that are due until ``latest``."""
+    """Release and hold all blocks that are due until ``latest``, after a step that ended early."""
     forecast, tally = scratch.forecast, history.tally
     due = scratch.changed.first
     n_due = due_releases(segments, forecast, latest, due)
@@ -252,23 +264,22 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
         note_release(history, due[q], end)
 
 
+# The branches of this function are the algorithm; parted, they would share all of its state.
 @entry
-def advance(medium, motion, segments, scratch, history, recorder, limits):
+def advance(  # noqa: C901, PLR0912, PLR0915
+    medium, motion, segments, scratch, history, recorder, limits
+):
     """Advance the lattice by at most ``limits.steps`` steps, to ``limits.end_time`` at most.
 
     At the end the viscous loss is complete and w[2] holds the accelerations.
 
-    Returns why it stopped: DONE, CONTINUE (all steps are done), GROW, UNSTABLE or ALL_STUCK.
+    Returns the reason why it stopped.
     """
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
-    same = SIMULTANEOUS * limits.largest_step
-    tally, moved, forecast, changed = (
-        history.tally,
-        scratch.moved,
-        scratch.forecast,
-        scratch.changed,
-    )
+    instantly = SIMULTANEOUS * limits.largest_step
+    tally, forecast = history.tally, scratch.forecast
+    moved, changed = scratch.moved, scratch.changed
     kinks, lossy = changed.kinks, medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.steps):
         t = tally.time
@@ -289,7 +300,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
         last = segments.ends[segments.count.n - 1]
         if last >= size - ROOM or (segments.starts[0] <= ROOM and not medium.mirror):
             return GROW
-        kinks.k, kinks.ks, kinks.kss = 0.0, 0.0, 0.0
+        kinks.k = kinks.ks = kinks.kss = 0.0
 
         h = min(limits.largest_step, limits.end_time - t)
         end = limits.end_time if h == limits.end_time - t else t + h
@@ -306,7 +317,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
             if event.time == math.inf:
                 break
             early = changed.count.n == MOST_EVENTS or simultaneous(
-                segments, forecast, medium.mirror, event.block, event.time + same
+                segments, forecast, medium.mirror, event.block, event.time + instantly
             )
             if early:
                 h, end = event.time, min(t + event.time, end)
@@ -314,7 +325,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
                 break
             instant = min(t + event.time, end)
             take_samples(recorder, motion, tally, t, instant, order)
-            if not take_event(medium, motion, segments, scratch, history, event, instant, h, top):
+            if not take_event(medium, motion, segments, scratch, history, event, instant, h):
                 return UNSTABLE
         take_samples(recorder, motion, tally, t, end, order)
 
@@ -326,7 +337,7 @@ def advance(medium, motion, segments, scratch, history, recorder, limits):
             updates += moved.ends[r] - moved.starts[r]
         fastest = take_over(medium, motion, scratch, order, h)
         if early:
-            take_events_at_once(medium, motion, segments, scratch, history, end, h + same, top)
+            take_events_at_once(medium, motion, segments, scratch, history, end, h + instantly, top)
         tally.block_updates += updates
         tally.steps += 1
         tally.time = end
