@@ -18,7 +18,7 @@ from .stencils import blocks, derivative, strengthen
 
 @inner()
 def taylor_shift(derivatives, lowest, last, top, s):
-    """Replace derivatives lowest..last of a polynomial of degree ``top`` by those a time s later."""
+    """Shift derivatives lowest..last of a polynomial of degree ``top`` by a time s."""
     for m in range(lowest, last + 1):
         value = derivatives[top]
         for j in range(top - 1, m - 1, -1):

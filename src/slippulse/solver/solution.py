@@ -43,7 +43,7 @@ class Solution:
 
 
 def energies(lattice: Lattice, totals: dict) -> dict:
-    """Energy balance of the whole lattice per unit depth, and its residual over the largest part."""
+    """Energy balance of the lattice per unit depth, and its residual over the largest part."""
     medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
     slip, velocity, strain = motion.w[0], motion.w[1], motion.strain
     if not lattice.localised:
