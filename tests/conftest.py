@@ -1,4 +1,4 @@
-"""What all tests share: the project's folders and its configuration."""
+"""Fixtures of all tests: the folders of the project, its configuration, and compiled kernels."""
 
 import copy
 import os
@@ -23,8 +23,8 @@ from slippulse.steps.targets import selected
 # Two workers share two cores.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-# Files first that run no kernel, while the kernels are compiled; then those that take longest, so that the workers end
-# together.
+# The first files run no kernel, while the kernels are compiled. Then come those that take longest,
+# so that the workers end together.
 WITHOUT_KERNELS = (
     "test_final_regime",
     "test_refused_commands",
@@ -32,9 +32,9 @@ WITHOUT_KERNELS = (
     "test_dependencies",
 )
 FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults")
-# Where tests in several workers share compiled kernels, and a copy as `compile_all` left them.
+# Folders of the compiled kernels that the workers share, and of a copy as `compile_all` left them.
 SHARED, UNTOUCHED = "SLIPPULSE_CACHE", "SLIPPULSE_UNTOUCHED_KERNELS"
-# The file beside both that says that they are there, and how long a worker waits for it in seconds.
+# The file beside both that says that they are ready; a worker waits this long for it, in seconds.
 READY, LONGEST_WAIT = "ready", 300.0
 
 
@@ -78,7 +78,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 @pytest.fixture(scope="session")
 def untouched_kernels(tmp_path_factory) -> Path:
-    """A cache of kernels in which nothing is but what `compile_all` compiles."""
+    """A cache that holds the kernels that `compile_all` compiles, and no others."""
     if UNTOUCHED in os.environ:
         return Path(os.environ[UNTOUCHED])
     folder = tmp_path_factory.mktemp("kernels")
@@ -87,10 +87,9 @@ def untouched_kernels(tmp_path_factory) -> Path:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """In the order of files above; within a file the order stays."""
-    items.sort(
-        key=lambda item: FIRST.index(item.path.stem) if item.path.stem in FIRST else len(FIRST)
-    )
+    """Sort tests by the order of files above; within a file the order stays."""
+    place = {stem: number for number, stem in enumerate(FIRST)}
+    items.sort(key=lambda item: place.get(item.path.stem, len(FIRST)))
 
 
 @pytest.fixture(scope="session")
@@ -116,14 +115,14 @@ def paper_accuracy(shipped: dict) -> dict:
 
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory) -> Path:
-    """A folder of all workers: what one has made the other reads."""
-    own = os.environ.get(UNTOUCHED)
-    return Path(own).parent if own else tmp_path_factory.mktemp("shared")
+    """A folder in which workers read files that another has written."""
+    kernels = os.environ.get(UNTOUCHED)
+    return Path(kernels).parent if kernels else tmp_path_factory.mktemp("shared")
 
 
 @pytest.fixture(scope="session")
 def study(project, shipped, shared):
-    """A function that runs a study with the shipped settings and returns its table, through the CSV."""
+    """A function that runs a study with the shipped settings and returns its table as read again."""
 
     def run(name: str, data: dict | None = None, tables: dict | None = None):
         path = shared / f"studies/{name}.csv"

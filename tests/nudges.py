@@ -8,7 +8,7 @@ from slippulse.model.prestress import Prestress
 
 
 def nudged(value, rng: np.random.Generator):
-    """A number, or each in tuples, arrays and a pre-stress, moved by 1 to 4 units in the last place; 0 stays."""
+    """Numbers moved by 1 to 4 units in the last place, in tuples, arrays, a pre-stress; 0 stays."""
     if isinstance(value, Prestress):
         keys = {
             f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.name != "peak"

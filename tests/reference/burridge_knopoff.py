@@ -1,8 +1,8 @@
 """Blocks and springs of unit mass and stiffness, integrated independently of the lattice code.
 
-One ordinary differential equation for the sliding blocks between two events, by an adaptive eighth-order
-Runge-Kutta method at a tolerance near rounding; every event is looked for on a fine mesh inside every step, so that
-one that comes and goes within a step is seen too.
+Between two events the sliding blocks obey one ordinary differential equation, solved by an adaptive
+Runge-Kutta method of eighth order at a tolerance near rounding. Events are sought on a fine mesh
+inside every step, so that one that comes and goes within a step is seen, too.
 """
 
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from scipy.optimize import brentq
 
 ACCURACY = {"max_step": 0.1, "rtol": 1e-12, "atol": 1e-13}
 MESH = np.linspace(0.0, 1.0, 9)[1:]
-# Events this close are one: the two sides of a symmetric chain.
+# Events this close are one, as on the two sides of a symmetric chain.
 TOGETHER = 1e-9
 
 
 @dataclass
 class Chain:
-    """A chain of blocks at positions 0, +-1, +-2, ..., at rest at first; the end blocks must never move."""
+    """A chain of blocks at 0, +-1, +-2, ..., at rest at first; the end blocks must never move."""
 
-    # On each block when nothing has moved.
+    # The force on each block when nothing has moved.
     pull: np.ndarray
-    # Stiffness of each block's leaf spring, and damping of the springs between neighbours.
+    # The stiffness of each leaf spring, and the damping of the springs between neighbours.
     leaf: float
     damping: float
-    # "total" or "elastic", whether the damping force helps to release a block.
+    # "total": the damping force helps to release a block; "elastic": it does not.
     release: str
 
     def __post_init__(self) -> None:
@@ -72,14 +72,14 @@ class Chain:
         return self
 
     def _margins(self, state: np.ndarray) -> np.ndarray:
-        """Per block, what is above 0 as long as nothing happens: distance to release, or velocity."""
+        """Distance of each block to its release, or its velocity: above 0 as long as nothing happens."""
         slip, velocity = np.split(state, 2)
         return np.where(self.sliding, velocity, 1.0 - self.threshold_force(slip, velocity))
 
     def _first_event(self, path) -> float | None:
         before = path.t_old
-        for share in MESH:
-            now = path.t_old + share * (path.t - path.t_old)
+        for fraction in MESH:
+            now = path.t_old + fraction * (path.t - path.t_old)
             fallen = np.flatnonzero(self._margins(path(now)) < 0.0)
             if fallen.size:
                 return min(self._zero(path, block, before, now) for block in fallen)
@@ -87,7 +87,7 @@ class Chain:
         return None
 
     def _zero(self, path, block: int, before: float, now: float) -> float:
-        """When one block's margin passes 0; one released at the start of the step has velocity 0 there."""
+        """Time at which the margin of a block passes 0, as it does at the very start of a release."""
         margin = lambda time: self._margins(path(time))[block]
         return brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
 
@@ -98,7 +98,9 @@ class Chain:
         margin = self._margins(state)
         stops = self.sliding & (margin <= TOGETHER * np.abs(velocity_rate)) & (velocity_rate < 0.0)
         starts = ~self.sliding & (margin <= TOGETHER * np.abs(force_rate)) & (force_rate > 0.0)
-        self.sliding[stops], self.velocity[stops], self.stick_time[stops] = False, 0.0, time
+        self.sliding[stops] = False
+        self.velocity[stops] = 0.0
+        self.stick_time[stops] = time
         self.sticks += int(stops.sum())
         self._release(starts, time)
 

@@ -5,7 +5,7 @@ import xarray as xr
 
 
 def sliding(run: xr.Dataset) -> np.ndarray:
-    """Which blocks slide at the end: released and not stuck since."""
+    """Mask of the blocks that slide at the end: released and not stuck since."""
     return np.isfinite(run["release_time"].values) & ~np.isfinite(run["stick_time"].values)
 
 

@@ -1,4 +1,4 @@
-"""Many scenes in one Dataset, by any scheme: the order, the threads, the way back, and files that are written whole."""
+"""Many scenes in one Dataset, by any scheme: order, threads, single points, and complete files."""
 
 import dataclasses
 import stat
@@ -20,18 +20,13 @@ from slippulse.data.variables import VARIABLES
 from slippulse.simulation.simulate import run_sweep
 
 RECORDS = ("fronts", "fields", "samples")
+PULSES = ((0.3, 2.0, 0.05), (0.5, 6.0, 0.02), (0.7, 1.0, 0.1), (-0.2, 4.0, 0.05))
 SCENES = [
     sp.Scene("displacement", sp.Prestress(tau, 0.5), duration, dx, gamma=0.65, beta=0.1 * dx)
-    for tau, duration, dx in (
-        (0.3, 2.0, 0.05),
-        (0.5, 6.0, 0.02),
-        (0.7, 1.0, 0.1),
-        (-0.2, 4.0, 0.05),
-    )
-] + [
-    sp.Scene("stress", sp.Prestress(-0.5, 0.0), 4.0, 0.05),
-    sp.Scene("stress", sp.Prestress(0.5, 0.5, peak=0.9), 4.0, 0.05),
+    for tau, duration, dx in PULSES
 ]
+SCENES.append(sp.Scene("stress", sp.Prestress(-0.5, 0.0), 4.0, 0.05))
+SCENES.append(sp.Scene("stress", sp.Prestress(0.5, 0.5, peak=0.9), 4.0, 0.05))
 SAMPLES = [
     sp.Samples(np.linspace(0.0, scene.duration, 7), np.linspace(-1.0, 1.0, 5)) for scene in SCENES
 ]
@@ -62,14 +57,13 @@ def test_a_point_is_what_the_scene_alone_gives():
 
 
 def test_only_what_is_asked_for_is_kept():
-    fields, whole = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
+    fields, full = {"x", "prestress"}, sp.simulate(SCENES[1], SAMPLES[1])
     sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
-    for record, names in zip(
-        RECORDS, (fields | {*FRONTS}, fields | {*FIELDS}, sampled), strict=True
-    ):
+    kept = (fields | {*FRONTS}, fields | {*FIELDS}, sampled)
+    for record, names in zip(RECORDS, kept, strict=True):
         run = point(sweep(record=(record,)), 1)
         assert set(run.variables) == names
-        assert all(run[name].variable.equals(whole[name].variable) for name in names), record
+        assert all(run[name].variable.equals(full[name].variable) for name in names), record
 
 
 def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_reason():
@@ -153,27 +147,21 @@ def test_a_data_file_follows_the_conventions_it_names_and_every_variable_has_uni
 
 
 def test_the_table_of_columns_has_the_units_and_the_meaning_that_files_have(project):
-    rows = (
-        (project / "docs/columns.md").read_text(encoding="utf-8").replace("\\|", "|").splitlines()
-    )
-    exact = sp.run_sweep(
-        [dataclasses.replace(HELD, scheme="continuum")] * 2, record=("fronts", "fields")
-    )
+    text = (project / "docs/columns.md").read_text(encoding="utf-8")
+    rows = text.replace("\\|", "|").splitlines()
+    scenes = [dataclasses.replace(HELD, scheme="continuum")] * 2
+    exact = sp.run_sweep(scenes, record=("fronts", "fields"))
     assert exact.sizes["point"] == 2 and np.isfinite(exact["first_stick_time"]).all()
-    kinds = {
-        name: values.dtype.kind
-        for data in (sweep(), exact)
-        for name, values in data.variables.items()
-    }
+    variables = {**sweep().variables, **exact.variables}
+    kinds = {name: values.dtype.kind for name, values in variables.items()}
     for name, meaning in VARIABLES.items():
         units = ("1", "count") if kinds.get(name) in (None, *"bif") else ("text",)
         assert any(f"| `{name}` | {unit} | {meaning} |" in rows for unit in units), name
 
 
 def test_a_table_has_nine_digits_and_no_index(tmp_path):
-    save_table(
-        pd.DataFrame({"name": ["a"], "value": [np.pi], "missing": [np.nan]}), tmp_path / "t.csv"
-    )
+    table = pd.DataFrame({"name": ["a"], "value": [np.pi], "missing": [np.nan]})
+    save_table(table, tmp_path / "t.csv")
     assert (tmp_path / "t.csv").read_text() == "name,value,missing\na,3.14159265,\n"
     assert load_table(tmp_path / "t.csv")["value"].tolist() == [3.14159265]
 
@@ -204,10 +192,9 @@ def test_a_writer_sees_the_old_file_until_it_is_done_and_leaves_one_as_readable_
 
     write_whole(path, write)
     assert path.read_text() == "new"
-    (tmp_path / "plain.txt").touch()
-    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(
-        (tmp_path / "plain.txt").stat().st_mode
-    )
+    plain = tmp_path / "plain.txt"
+    plain.touch()
+    assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE(plain.stat().st_mode)
 
 
 HELD = sp.Scene("displacement", sp.Prestress(0.5, 0.5), 9.0, 0.1, gamma=0.65, beta=0.01)
@@ -224,15 +211,15 @@ def exactly(scene: sp.Scene, samples: sp.Samples | None = None) -> xr.Dataset:
 
 @pytest.mark.parametrize("name", EXACT)
 def test_the_exact_scheme_is_the_exact_rupture(name):
-    """To which lattices tend: theory_exact/test_against_lattice.py."""
+    """Lattices tend to it: see theory_exact/test_against_lattice.py."""
     scene = EXACT[name]
     run, x = exactly(scene), scene.dx * np.arange(-20, 30, 5)
-    found = sp.theory.Rupture(scene.prestress, scene.gamma, 0.1, duration=scene.duration)
-    at = run.sel(x=x, method="nearest")
-    assert at["x"].values == pytest.approx(x)
+    rupture = sp.theory.Rupture(scene.prestress, scene.gamma, 0.1, duration=scene.duration)
+    blocks = run.sel(x=x, method="nearest")
+    assert blocks["x"].values == pytest.approx(x)
     for field in ("release_time", "stick_time"):
-        assert at[field].values == pytest.approx(getattr(found, field)(x), nan_ok=True)
-    assert at["slip"].values == pytest.approx(found.slip(x, scene.duration))
+        assert blocks[field].values == pytest.approx(getattr(rupture, field)(x), nan_ok=True)
+    assert blocks["slip"].values == pytest.approx(rupture.slip(x, scene.duration))
 
 
 def test_it_is_the_same_dataset():
@@ -250,10 +237,10 @@ def test_it_is_the_same_dataset():
 def test_where_the_construction_ends_is_flagged_and_nothing_is_told_beyond():
     """A second nucleation whose waves hold a position that is about to stick."""
     profile = sp.Prestress(0.25, 0.25, bumps=((7.0, 0.75, 0.5),))
-    found = exactly(dataclasses.replace(HELD, prestress=profile, duration=16.0))
-    assert found.attrs["run_flags"] == "construction_ended" and found.attrs["limit_reason"]
-    assert found.attrs["limit_time"] <= found.attrs["duration"]
-    assert np.isnan(found.slip.values).any()
+    run = exactly(dataclasses.replace(HELD, prestress=profile, duration=16.0))
+    assert run.attrs["run_flags"] == "construction_ended" and run.attrs["limit_reason"]
+    assert run.attrs["limit_time"] <= run.attrs["duration"]
+    assert np.isnan(run.slip.values).any()
 
 
 def test_a_scene_that_releases_nothing_is_an_empty_run():

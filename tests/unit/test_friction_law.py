@@ -1,4 +1,7 @@
-"""The friction law: what is released at once and what never moves; block by block it is in test_burridge_knopoff.py."""
+"""The friction law: blocks that are released at once and that never move.
+
+Every block is compared in test_burridge_knopoff.py.
+"""
 
 import math
 from dataclasses import replace
@@ -37,23 +40,18 @@ def test_every_block_at_or_above_the_threshold_is_released_at_once_and_no_other(
 
 @pytest.mark.parametrize("half", [True, False])
 def test_a_second_nucleation_point_beyond_the_first_lattice_is_released_at_once(half):
-    far, profile = 80.0, sp.Prestress(0.1, 0.1, bumps=((80.0, 0.95, 1.0), (-80.0, 0.95, 1.0)))
+    centre, profile = 80.0, sp.Prestress(0.1, 0.1, bumps=((80.0, 0.95, 1.0), (-80.0, 0.95, 1.0)))
     run = sp.simulate(sp.Scene("stress", profile, 0.01, 0.1, half_lattice=half))
     released = np.abs(run["x"].values[run["release_time"].values == 0.0])
-    expected = 2 * np.count_nonzero(profile(np.arange(0.0, 2.0 * far, 0.1)[1:]) >= 1.0)
-    assert np.count_nonzero(np.abs(released - far) < 1.0) == expected
+    expected = 2 * np.count_nonzero(profile(np.arange(0.0, 2.0 * centre, 0.1)[1:]) >= 1.0)
+    assert np.count_nonzero(np.abs(released - centre) < 1.0) == expected
 
 
 @pytest.mark.parametrize(("level", "ratio"), [(0.0, 0.0), (-0.6, 5.0)], ids=["three", "one"])
 def test_the_lowest_stress_of_a_stuck_block_is_not_above_what_is_left_at_the_end(level, ratio):
-    values = {
-        "gamma": 0.65,
-        "max_step": 0.05,
-        "order": 8,
-        "resolved_blocks": 1,
-        "friction_ratio": ratio,
-    }
-    scene = sp.Scene("displacement", sp.Prestress(level, level), 40.0, 1.0, **values)
+    values = {"gamma": 0.65, "max_step": 0.05, "order": 8, "resolved_blocks": 1}
+    profile = sp.Prestress(level, level)
+    scene = sp.Scene("displacement", profile, 40.0, 1.0, friction_ratio=ratio, **values)
     run = sp.simulate(scene)
     lowest = elastic_stress(run)[~sliding(run)].min()
     assert run.attrs["min_stuck_stress"] <= lowest + tol.STRESS_AT_END

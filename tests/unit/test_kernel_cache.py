@@ -13,11 +13,10 @@ from slippulse.solver import jit
 COMPILE_ALL = "from slippulse.solver.compilation import compile_all; compile_all()"
 
 
-def run_with(folder, program: str, **more: str) -> str:
-    environment = os.environ | {"SLIPPULSE_CACHE": str(folder)} | more
-    return subprocess.check_output(
-        [sys.executable, "-c", program], env=environment, text=True
-    ).strip()
+def run_with(folder, program: str, **variables: str) -> str:
+    environment = os.environ | {"SLIPPULSE_CACHE": str(folder)} | variables
+    command = [sys.executable, "-c", program]
+    return subprocess.check_output(command, env=environment, text=True).strip()
 
 
 def test_any_edit_a_new_source_and_a_new_name_change_the_digest(tmp_path):
@@ -49,22 +48,18 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
     package.mkdir()
     shutil.copy2(jit.__file__, package / "jit.py")
     (package / "__init__.py").write_text("")
+    imports = "from .helper import helper\nfrom .jit import entry\n"
     caller = "@entry\ndef caller(x): return 10 * helper(x)\n"
-    (package / "caller.py").write_text(
-        f"from .helper import helper\nfrom .jit import entry\n{caller}"
-    )
+    (package / "caller.py").write_text(imports + caller)
+    program = "from edited.caller import caller; print(caller(1))"
     for added, result in ((1, "20"), (2, "30")):
         helper = f"from .jit import inner\n@inner()\ndef helper(x): return x + {added}\n"
         (package / "helper.py").write_text(helper)
         # Python's own cache tells files apart by the second of their last change.
         environment = {"PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
-        assert (
-            run_with(cache, "from edited.caller import caller; print(caller(1))", **environment)
-            == result
-        )
-        assert len(list(cache.iterdir())) == added and list(cache.rglob("*.nbi")), (
-            "nothing was cached"
-        )
+        assert run_with(cache, program, **environment) == result
+        assert len(list(cache.iterdir())) == added
+        assert list(cache.rglob("*.nbi")), "nothing was cached"
 
 
 @pytest.mark.slow
@@ -72,19 +67,16 @@ def test_a_simulation_finds_every_kernel_compiled(untouched_kernels):
     compiled = {path.name for path in untouched_kernels.rglob("*.nbc")}
     assert len(compiled) == 2
     for scheme in SCHEMES:
-        scene = (
-            f"'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1, beta=0.01, scheme={scheme!r}, order=8"
-        )
+        profile = "'stress', sp.Prestress(-0.3, 0.2), 5.0, 0.1"
+        scene = f"sp.Scene({profile}, beta=0.01, scheme={scheme!r}, order=8)"
         samples = "sp.Samples([0.0, 1.0], [0.0, 0.5])"
-        run_with(
-            untouched_kernels, f"import slippulse as sp; sp.simulate(sp.Scene({scene}), {samples})"
-        )
+        run_with(untouched_kernels, f"import slippulse as sp; sp.simulate({scene}, {samples})")
     assert {path.name for path in untouched_kernels.rglob("*.nbc")} == compiled
 
 
 @pytest.mark.slow
 def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp_path):
-    """What went missing in the meantime is, and nothing else."""
+    """A kernel that is missing is compiled, and no other."""
     folder = tmp_path / "kernels"
     shutil.copytree(untouched_kernels, folder)
 
@@ -103,6 +95,6 @@ def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp
 
 
 def test_nothing_is_compiled_where_the_compiler_is_switched_off(tmp_path):
-    """Whoever looks for a fault with a debugger runs the pipeline so."""
+    """The pipeline runs so under a debugger."""
     run_with(tmp_path, COMPILE_ALL, NUMBA_DISABLE_JIT="1")
     assert not list(tmp_path.rglob("*.nbc"))

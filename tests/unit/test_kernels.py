@@ -27,29 +27,22 @@ def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
     h = float(random.uniform(0.01, 2.0))
     inside = float(random.uniform(0.02, 0.98)) * h
     pair = complex(random.standard_normal(), random.uniform(0.3, 2.0))
-    roots = [
-        inside,
-        -random.uniform(0.5, 2.0),
-        h + random.uniform(0.5, 2.0),
-        pair,
-        pair.conjugate(),
-    ]
-    coefficients = sign * np.real(polyfromroots(roots))
-    found = from_python(foresight.crossing)(coefficients, 5, lower * h, h)
-    assert found == pytest.approx(inside, abs=tol.ROOT)
+    outside = [-random.uniform(0.5, 2.0), h + random.uniform(0.5, 2.0)]
+    coefficients = sign * np.real(polyfromroots([inside, *outside, pair, pair.conjugate()]))
+    root = from_python(foresight.crossing)(coefficients, 5, lower * h, h)
+    assert root == pytest.approx(inside, abs=tol.ROOT)
 
 
 def test_crossing_finds_a_root_of_zero_slope_and_one_at_the_end():
     hard = ([-0.125, 0.75, -1.5, 1.0], 0.5, tol.ROOT ** (1.0 / 3.0)), ([-1.0, 1.0], 1.0, tol.ROOT)
-    for coefficients, root, accuracy in hard:
-        found = from_python(foresight.crossing)(
-            np.array(coefficients), len(coefficients) - 1, 0.0, 1.0
-        )
-        assert found == pytest.approx(root, abs=accuracy)
+    crossing = from_python(foresight.crossing)
+    for coefficients, expected, accuracy in hard:
+        root = crossing(np.array(coefficients), len(coefficients) - 1, 0.0, 1.0)
+        assert root == pytest.approx(expected, abs=accuracy)
 
 
 def stop(coefficients, h: float, now: float = 0.0):
-    """When a block with this polynomial for its velocity sticks, () if it does not; None if it is not finite."""
+    """Time at which a block of this velocity sticks, () if never; None if it is not finite."""
     top = len(coefficients)
     motion, forecast = arrays.make_motion(top + 1, 3), arrays.make_forecast(3, top - 1)
     motion.w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
@@ -58,17 +51,14 @@ def stop(coefficients, h: float, now: float = 0.0):
     return tuple(forecast.stick_time[: forecast.sticks.n]) if finite else None
 
 
-# Real parts of a product with a positive polynomial; a dip is below 0 for a hundredth of the time only.
-DIP, NO_DIP = (
-    polyfromroots([a, b, 1j, -1j]).real for a, b in ((0.3, 0.31), (0.3 + 0.01j, 0.3 - 0.01j))
-)
-
-
+# Products with a positive polynomial; the dip is below 0 for a hundredth of the time only.
+DIP = polyfromroots([0.3, 0.31, 1j, -1j]).real
+NO_DIP = polyfromroots([0.3 + 0.01j, 0.3 - 0.01j, 1j, -1j]).real
 STOPS = {
     "plain": ([0.5, -1.0, 0.0, 0.0, 0.0], 0.8, (0.5,)),
     "dip": (DIP, 0.9, (0.3,)),
     "none": (NO_DIP, 0.9, ()),
-    # At the end of the step before: its acceleration is the rounding of its stress.
+    # Released at the end of the last step: the acceleration is the rounding of the stress.
     "just released": ([0.0, -1e-16, 0.0, 3e-14, 0.0], 1.0, ()),
     "just released, faster": ([0.0, -1e-16, 0.0, 3e-13, 0.0], 1.0, ()),
 }
@@ -83,13 +73,13 @@ def test_a_block_sticks_where_its_velocity_passes_zero(coefficients, h, stops):
 @pytest.mark.parametrize("released", [0.0, 0.1, 0.17])
 @pytest.mark.parametrize("rounding", [-1e-15, 0.0, 1e-15])
 def test_the_zero_at_the_start_of_a_block_just_released_is_no_stick(released, rounding):
-    """Velocity (t - t_r) - 2 (t - t_r)^2 is 0 half a unit after the release, and, but for rounding, at the release."""
+    """Velocity (t - t_r) - 2 (t - t_r)^2 is 0 at the release, but for rounding, and 0.5 later."""
     coefficients = [-released - 2.0 * released**2 + rounding, 1.0 + 4.0 * released, -2.0, 0.0, 0.0]
     assert stop(coefficients, 0.8, released) == pytest.approx((released + 0.5,), abs=tol.ROOT)
 
 
 def test_a_stick_at_the_end_of_the_step_is_found_there():
-    """The two evaluations of the velocity, nested differently, need not agree on the sign of a rounding error."""
+    """The two evaluations of the velocity may differ in the sign of a rounding error."""
     random = np.random.default_rng(0)
     for _ in range(2000):
         coefficients = np.array(
@@ -107,7 +97,7 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
         # Stress 0.9 + 3.2 t - 6.4 t^2 passes 1, and comes back below it at 0.4665.
         (0.9, 3.2, 12.8, 0.5, 0.0, min(np.roots([-6.4, 3.2, -0.1]))),
         (0.9, 3.2, 12.8, 0.6, 0.47, math.inf),
-        # At most 1.00125, between two of the instants at which it is looked at; and 0.99925.
+        # Stress of at most 1.00125, between two of the instants at which it is evaluated; and 0.99925.
         (0.9, 0.9, 4.0, 1.0, 0.0, min(np.roots([-2.0, 0.9, -0.1]))),
         (0.898, 0.9, 4.0, 1.0, 0.0, math.inf),
         # Above from the start.
@@ -122,24 +112,25 @@ def test_a_block_is_released_when_its_stress_passes_the_threshold(
     motion, forecast = arrays.make_motion(6, 5), arrays.make_forecast(5, 4)
     motion.w[1, 1], motion.w[2, 1], motion.tau[2] = speed, -slowing, height
     medium = arrays.make_medium(1.0, 0.0, 0.0, False, True)
-    when, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
-    assert when == pytest.approx(release, abs=tol.ROOT)
+    time, stress = from_python(foresight.foresee_release)(medium, motion, forecast, 2, now, h, 5)
+    assert time == pytest.approx(release, abs=tol.ROOT)
     assert stress == pytest.approx(height + speed * now - slowing * now**2 / 2.0, rel=tol.STENCIL)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 def test_a_released_block_gets_every_derivative_of_its_neighbours_force(damping):
-    top, now, dx = 5, 0.3, 0.5
-    motion, own = arrays.make_motion(top + 1, 3), np.zeros(top + 3)
+    top, now = 5, 0.3
+    dx = 0.5
+    motion, centre = arrays.make_motion(top + 1, 3), np.zeros(top + 3)
     motion.w[1:, [0, 2]] = np.random.default_rng(0).standard_normal((top, 2))
     medium = arrays.make_medium(dx, 0.0, damping * dx**2, False, True)
-    events.start(own, medium, motion, 1, now, top)
+    events.start(centre, medium, motion, 1, now, top)
     factorials = [math.factorial(k) for k in range(top + 1)]
     slip = np.polynomial.Polynomial(motion.w[:, [0, 2]].sum(axis=1) / factorials)
     # The strain holds the slip at the start of the step.
     force = (slip + damping * dx**2 * slip.deriv()) / dx**2
-    expected = [force.deriv(m)(now) if m else force(now) for m in range(top - 1)]
-    np.testing.assert_allclose(own[2 : top + 1], expected, rtol=tol.STENCIL, atol=tol.STENCIL)
+    expected = [force(now), *(force.deriv(m)(now) for m in range(1, top - 1))]
+    np.testing.assert_allclose(centre[2 : top + 1], expected, rtol=tol.STENCIL, atol=tol.STENCIL)
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -155,8 +146,7 @@ def test_segments_after_random_events_agree_with_a_mask(seed):
         assert np.array_equal(np.column_stack([kept.starts[:n], kept.ends[:n]]).ravel(), edges)
         assert segments.holds(kept, inside) == mask[inside]
         left, right = segments.sliding_beside(kept, inside)
-        assert mask[inside - left : inside].all() and (
-            left == inside or not mask[inside - left - 1]
-        )
+        assert mask[inside - left : inside].all()
+        assert left == inside or not mask[inside - left - 1]
         after = mask[inside + 1 :]
         assert after[:right].all() and not after[right : right + 1].any()

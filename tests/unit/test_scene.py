@@ -1,4 +1,4 @@
-"""The pre-stress profile: values, symmetry, steps, bumps, integral; and what a scene derives from its parameters."""
+"""The pre-stress: values, symmetry, steps, bumps, integral; and derived parameters of a scene."""
 
 import dataclasses
 
@@ -26,13 +26,12 @@ def test_derived_numbers():
 
 
 UNEVEN = sp.Prestress(0.25, 0.6, 2.0, 1.05, steps=((4.0, 0.4),), bumps=((-3.0, -0.3, 0.5),))
+CHANGED = {"release": "elastic", "half_lattice": False, "order": 5, "max_step": 0.25}
+CHANGED |= {"friction_ratio": 2.0, "resolved_blocks": 3, "prestress": UNEVEN, "duration": 0.1}
 OTHERS = {
-    "displacement": sp.Scene(
-        **DISPLACEMENT | {"prestress": UNEVEN, "duration": 0.1}, release="elastic", half_lattice=False, order=5,
-        max_step=0.25, friction_ratio=2.0, resolved_blocks=3,
-    ),
+    "displacement": sp.Scene(**DISPLACEMENT | CHANGED),
     "stress": sp.Scene(**STRESS | {"duration": 0.1}, scheme="fixed_step", max_step=0.3),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("boundary", OTHERS)
@@ -51,23 +50,21 @@ def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(
 
 def test_attributes_without_a_parameter_are_refused_by_its_name():
     attributes = sp.Scene(**STRESS).attributes()
-    # Files of before there was rate dependence open as the paper has it.
+    # Older files have no rate strengthening; they are read as those of the paper's model.
     del attributes["rate_strengthening"]
     assert sp.Scene.from_attributes(attributes).rate_strengthening == 0.0
     del attributes["steps_and_bumps"]
-    with pytest.raises(
-        ValueError, match="steps_and_bumps: missing; allowed: every attribute of a run"
-    ):
+    refusal = "steps_and_bumps: missing; allowed: every attribute of a run"
+    with pytest.raises(ValueError, match=refusal):
         sp.Scene.from_attributes(attributes)
 
 
 @pytest.mark.parametrize("kind", [np.float32, int])
 def test_parameters_are_computed_with_in_double_precision(kind):
-    """Whatever their type: a float32 spacing squared in float32 would change the answer in the seventh digit."""
+    """A spacing squared in single precision would change the seventh digit of a result."""
     values = {"duration": kind(7), "dx": kind(1), "gamma": kind(1), "beta": kind(0)}
-    scene = sp.Scene(
-        "displacement", **values, prestress=sp.Prestress(kind(0), kind(0), kind(2), kind(1))
-    )
+    prestress = sp.Prestress(kind(0), kind(0), kind(2), kind(1))
+    scene = sp.Scene("displacement", prestress, **values)
     of_scene = [getattr(scene, name) for name in (*values, "max_step", "friction_ratio")]
     profile = [getattr(scene.prestress, name) for name in ("left", "right", "width", "peak")]
     assert {type(value) for value in of_scene + profile} == {float}
@@ -97,9 +94,8 @@ def test_the_profile_is_a_gaussian_on_its_side_levels_and_bumps_are_added():
     expected = level + (1.0 - level) * np.exp(-(x**2) / 50.0)
     assert sp.Prestress(-0.75, 0.25, width=5.0)(x) == pytest.approx(expected, abs=tol.STENCIL)
     assert sp.Prestress(-0.75, 0.25, width=5.0)(np.array([-300.0, 300.0])).tolist() == [-0.75, 0.25]
-    added = -0.4 * np.exp(-0.5 * ((x - 6.0) / 0.5) ** 2) + 0.2 * np.exp(
-        -0.5 * ((x + 3.0) / 1.5) ** 2
-    )
+    added = -0.4 * np.exp(-0.5 * ((x - 6.0) / 0.5) ** 2)
+    added += 0.2 * np.exp(-0.5 * ((x + 3.0) / 1.5) ** 2)
     assert PROFILES["bumps"](x) - sp.Prestress(0.3, 0.5)(x) == pytest.approx(added, abs=tol.STENCIL)
 
 
@@ -114,12 +110,17 @@ def test_a_step_replaces_the_level_beyond_its_position_on_its_side(steps):
 @pytest.mark.parametrize(
     ("symmetric", "values"),
     [
-        (True, {}), (False, {"right": 0.300001}), (True, {"left": 0.0, "right": -0.0}),
-        (True, {"steps": ((5.0, 0.1), (-5.0, 0.1))}), (False, {"steps": ((5.0, 0.1), (-5.0, 0.2))}),
-        (True, {"bumps": ((-4.0, 0.1, 1.0), (4.0, 0.1, 1.0), (0.0, 0.1, 1.0))}), (False, {"steps": ((5.0, 0.1),)}),
-        (False, {"bumps": ((4.0, 0.1, 1.0),)}), (False, {"bumps": ((4.0, 0.1, 1.0), (-4.0, 0.1, 2.0))}),
+        (True, {}),
+        (False, {"right": 0.300001}),
+        (True, {"left": 0.0, "right": -0.0}),
+        (True, {"steps": ((5.0, 0.1), (-5.0, 0.1))}),
+        (False, {"steps": ((5.0, 0.1), (-5.0, 0.2))}),
+        (False, {"steps": ((5.0, 0.1),)}),
+        (True, {"bumps": ((-4.0, 0.1, 1.0), (4.0, 0.1, 1.0), (0.0, 0.1, 1.0))}),
+        (False, {"bumps": ((4.0, 0.1, 1.0),)}),
+        (False, {"bumps": ((4.0, 0.1, 1.0), (-4.0, 0.1, 2.0))}),
     ],
-)  # fmt: skip
+)
 def test_symmetry_is_what_the_values_say(symmetric, values):
     profile, x = sp.Prestress(**{"left": 0.3, "right": 0.3} | values), np.linspace(0.0, 20.0, 2001)
     assert profile.symmetric is symmetric
@@ -131,17 +132,18 @@ def test_symmetry_is_what_the_values_say(symmetric, values):
 def test_the_integral_is_that_of_the_profile(name, ends):
     profile = PROFILES[name]
     marks = [0.0, *(p for p, _ in profile.steps), *(c for c, _, _ in profile.bumps)]
+    low, high = ends
     inside = [mark for mark in marks if min(ends) < mark < max(ends)] or None
     accuracy = {"points": inside, "epsabs": 1e-13, "epsrel": 1e-12, "limit": 400}
-    expected, _ = quad(lambda x: float(profile(x)), *ends, **accuracy)
+    expected, _ = quad(lambda x: float(profile(x)), low, high, **accuracy)
     assert profile.integral(*ends) == pytest.approx(expected, abs=tol.QUADRATURE)
 
 
 @pytest.mark.parametrize("width", [1e-200, 1.0, 1e300])
 def test_the_pre_stress_is_balanced_where_its_closed_form_says(width):
-    """Far enough behind the peak for the tail there to be below rounding: a level, and two halves of a Gaussian."""
-    found = sp.theory.prestress_balance_position(sp.Prestress(-0.1, 0.0, width))
-    assert found / width == pytest.approx(-21.0 * np.sqrt(0.5 * np.pi), rel=tol.ALGEBRA)
+    """Where the tail of the peak is below rounding: a level, and two halves of a Gaussian."""
+    position = sp.theory.prestress_balance_position(sp.Prestress(-0.1, 0.0, width))
+    assert position / width == pytest.approx(-21.0 * np.sqrt(0.5 * np.pi), rel=tol.ALGEBRA)
 
 
 def test_a_pre_stress_without_balance_is_refused():

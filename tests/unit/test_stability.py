@@ -1,4 +1,4 @@
-"""The stated stability bounds against the amplification of the step itself, and against runs that blow up."""
+"""The stability bounds against the amplification of the step, and against blow-ups."""
 
 import math
 from functools import partial
@@ -20,7 +20,7 @@ MODES = np.linspace(0.0, 4.0, 401)
 
 
 def taylor_amplification(order: int, step: float, ratio: float, gamma_dx2: float) -> float:
-    """Largest amplification of any mode by one step: slip to one order higher than velocity, as it is advanced."""
+    """Largest amplification of a mode by one step, with slip to one order higher than velocity."""
     stiffness, damping = MODES + gamma_dx2, ratio * MODES
     derivatives = [np.array([np.ones_like(MODES), np.zeros_like(MODES)])]
     derivatives.append(derivatives[0][::-1].copy())
@@ -32,7 +32,7 @@ def taylor_amplification(order: int, step: float, ratio: float, gamma_dx2: float
 
 
 def euler_amplification(step: float, ratio: float, gamma_dx2: float) -> float:
-    """The same for symplectic Euler: velocity first, slip with the new velocity."""
+    """Largest amplification by symplectic Euler: velocity first, then slip with the new velocity."""
     stiffness, damping = MODES + gamma_dx2, ratio * MODES
     from_slip, from_velocity = -step * stiffness, 1.0 - step * damping
     return spectral_radius(1.0 + step * from_slip, step * from_velocity, from_slip, from_velocity)
@@ -50,14 +50,14 @@ def beyond_the_bound(scheme: str, factor: float, **values) -> sp.Scene:
     return scene
 
 
-# Scheme, order, stiffness of the leaf spring gamma dx^2, and a function of step, ratio and it.
+# Scheme, order, stiffness gamma dx^2 of the leaf spring, and a function of step, ratio and stiffness.
 AMPLIFICATIONS = [
     *(("localised", order, 0.0, partial(taylor_amplification, order)) for order in ORDERS),
     *(("fixed_step", 4, leaf, euler_amplification) for leaf in (0.0, 0.3, 5.0)),
 ]
 
 
-# Those of the shipped scenes, and beyond.
+# Damping ratios of the shipped scenes, and larger ones.
 @pytest.mark.parametrize("ratio", [0.0, 0.01, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0])
 @pytest.mark.parametrize(("scheme", "order", "leaf", "amplification"), AMPLIFICATIONS)
 def test_no_mode_grows_below_the_bound_and_one_grows_above(
@@ -77,7 +77,7 @@ STRONG = {"boundary": "stress", "prestress": sp.Prestress(-0.5, 0.3), "duration"
 
 
 def test_a_localised_run_loses_its_energy_balance_just_above_the_bound_and_keeps_it_just_below():
-    """A slowly growing mode that is thrown below zero sticks: the balance tells. A fast one blows up."""
+    """A mode that grows slowly below zero sticks, and the balance shows it. A fast one blows up."""
     sound = beyond_the_bound("localised", tol.BELOW_BOUND, **STRONG, beta=1.0)
     run = solve_by_scheme(sound)
     assert run.numbers["energy_residual"] < tol.ENERGY and run.numbers["sticks"] == 0
@@ -102,37 +102,29 @@ def test_a_run_that_blows_up_names_the_step(scheme, ratio):
 @pytest.mark.parametrize("scheme", LATTICES)
 def test_a_scene_beyond_the_bound_is_refused_with_the_bound(scheme):
     bound = largest_step(scheme, 4, 0.5, 0.0)
-    values = {
-        "prestress": sp.Prestress(0.5, 0.5),
-        "duration": 1.0,
-        "dx": 0.1,
-        "beta": 0.05,
-        "scheme": scheme,
-    }
-    sp.Scene("stress", **values, max_step=tol.BELOW_BOUND * bound)
+    values, profile = {"beta": 0.05, "scheme": scheme}, sp.Prestress(0.5, 0.5)
+    sp.Scene("stress", profile, 1.0, 0.1, **values, max_step=tol.BELOW_BOUND * bound)
     with pytest.raises(ValueError, match=rf"max_step: .*allowed: <= {bound:.4g}"):
-        sp.Scene("stress", **values, max_step=tol.ABOVE_BOUND * bound)
+        sp.Scene("stress", profile, 1.0, 0.1, **values, max_step=tol.ABOVE_BOUND * bound)
 
 
 def test_no_scheme_blows_up_below_its_bound_and_the_chain_at_it(study):
-    """Where damping makes the growth beyond it fast enough to be seen, at every order and under both schemes."""
+    """The growth is fast enough to be seen with damping, at every order and by both schemes."""
     rows = study("stability")
-    assert (
-        rows[["measured_ratio", "measured_rupture_ratio"]].min(axis=None)
-        >= 1.0 - tol.BOUNDARY_BELOW
-    )
+    measured = rows[["measured_ratio", "measured_rupture_ratio"]]
+    assert measured.min(axis=None) >= 1.0 - tol.BOUNDARY_BELOW
     damped = rows[rows["damping_ratio"] >= 0.1]
     assert len(damped) == 28
     assert damped["measured_ratio"].max() <= 1.0 + tol.BOUNDARY_ABOVE
     undamped = rows[(rows["damping_ratio"] == 0.0) & (rows["order"] <= 4)]
     assert undamped["measured_ratio"].max() <= 1.0 + tol.BOUNDARY_ABOVE_UNDAMPED
-    # Weak orders are held below what a run shows.
+    # Weak orders are held below the measured boundary.
     weak = rows[(rows["order"].isin(WEAK_ORDERS)) & (rows["damping_ratio"] == 0.0)]
     assert (weak["measured_ratio"] > 1.0).all()
 
 
 @pytest.mark.parametrize(
-    ("between", "found"), [((0.2, 0.4), 0.4), ((3.0, 4.0), 3.0), ((0.5, 2.0), 1.0)]
+    ("ends", "expected"), [((0.2, 0.4), 0.4), ((3.0, 4.0), 3.0), ((0.5, 2.0), 1.0)]
 )
-def test_the_bisection_reports_the_end_beyond_which_it_does_not_look(between, found):
-    assert boundary(lambda step: step <= 1.0, *between) == pytest.approx(found, abs=0.01)
+def test_the_bisection_reports_the_end_beyond_which_it_does_not_look(ends, expected):
+    assert boundary(lambda step: step <= 1.0, *ends) == pytest.approx(expected, abs=0.01)

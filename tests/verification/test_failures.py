@@ -1,4 +1,4 @@
-"""Runs that are not the model's: stopped with a reason, or flagged."""
+"""Simulations whose numbers are not the model's: stopped with a reason, or flagged."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def stress(left: float, right: float, duration: float, dx: float, **values) -> s
 
 
 def at_most(calls: int):
-    """Progress that gives up: a run that repeats one instant for ever would not return otherwise."""
+    """A progress that ends after some calls a simulation that repeats one instant for ever."""
     left = iter(range(calls))
     return lambda _fraction: next(left)
 
@@ -53,34 +53,52 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
         lattice.advance_to_end(at_most(20))
 
 
-@pytest.mark.parametrize(
-    ("scene", "flags"),
-    [
-        # A pulse of few blocks.
-        (displacement(0.3, 20.0, 0.4), "unresolved_pulse"), (displacement(0.3, 20.0, 0.05), ""),
-        (displacement(0.3, 20.0, 0.4, resolved_blocks=1), ""),
-        # Under a stress boundary the Gaussian must be resolved.
-        (stress(-0.5, 0.0, 4.0, 0.2), "unresolved_pulse"), (stress(-0.5, 0.0, 4.0, 0.125), ""),
-        # Level -100: the pre-stress is positive over a seventh of the Gaussian's width on each side.
-        (stress(-100.0, 0.0, 4.0, 0.1, beta=0.01, friction_ratio=60.0), "unresolved_pulse"),
-        (stress(-100.0, 0.0, 4.0, 0.005, beta=5e-4, friction_ratio=60.0), ""),
-        # tau_0 = 0.01: the steady pulse goes on for ever, the lattice of dx = 0.1 is too coarse to carry it.
-        (displacement(0.01, 60.0, 0.1, beta=0.01), "died_out"),
-        (displacement(0.01, 60.0, 0.1, right=0.5, beta=0.01), "died_out"),
-        # An arrest without pre-stress to drive it on.
-        (displacement(-0.5, 60.0, 0.02, beta=0.01), ""), (displacement(0.0, 60.0, 0.02, beta=0.01), ""),
-        # The textbook scheme runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps.
-        *(
-            (displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=step), flags)
-            for step, flags in ((0.99, "locked_front"), (0.3, "locked_front"), (0.037, ""))
-        ),
-        # The level -1.5 is there from the start: -(1 + 2 ratio) is above it for ratios below 0.25.
-        *(
-            (stress(-1.5, 0.3, 3.0, 0.05, beta=0.01, friction_ratio=ratio), flags)
-            for ratio, flags in ((0.0, "reverse_sliding"), (0.2, "reverse_sliding"), (0.3, ""), (5.0, ""))
-        ),
-    ],
-)  # fmt: skip
+def coarse(**values) -> sp.Scene:
+    return displacement(0.3, 20.0, 0.4, **values)
+
+
+def arrest(left: float, **values) -> sp.Scene:
+    return displacement(left, 60.0, beta=0.01, **values)
+
+
+def steep(dx: float) -> sp.Scene:
+    """The pre-stress is positive over a seventh of the Gaussian's width on each side."""
+    return stress(-100.0, 0.0, 4.0, dx, beta=0.1 * dx, friction_ratio=60.0)
+
+
+def textbook(max_step: float) -> sp.Scene:
+    """The front runs at dx/(n dt) instead of 1.1547, by 13 % at the longest of these steps."""
+    return displacement(0.5, 10.0, 0.05, scheme="fixed_step", max_step=max_step)
+
+
+def below(friction_ratio: float) -> sp.Scene:
+    """The level -1.5 is below the threshold of reverse sliding for ratios below 0.25."""
+    return stress(-1.5, 0.3, 3.0, 0.05, beta=0.01, friction_ratio=friction_ratio)
+
+
+FLAGS = {
+    "a pulse of few blocks": (coarse(), "unresolved_pulse"),
+    "a pulse of few blocks, if that is allowed": (coarse(resolved_blocks=1), ""),
+    "a pulse of many blocks": (displacement(0.3, 20.0, 0.05), ""),
+    "a Gaussian of few blocks under stress": (stress(-0.5, 0.0, 4.0, 0.2), "unresolved_pulse"),
+    "a Gaussian of many blocks under stress": (stress(-0.5, 0.0, 4.0, 0.125), ""),
+    "a steep Gaussian of few blocks": (steep(0.1), "unresolved_pulse"),
+    "a steep Gaussian of many blocks": (steep(0.005), ""),
+    "a lattice too coarse for a steady pulse": (arrest(0.01, dx=0.1), "died_out"),
+    "too coarse for one of two pulses": (arrest(0.01, dx=0.1, right=0.5), "died_out"),
+    "an arrest by negative pre-stress": (arrest(-0.5, dx=0.02), ""),
+    "an arrest without pre-stress": (arrest(0.0, dx=0.02), ""),
+    "a front locked to its step": (textbook(0.99), "locked_front"),
+    "a front locked to a third of its step": (textbook(0.3), "locked_front"),
+    "a front that is not locked": (textbook(0.037), ""),
+    "reverse sliding without kinetic friction": (below(0.0), "reverse_sliding"),
+    "reverse sliding with little friction": (below(0.2), "reverse_sliding"),
+    "enough friction against reverse sliding": (below(0.3), ""),
+    "much friction against reverse sliding": (below(5.0), ""),
+}
+
+
+@pytest.mark.parametrize(("scene", "flags"), FLAGS.values(), ids=FLAGS)
 def test_flags(scene, flags):
     run = sp.simulate(scene)
     assert flags in run.attrs["run_flags"].split(",")

@@ -1,4 +1,4 @@
-"""Friction that depends on slip rate: numbers of the exact solution, and where pulses end."""
+"""Friction that depends on slip rate: numbers of the exact solution, and the end of pulses."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,8 @@ import tolerances as tol
 import slippulse as sp
 from slippulse import theory
 
-GAMMA, LEVEL, RATIO = 0.65, 0.5, 0.1
+GAMMA, LEVEL = 0.65, 0.5
+RATIO = 0.1
 PROFILE, SPEED = sp.Prestress(LEVEL, LEVEL), theory.front_speed(LEVEL, RATIO)
 CRITICAL = theory.critical_rate_strengthening(GAMMA, SPEED)
 
@@ -34,15 +35,17 @@ def test_the_steady_pulse_and_its_end_are_those_derived_independently():
     velocity = pulse.profile([-pulse.width, 0.5 * -pulse.width, 0.0])[1]
     np.testing.assert_allclose(velocity[[0, 2]], 0.0, atol=tol.ALGEBRA)
     for alpha in (CRITICAL, -CRITICAL):
-        with pytest.raises(
-            ValueError, match=r"rate_strengthening: .*; allowed: less than 0.947322"
-        ):
+        refusal = r"rate_strengthening: .*; allowed: less than 0.947322"
+        with pytest.raises(ValueError, match=refusal):
             theory.steady_pulse(LEVEL, GAMMA, 0.0, SPEED, rate_strengthening=1.01 * alpha)
 
 
 @pytest.mark.parametrize(("alpha", "time"), [(1.2, 19.71489), (1.3, None)])
 def test_beyond_the_critical_rate_strengthening_the_nucleation_alone_may_stick(alpha, time):
-    """What it leaves oscillates, and outlives the wake below 2 sqrt(gamma/(1 + 1/v^2)); a coarse lattice misses it."""
+    """It leaves an oscillation that outlives the wake below 2 sqrt(gamma/(1 + 1/v^2)).
+
+    A coarse lattice misses it.
+    """
     bound = 2.0 * np.sqrt(GAMMA / (1.0 + 1.0 / SPEED**2))
     assert alpha > CRITICAL and (alpha < bound) == (time is not None)
     first = rupture_of(alpha, 24.0).first_stick
@@ -65,13 +68,8 @@ def test_without_rate_dependence_the_kernels_give_the_same_bits(options):
 @pytest.mark.parametrize("scheme", ["localised", "fixed_step"])
 def test_a_step_just_below_the_bound_is_stable_with_strong_strengthening(scheme):
     """Drag alone sets it at alpha dx = 8."""
-    values = {
-        "dx": 0.5,
-        "beta": 0.0,
-        "rate_strengthening": 16.0,
-        "scheme": scheme,
-        "duration": 200.0,
-    }
+    values = {"dx": 0.5, "beta": 0.0, "rate_strengthening": 16.0, "scheme": scheme}
+    values["duration"] = 200.0
     bound = run(1.0, **values | {"max_step": 1e-3, "duration": 0.1}).attrs
     scene = sp.Scene.from_attributes(bound)
     assert scene.largest_stable_step < 0.4

@@ -1,4 +1,4 @@
-"""What must not change a result: the mirror, half the lattice, the size of the first lattice, the length of a call."""
+"""The mirror, half the lattice, its first size and the length of a call do not change a result."""
 
 import pytest
 import tolerances as tol
@@ -9,10 +9,8 @@ from slippulse.solver.fixed_step import LATTICES
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
 COUNTS = ("releases", "sticks", "re_releases")
-NUMBERS = (
-    "work_of_prestress", "kinetic_energy", "elastic_energy", "leaf_spring_energy", "viscous_loss",
-    "min_stuck_stress", "first_stick_time",
-)  # fmt: skip
+ENERGIES = ("work_of_prestress", "kinetic_energy", "elastic_energy", "leaf_spring_energy")
+NUMBERS = (*ENERGIES, "viscous_loss", "min_stuck_stress", "first_stick_time")
 # The peak is a little above 1: bumps add to it.
 UNEVEN = sp.Prestress(0.25, 0.6, peak=1.05, steps=((4.0, 0.4),), bumps=((-3.0, -0.3, 0.5),))
 MIRRORED = sp.Prestress(0.6, 0.25, peak=1.05, steps=((-4.0, 0.4),), bumps=((3.0, -0.3, 0.5),))
@@ -23,27 +21,18 @@ def simulated(
     profile, boundary="displacement", scheme="localised", ratio=0.1, progress=None, **changes
 ):
     gamma = 0.65 if boundary == "displacement" else 0.0
-    values = {
-        "duration": 8.0,
-        "gamma": gamma,
-        "beta": ratio * 0.05,
-        "scheme": scheme,
-        "max_step": 0.3,
-    }
-    return sp.simulate(sp.Scene(boundary, profile, dx=0.05, **values | changes), progress=progress)
+    values = {"gamma": gamma, "beta": ratio * 0.05, "scheme": scheme, "max_step": 0.3} | changes
+    return sp.simulate(sp.Scene(boundary, profile, 8.0, 0.05, **values), progress=progress)
 
 
 def assert_equal_but_for_rounding(one, two) -> None:
     assert one.attrs["releases"] > 100
     for name in ("x", *FIELDS):
-        tolerance = 0.0 if name == "x" else tol.MIRROR
-        assert one[name].values == pytest.approx(
-            two[name].values, rel=0, abs=tolerance, nan_ok=True
-        ), name
+        tolerance = {"rel": 0.0, "abs": 0.0 if name == "x" else tol.MIRROR, "nan_ok": True}
+        assert one[name].values == pytest.approx(two[name].values, **tolerance), name
     for name in NUMBERS:
-        assert one.attrs[name] == pytest.approx(
-            two.attrs[name], rel=1e3 * tol.MIRROR, nan_ok=True
-        ), name
+        expected = pytest.approx(two.attrs[name], rel=1e3 * tol.MIRROR, nan_ok=True)
+        assert one.attrs[name] == expected, name
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.1])
@@ -54,20 +43,20 @@ def test_the_mirror_image_and_half_the_lattice_give_the_same(boundary, scheme, r
     one, two = simulated(UNEVEN, *case), simulated(MIRRORED, *case).isel(x=slice(None, None, -1))
     assert_equal_but_for_rounding(one, two.assign_coords(x=-two["x"]))
     assert [one.attrs[name] for name in COUNTS] == [two.attrs[name] for name in COUNTS]
-    half, whole = simulated(EVEN, *case), simulated(EVEN, *case, half_lattice=False)
-    assert half.attrs["half_lattice_used"] == 1 and whole.attrs["half_lattice_used"] == 0
-    assert_equal_but_for_rounding(half, whole)
+    half, full = simulated(EVEN, *case), simulated(EVEN, *case, half_lattice=False)
+    assert half.attrs["half_lattice_used"] == 1 and full.attrs["half_lattice_used"] == 0
+    assert_equal_but_for_rounding(half, full)
 
 
 @pytest.mark.parametrize("scheme", LATTICES)
 @pytest.mark.parametrize("profile", [EVEN, UNEVEN], ids=["even", "uneven"])
 def test_the_first_size_and_the_length_of_a_call_do_not_change_a_bit(monkeypatch, profile, scheme):
-    whole = simulated(profile, scheme=scheme)
+    plain = simulated(profile, scheme=scheme)
     for name, value in {"FIRST_BLOCKS": 16, "PAGE": 8, "BEYOND_PAGES": 3, "CALL_STEPS": 7}.items():
         monkeypatch.setattr(lattice, name, value)
-    shares = []
-    grown = simulated(profile, scheme=scheme, progress=shares.append)
-    assert grown.equals(whole)
-    assert grown.attrs["block_updates"] == whole.attrs["block_updates"]
-    assert len(shares) > 10
-    assert shares == sorted(shares) and shares[0] > 0.0 and shares[-1] <= 1.0
+    fractions = []
+    grown = simulated(profile, scheme=scheme, progress=fractions.append)
+    assert grown.equals(plain)
+    assert grown.attrs["block_updates"] == plain.attrs["block_updates"]
+    assert len(fractions) > 10
+    assert fractions == sorted(fractions) and fractions[0] > 0.0 and fractions[-1] <= 1.0

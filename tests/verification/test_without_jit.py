@@ -14,34 +14,32 @@ import slippulse as sp
 pytestmark = pytest.mark.slow
 ONE_WAY = {"boundary": "stress", "gamma": 0.0, "prestress": sp.Prestress(-0.5, 0.0)}
 CASES = {
-    "damped": {}, "elastic": {"release": "elastic"}, "mirrored": {"prestress": sp.Prestress(0.5, 0.5), "order": 6},
-    "undamped": {"beta": 0.0}, "one way": ONE_WAY, "one way, undamped": ONE_WAY | {"beta": 0.0},
+    "damped": {},
+    "elastic": {"release": "elastic"},
+    "mirrored": {"prestress": sp.Prestress(0.5, 0.5), "order": 6},
+    "undamped": {"beta": 0.0},
+    "one way": ONE_WAY,
+    "one way, undamped": ONE_WAY | {"beta": 0.0},
     "fixed step": {"scheme": "fixed_step", "max_step": 0.2},
-}  # fmt: skip
-NUMBERS = (
-    "steps", "block_updates", "releases", "sticks", "re_releases", "energy_residual", "viscous_loss",
-    "work_of_prestress", "min_stuck_stress", "first_stick_time",
-)  # fmt: skip
+}
+COUNTS = ("steps", "block_updates", "releases", "sticks", "re_releases")
+ENERGIES = ("energy_residual", "viscous_loss", "work_of_prestress")
+NUMBERS = (*COUNTS, *ENERGIES, "min_stuck_stress", "first_stick_time")
 SAVE = "import runpy, sys; runpy.run_path(sys.argv[1])['save'](sys.argv[2])"
 
 
 def run(**changes) -> np.ndarray:
     values = {"boundary": "displacement", "gamma": 0.65, "beta": 0.05, "dx": 0.25, "duration": 4.0}
     values |= {"prestress": sp.Prestress(0.4, 0.6), "max_step": 0.3}
-    data = sp.simulate(
-        sp.Scene(**values | changes), sp.Samples(np.linspace(0, 4, 9), np.linspace(-1, 1, 5))
-    )
-    return np.concatenate(
-        [[data.attrs[name] for name in NUMBERS], *map(np.ravel, data.variables.values())]
-    )
+    samples = sp.Samples(np.linspace(0, 4, 9), np.linspace(-1, 1, 5))
+    data = sp.simulate(sp.Scene(**values | changes), samples)
+    numbers = [data.attrs[name] for name in NUMBERS]
+    return np.concatenate([numbers, *map(np.ravel, data.variables.values())])
 
 
 def save(path: str) -> None:
-    np.savez(
-        path,
-        jit=not numba.config.DISABLE_JIT,
-        **{name: run(**case) for name, case in CASES.items()},
-    )
+    results = {name: run(**case) for name, case in CASES.items()}
+    np.savez(path, jit=not numba.config.DISABLE_JIT, **results)
 
 
 def test_compiled_and_interpreted_agree(tmp_path):
@@ -51,6 +49,5 @@ def test_compiled_and_interpreted_agree(tmp_path):
     interpreted = np.load(path)
     assert not interpreted["jit"] and not numba.config.DISABLE_JIT
     for name, case in CASES.items():
-        assert run(**case) == pytest.approx(
-            interpreted[name], rel=tol.JIT, abs=tol.JIT, nan_ok=True
-        ), name
+        expected = pytest.approx(interpreted[name], rel=tol.JIT, abs=tol.JIT, nan_ok=True)
+        assert run(**case) == expected, name

@@ -1,4 +1,4 @@
-"""A scene costs what slides in it, and nothing else: work and bytes a block, how both grow, where rows begin."""
+"""Only sliding blocks cost work: updates and bytes a block, their growth, positions of rows."""
 
 from dataclasses import replace
 
@@ -17,9 +17,9 @@ PULSE = Scene(
 CRACK = Scene(
     "stress", Prestress(0.5, 0.5), 50.0, 0.04, beta=0.1 * 0.04, max_step=0.5, half_lattice=False
 )
-# Scene, expected block updates a step over the mean number of sliding blocks (1: nothing else is touched, 1/2: half of
-# a symmetric scene), most blocks changed by events over block updates, least blocks of the whole lattice over the
-# sliding ones.
+# Scene; expected block updates a step over the mean number of sliding blocks (1: no others are
+# touched, 1/2: half of a symmetric scene); most blocks changed by events over block updates; least
+# blocks of the lattice over the sliding ones.
 WORK = {
     "two pulses, by symmetry": (PULSE, 0.5, 0.3, 15.0),
     "two pulses, whole lattice": (replace(PULSE, half_lattice=False), 1.0, 0.3, 15.0),
@@ -30,7 +30,7 @@ WORK = {
 
 @pytest.mark.parametrize("name", WORK)
 def test_only_sliding_blocks_are_updated_and_events_change_few(name):
-    """An event changes as many on a side as the order, for a release and a stick; sliding changes all meanwhile."""
+    """An event changes as many blocks on a side as the order; a step changes all that slide."""
     scene, expected, most, least = WORK[name]
     run = solve_on_lattice(scene)
     released, end = np.isfinite(run.release_time), run.numbers["end_time"]
@@ -50,17 +50,15 @@ def test_only_sliding_blocks_are_updated_and_events_change_few(name):
     ],
 )
 def test_a_pulse_costs_linearly_in_time_and_quadratically_in_spacing(changes, exponent):
-    work = [
-        solve_on_lattice(replace(PULSE, **change)).numbers["block_updates"] for change in changes
-    ]
+    solutions = [solve_on_lattice(replace(PULSE, **change)) for change in changes]
+    work = [solution.numbers["block_updates"] for solution in solutions]
     values = [next(iter(change.values())) for change in changes]
-    assert np.polyfit(np.log(values), np.log(work), 1)[0] == pytest.approx(
-        exponent, abs=tol.EXPONENT
-    )
+    slope = np.polyfit(np.log(values), np.log(work), 1)[0]
+    assert slope == pytest.approx(exponent, abs=tol.EXPONENT)
 
 
 def bytes_in(value, size: int) -> int:
-    """Of the arrays of a row or more in nested groups."""
+    """Bytes of the arrays of a row or more in nested groups."""
     if isinstance(value, tuple):
         return sum(bytes_in(part, size) for part in value)
     return value.nbytes if isinstance(value, np.ndarray) and value.size >= size else 0
@@ -79,15 +77,13 @@ def test_a_block_takes_few_bytes_and_an_order_eight_more():
 @pytest.mark.parametrize("right", [0.5, 0.4], ids=["half lattice", "whole lattice"])
 def test_rows_begin_at_different_places_of_their_pages(right):
     """In a page of 4096 bytes the beginnings of any two are three lines of the cache apart, or more."""
-    lattice = Lattice(
-        Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8), None, 0.0
-    )
+    scene = Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8)
+    lattice = Lattice(scene, None, 0.0)
     for _ in range(6):
         size = lattice.size
-        places = np.sort(
-            [row.ctypes.data % 4096 for row in (*lattice.motion.w, *lattice.motion[1:])]
-        )
-        assert np.diff(places, append=places[0] + 4096).min() >= 3 * 64
+        rows = (*lattice.motion.w, *lattice.motion[1:])
+        positions = np.sort([row.ctypes.data % 4096 for row in rows])
+        assert np.diff(positions, append=positions[0] + 4096).min() >= 3 * 64
         assert np.abs(lattice.motion.tau[-lattice.first_block] - 1.0) < 1e-12
         lattice._grow()
         assert 2 * size <= lattice.size < 3 * size + 512

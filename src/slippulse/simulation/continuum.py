@@ -48,10 +48,9 @@ def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
         first = min(left.x for left, _ in rupture.front_ends)
         last = max(right.x for _, right in rupture.front_ends)
     check_number("dx", scene.dx, at_least=(last - first) / MOST_POSITIONS)
-    numbers = np.arange(
-        math.floor(first / scene.dx) - MARGIN, math.ceil(last / scene.dx) + MARGIN + 1
-    )
-    return numbers * scene.dx
+    first_number = math.floor(first / scene.dx) - MARGIN
+    last_number = math.ceil(last / scene.dx) + MARGIN
+    return np.arange(first_number, last_number + 1) * scene.dx
 
 
 def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:

@@ -6,11 +6,6 @@ from ..theory.rupture import Rupture
 
 def exact_rupture(scene: Scene) -> Rupture:
     """The exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
-    return Rupture(
-        scene.prestress,
-        scene.gamma,
-        scene.damping_ratio,
-        scene.release,
-        scene.duration,
-        rate_strengthening=scene.rate_strengthening,
-    )
+    rule = scene.damping_ratio, scene.release
+    alpha = scene.rate_strengthening
+    return Rupture(scene.prestress, scene.gamma, *rule, scene.duration, rate_strengthening=alpha)

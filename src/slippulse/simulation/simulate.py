@@ -33,7 +33,6 @@ def simulate(
     ----------
     scene : Scene
     samples : Samples, optional
-        Times and positions at which slip and slip velocity are recorded.
     progress : callable or bool, optional
         Called with the fraction of the duration done; True draws a bar with the time that is left.
     strict : bool
@@ -43,9 +42,8 @@ def simulate(
     -------
     xarray.Dataset
         Over x: prestress, release_time, stick_time, and at the end slip, slip_velocity and
-        slip_acceleration. Attributes: every parameter of the scene, steps, block_updates,
-        event_updates (blocks that events changed), the energy balance and energy_residual,
-        min_velocity, re_releases, run_flags ("" or names separated by commas), versions.
+        slip_acceleration. Attributes: every parameter of the scene, counters, the energy balance,
+        run_flags ("" or names separated by commas), versions.
 
     Raises
     ------
@@ -60,8 +58,7 @@ def simulate(
 
     Examples
     --------
-    >>> scene = Scene("displacement", Prestress(0.6, 0.6), duration=15.0, dx=0.01, gamma=0.65)
-    >>> slip = simulate(scene).slip
+    >>> slip = simulate(Scene("stress", Prestress(0.6, 0.6), duration=5.0, dx=0.05)).slip
     """
     _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
     _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
@@ -98,9 +95,9 @@ def run_sweep(
     Parameters
     ----------
     scenes : sequence of Scene
-        One a point of the sweep; by the scheme "continuum" all or none.
+        One for each point of the sweep; by the scheme "continuum" all or none.
     samples : sequence of Samples, optional
-        One a scene, all of one shape.
+        One for each scene, all of one shape.
     record : sequence of {"fronts", "fields", "samples"}
         What is kept: release and stick times; slip, slip velocity and acceleration at the end;
         the recorded samples.
@@ -119,14 +116,10 @@ def run_sweep(
     ------
     ValueError
         In one line that names the argument and what is allowed.
-    UnstableRun
-        As `simulate` does.
 
     Examples
     --------
-    >>> levels = (0.5, 0.6)
-    >>> profiles = [Prestress(level, level) for level in levels]
-    >>> sweep = run_sweep([Scene("stress", profile, 5.0, 0.05) for profile in profiles], threads=2)
+    >>> sweep = run_sweep([Scene("stress", Prestress(0.6, 0.6), 5.0, dx) for dx in (0.1, 0.05)])
     """
     _check_scenes(scenes)
     samples = [None] * len(scenes) if samples is None else samples
@@ -174,13 +167,9 @@ def bar(stream=None) -> Callable[[float], None]:
     """A function of the fraction done that draws a bar with the time left, on standard error."""
     from tqdm import tqdm
 
-    drawn = tqdm(
-        total=1.0,
-        delay=0.2,
-        mininterval=0.2,
-        file=stream or sys.stderr,
-        bar_format="[{bar:30}] {percentage:3.0f}%  {elapsed}, {remaining} left",
-    )
+    look = "[{bar:30}] {percentage:3.0f}%  {elapsed}, {remaining} left"
+    file = stream or sys.stderr
+    drawn = tqdm(total=1.0, delay=0.2, mininterval=0.2, file=file, bar_format=look)
 
     def draw(done: float) -> None:
         drawn.update(done - drawn.n)
