@@ -1,6 +1,8 @@
 """Speed as ratios within one run on one core, for any machine, as `make benchmark` has it.
 
-python -m tests.benchmark config/config.yaml results/benchmarks     measures, and writes benchmark.json there
+    python -m tests.benchmark config/config.yaml results/benchmarks
+
+measures and writes benchmark.json into that folder.
 """
 
 import json
@@ -9,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -30,16 +33,19 @@ from slippulse.theory.front_speeds import steady_pulse
 
 from . import stencils
 
-LEVEL, GAMMA, RATIO, DX, DURATION = 0.5, 0.65, 0.1, 0.01, 400.0
+LEVEL, GAMMA = 0.5, 0.65
+RATIO, DX = 0.1, 0.01
+DURATION = 400.0
 REPEATS, TURNS = 3, 18
-# When the kernel is timed: a crack with 4,200 to 6,200 sliding blocks on each side, a pulse of 200 when it is steady.
+# The kernel is timed between these times: a crack with 4,200 to 6,200 sliding blocks on each side,
+# and a steady pulse of 200.
 CRACK, PULSE = (3400.0, 5000.0), (60.0, 200.0)
 # Steps of the textbook scheme around these powers of a half, over this many blocks of path.
 POWERS, LENGTH = (3, 4, 5, 6, 7, 8, 9), 160.0
 
 
 def best(run: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Least processor seconds of a few repeats: what else the machine does should not count."""
+    """Least processor seconds of a few repeats, without other work of the machine."""
     times = []
     for _ in range(repeats):
         start = time.process_time()
@@ -49,14 +55,14 @@ def best(run: Callable[[], object], repeats: int = REPEATS) -> float:
 
 
 def stencil_rates(blocks: int, seconds: float) -> dict[str, float]:
-    """Block updates a second of the branch-free stencils on ``blocks`` blocks, timed once, as the kernel is."""
-    tau, w, force = np.full(blocks, 0.5), np.zeros((6, blocks)), np.zeros(blocks)
+    """Block updates a second of the branch-free stencils, timed once, as the kernel is."""
+    tau, force = np.full(blocks, 0.5), np.zeros(blocks)
+    w = np.zeros((6, blocks))
     constants = (1e-6, 1.0, 1e-6, RATIO)
+    two_stage = stencils.two_stage_steps
     calls = {
         "taylor": lambda count: stencils.taylor_steps(w, tau, count, *constants),
-        "two_stage": lambda count: stencils.two_stage_steps(
-            w[0], w[1], force, tau, count, *constants
-        ),
+        "two_stage": lambda count: two_stage(w[0], w[1], force, tau, count, *constants),
     }
     rates = {}
     for name, call in calls.items():
@@ -68,7 +74,7 @@ def stencil_rates(blocks: int, seconds: float) -> dict[str, float]:
 
 
 def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
-    """Block updates a second from ``scene.duration`` to ``until``, with everything, and the mean sliding blocks."""
+    """Block updates a second from the end of a scene to ``until``, and the mean sliding blocks."""
     lattice = Lattice(scene, None, scene.beta)
     lattice.advance_to_end(None)
     updates, steps = int(lattice.tally.block_updates), int(lattice.tally.steps)
@@ -79,37 +85,39 @@ def kernel_rate(scene: Scene, until: float) -> tuple[float, float]:
 
 
 def kernel() -> dict:
-    """The kernel against branch-free stencils, the best of turns: a slow spell of the machine meets both."""
-    more = {"max_step": 0.5, "order": 4}
-    crack = Scene(
-        "displacement", Prestress(LEVEL, LEVEL, 8.0), CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **more
-    )
+    """The kernel against branch-free stencils, the best of turns of both."""
+    step = {"max_step": 0.5, "order": 4}
+    profile = Prestress(LEVEL, LEVEL, 8.0)
+    crack = Scene("displacement", profile, CRACK[0], 1.0, gamma=1e-9, beta=RATIO, **step)
     width = steady_pulse(LEVEL, GAMMA, damping_ratio=RATIO).width
-    pulse = _scene(PULSE[0], width / 200.0, more)
-    found = {}
-    for name, scene, until in (
-        ("many_blocks", crack, CRACK[1]),
-        ("pulse_of_200_blocks", pulse, PULSE[1]),
-    ):
+    pulse = _scene(PULSE[0], width / 200.0, step)
+    cases = (("many_blocks", crack, CRACK[1]), ("pulse_of_200_blocks", pulse, PULSE[1]))
+    results = {}
+    for name, scene, until in cases:
         timed, rates = [], []
         for _ in range(TURNS):
             timed.append(kernel_rate(scene, until))
             rates.append(stencil_rates(round(timed[-1][1]), 0.05))
         rate, blocks = max(timed)
-        taylor, two_stage = (max(each[kind] for each in rates) for kind in rates[0])
-        found[name] = {
-            "sliding_blocks": blocks, "order": 4, "block_updates_per_second": rate,
-            "branch_free_order_4_per_second": taylor, "branch_free_two_stage_per_second": two_stage,
-            "ratio_to_branch_free_order_4": rate / taylor, "ratio_to_branch_free_two_stage": rate / two_stage,
-        }  # fmt: skip
-    return found
+        taylor = max(stencil["taylor"] for stencil in rates)
+        two_stage = max(stencil["two_stage"] for stencil in rates)
+        results[name] = {
+            "sliding_blocks": blocks,
+            "order": 4,
+            "block_updates_per_second": rate,
+            "branch_free_order_4_per_second": taylor,
+            "branch_free_two_stage_per_second": two_stage,
+            "ratio_to_branch_free_order_4": rate / taylor,
+            "ratio_to_branch_free_two_stage": rate / two_stage,
+        }
+    return results
 
 
 def whole_scene(accuracy: Mapping, window: float) -> dict:
-    """The whole scene against the textbook scheme over the full lattice at the same error of the front speed.
+    """A scene against the textbook scheme on the full lattice at the same error of the front speed.
 
-    Extrapolated: seconds a step times the steps needed. That error is of first order in the step and does not depend
-    on the spacing, so it is measured on a small lattice.
+    The textbook's time is seconds a step times the steps needed. Its error is of first order in the
+    step and does not depend on the spacing, so it is measured on a small lattice.
     """
     scene = _scene(DURATION, DX, accuracy)
     exact = float(exact_speed(LEVEL, RATIO))
@@ -120,29 +128,36 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
     step = error / float(np.median([entry["error"] / entry["step"] for entry in errors[-9:]]))
     blocks = int(2.0 * exact * DURATION / DX)
     needed = DURATION / (step * DX)
-    each = {"numba": textbook_numba_step(blocks), "numpy": textbook_numpy_step(blocks)}
+    a_step = {"numba": textbook_numba_step(blocks), "numpy": textbook_numpy_step(blocks)}
+    extrapolated = {name: needed * value for name, value in a_step.items()}
+    parameters = f"tau_0 = {LEVEL}, gamma = {GAMMA}, beta/dx = {RATIO}, dx = {DX}"
     return {
-        "scene": f"tau_0 = {LEVEL}, gamma = {GAMMA}, beta/dx = {RATIO}, dx = {DX}, duration {DURATION}",
-        "seconds": seconds, "front_speed_error": error,
-        "seconds_of_twice_the_duration": twice, "cost_of_twice_the_duration": twice / seconds,
-        "textbook_errors": errors, "textbook_step_at_equal_error": step,
-        "textbook_lattice_blocks": blocks, "textbook_steps": needed, "textbook_seconds_a_step": each,
-        "textbook_seconds_extrapolated": {name: needed * value for name, value in each.items()},
-        "times_faster_than_textbook": {name: needed * value / seconds for name, value in each.items()},
-    }  # fmt: skip
+        "scene": f"{parameters}, duration {DURATION}",
+        "seconds": seconds,
+        "front_speed_error": error,
+        "seconds_of_twice_the_duration": twice,
+        "cost_of_twice_the_duration": twice / seconds,
+        "textbook_errors": errors,
+        "textbook_step_at_equal_error": step,
+        "textbook_lattice_blocks": blocks,
+        "textbook_steps": needed,
+        "textbook_seconds_a_step": a_step,
+        "textbook_seconds_extrapolated": extrapolated,
+        "times_faster_than_textbook": {k: value / seconds for k, value in extrapolated.items()},
+    }
 
 
 def _scene(duration: float, dx: float, accuracy: Mapping) -> Scene:
-    values = {"gamma": GAMMA, "beta": RATIO * dx} | {
-        key: accuracy[key] for key in ("max_step", "order")
-    }
-    return Scene("displacement", Prestress(LEVEL, LEVEL), duration, dx, **values)
+    step = {key: accuracy[key] for key in ("max_step", "order")}
+    prestress = Prestress(LEVEL, LEVEL)
+    return Scene("displacement", prestress, duration, dx, gamma=GAMMA, beta=RATIO * dx, **step)
 
 
 def textbook_errors(window: float) -> list[dict]:
-    """Error of the textbook scheme's front speed against its step, three steps around each power of a half.
+    """Errors of the textbook scheme's front speed at three steps around each power of a half.
 
-    Against the localised scheme at order 8 on the same path, so that the way to the steady speed does not count.
+    The reference is the localised scheme at order 8 on the same path, so that the approach to the
+    steady speed does not count.
     """
 
     def speed(scheme: str, step: float) -> float:
@@ -151,23 +166,20 @@ def textbook_errors(window: float) -> list[dict]:
         return front_speed(simulate(scene), window)[0]
 
     reference = speed("localised", 0.5)
-    steps = [factor * 2.0**-power for power in POWERS for factor in (1.0, 0.93, 0.86)]
-    return [
-        {"step": step, "error": abs(speed("fixed_step", step) / reference - 1.0)} for step in steps
-    ]
+    results = []
+    for power, factor in product(POWERS, (1.0, 0.93, 0.86)):
+        step = factor * 2.0**-power
+        results.append({"step": step, "error": abs(speed("fixed_step", step) / reference - 1.0)})
+    return results
 
 
 def textbook_numba_step(blocks: int) -> float:
-    """Seconds a step of the textbook scheme in compiled code over a lattice of ``blocks`` blocks."""
-    # Bumps too small to do anything make the lattice as large as it will have to be.
-    far = 0.5 * blocks * DX
-    profile = Prestress(LEVEL, LEVEL, bumps=((far, 1e-12, DX), (-far, 1e-12, DX)))
-    scene = replace(
-        _scene(2.0, DX, {"max_step": 0.25, "order": 4}),
-        prestress=profile,
-        scheme="fixed_step",
-        half_lattice=False,
-    )
+    """Seconds a step of the textbook scheme in compiled code over ``blocks`` blocks."""
+    # Bumps that are too small to matter make the lattice as large as it has to become.
+    end = 0.5 * blocks * DX
+    profile = Prestress(LEVEL, LEVEL, bumps=((end, 1e-12, DX), (-end, 1e-12, DX)))
+    scene = _scene(2.0, DX, {"max_step": 0.25, "order": 4})
+    scene = replace(scene, prestress=profile, scheme="fixed_step", half_lattice=False)
     size = FixedStepLattice(scene, None, scene.beta).size
     seconds = best(lambda: FixedStepLattice(scene, None, scene.beta).advance_to_end(None), 2)
     return seconds / (scene.duration / (scene.max_step * DX)) * blocks / size
@@ -176,28 +188,24 @@ def textbook_numba_step(blocks: int) -> float:
 def textbook_numpy_step(blocks: int) -> float:
     """Seconds a step of the textbook scheme in plain numpy over a lattice of ``blocks`` blocks."""
     tau, steps = Prestress(LEVEL, LEVEL)(DX * (np.arange(blocks) - blocks // 2)), 60
-    return (
-        best(lambda: stencils.numpy_steps(tau, steps, 0.25 * DX, DX, GAMMA, RATIO * DX), 2) / steps
-    )
+    run = lambda: stencils.numpy_steps(tau, steps, 0.25 * DX, DX, GAMMA, RATIO * DX)
+    return best(run, 2) / steps
 
 
 def main(config_path: str, folder: str) -> None:
-    """Run every measurement and say the ratios."""
+    """Make every measurement, write it and print the ratios."""
     output = Path(folder) / "benchmark.json"
     output.parent.mkdir(parents=True, exist_ok=True)
     config = read_config(read_overlay(config_path)).plain()
     machine = machine_class() | {"python": platform.python_version(), "versions": versions()}
     timed = kernel()
     scene = whole_scene(config["presets"]["paper"], config["measure"]["front_window"])
-    found = {"machine": machine, "kernel": timed, "whole_scene": scene}
-    write_text(json.dumps(found, indent=1).replace("NaN", "null") + "\n", output)
+    results = {"machine": machine, "kernel": timed, "whole_scene": scene}
+    write_text(json.dumps(results, indent=1).replace("NaN", "null") + "\n", output)
     faster = {"times_faster_than_textbook": scene["times_faster_than_textbook"]}
     for name, entry in (timed | {"whole_scene": scene} | faster).items():
-        print(
-            name,
-            *(f"{key}: {x:.3g}" for key, x in entry.items() if isinstance(x, float)),
-            sep="\n  ",
-        )
+        ratios = [f"{key}: {x:.3g}" for key, x in entry.items() if isinstance(x, float)]
+        print(name, *ratios, sep="\n  ")
     print(f"All in {output}")
 
 

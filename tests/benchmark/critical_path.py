@@ -1,9 +1,9 @@
-"""What a finished run waited for: the chain of jobs that ends with the last one, and how many ran at a time.
+"""The chain of jobs that a finished replication waited for, and how many ran at a time.
 
     python -m tests.benchmark.critical_path [results]
 
-A record is written when its job ends and says how long that took. Before it began a job waited for the last of its
-inputs, and then for a core.
+A record is written when its job ends, and has the time that it took. Before it began, a job waited
+for the last of its inputs, and then for a core.
 """
 
 import json
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 
 class Job(NamedTuple):
-    """A job by its first output: when it began and ended (s), and what it is made from."""
+    """A job by its first output: its beginning and end in seconds, and its inputs."""
 
     name: str
     began: float
@@ -34,18 +34,17 @@ def jobs_in(results: Path) -> dict[str, Job]:
 
 
 def critical_path(jobs: dict[str, Job]) -> list[Job]:
-    """The job that ended last, before it that of its inputs that was there last, and so on; the first one first."""
-    found = [max(jobs.values(), key=lambda job: job.ended)]
-    while before := [jobs[name] for name in found[-1].inputs if name in jobs]:
-        found.append(max(before, key=lambda job: job.ended))
-    return found[::-1]
+    """The job that ended last; before it, the job that made the last of its inputs; and so on."""
+    path = [max(jobs.values(), key=lambda job: job.ended)]
+    while before := [jobs[name] for name in path[-1].inputs if name in jobs]:
+        path.append(max(before, key=lambda job: job.ended))
+    return path[::-1]
 
 
 def at_once(jobs: dict[str, Job]) -> dict[int, float]:
-    """For how many seconds how many jobs ran."""
-    changes = sorted(
-        change for job in {*jobs.values()} for change in ((job.began, 1), (job.ended, -1))
-    )
+    """Seconds during which each number of jobs ran."""
+    distinct = {*jobs.values()}
+    changes = sorted([(job.began, 1) for job in distinct] + [(job.ended, -1) for job in distinct])
     running, seconds = 0, dict[int, float]()
     for (time, change), (later, _) in pairwise(changes):
         running += change
@@ -54,18 +53,16 @@ def at_once(jobs: dict[str, Job]) -> dict[int, float]:
 
 
 def main(results: str = "results") -> None:
-    """Print both."""
+    """Print the chain of jobs and the seconds of each number of jobs."""
     jobs = jobs_in(Path(results))
     path = critical_path(jobs)
     start = min(job.began for job in jobs.values())
     print("  ready   waited     took  job")
     for before, job in pairwise([Job("", 0.0, start, ()), *path]):
-        print(
-            f"{before.ended - start:7.1f} {job.began - before.ended:8.1f} {job.ended - job.began:8.1f}  {job.name}"
-        )
-    print(
-        ", ".join(f"{count} at a time: {seconds:.1f} s" for count, seconds in at_once(jobs).items())
-    )
+        ready, waited = before.ended - start, job.began - before.ended
+        print(f"{ready:7.1f} {waited:8.1f} {job.ended - job.began:8.1f}  {job.name}")
+    counts = at_once(jobs).items()
+    print(", ".join(f"{count} at a time: {seconds:.1f} s" for count, seconds in counts))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the kernels are compared with: branch-free stencils over a whole array, the textbook scheme in numpy."""
+"""References for the speed of kernels: branch-free stencils, and the textbook scheme in numpy."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from slippulse.solver.jit import entry, inner
 
 @inner()
 def second_difference(out, lower, upper, per_dx2, leaf, damping):
-    """One derivative of slip from the two before it, over a whole array between fixed ends."""
+    """One derivative of slip from the two before it, over an array between fixed ends."""
     for i in range(out.shape[0]):
         out[i] = (
             per_dx2 * (lower[i + 2] - 2.0 * lower[i + 1] + lower[i])
@@ -28,7 +28,7 @@ def advance_polynomials(slip, velocity, a, b, c, d, h):
 
 @entry
 def taylor_steps(w, tau, steps, h, per_dx2, leaf, damping):
-    """Order 4 steps of slip w[0] and velocity w[1], with no state, no event, no bookkeeping: w has 6 rows."""
+    """Steps of order 4 of slip w[0] and velocity w[1] without events; w has 6 rows."""
     n = tau.shape[0]
     for _ in range(steps):
         second_difference(w[2, 1 : n - 1], w[0], w[1], per_dx2, leaf, damping)
@@ -61,7 +61,7 @@ def kick_and_drift(slip, velocity, force, h):
 
 @entry
 def two_stage_steps(slip, velocity, force, tau, steps, h, per_dx2, leaf, damping):
-    """Symplectic Euler in two branch-free passes: the least that any scheme does to a block."""
+    """Symplectic Euler in two branch-free passes, the least work on a block of any scheme."""
     n = tau.shape[0]
     for _ in range(steps):
         force_and_velocity(velocity, force[1 : n - 1], slip, tau, h, per_dx2, leaf, damping)
@@ -71,7 +71,7 @@ def two_stage_steps(slip, velocity, force, tau, steps, h, per_dx2, leaf, damping
 def numpy_steps(
     tau: np.ndarray, steps: int, h: float, dx: float, leaf: float, beta: float
 ) -> np.ndarray:
-    """Slip of each block between fixed ends by the textbook scheme: symplectic Euler, events looked at once a step."""
+    """Slip of each block between fixed ends by the textbook scheme, with events once a step."""
     (slip, velocity, force), sliding = np.zeros((3, tau.size)), tau >= 1.0
     for _ in range(steps):
         force[1:-1] = np.diff(slip + beta * velocity, 2) / dx**2 - leaf * slip[1:-1] + tau[1:-1]

@@ -1,4 +1,4 @@
-"""What the benchmark compares with does the same work, and its records are read as Snakemake writes them."""
+"""The references of the benchmark do the same work, and its records are read as written."""
 
 import json
 import math
@@ -12,7 +12,8 @@ import slippulse as sp
 from tests.benchmark import __main__ as benchmark
 from tests.benchmark import critical_path, stencils
 
-GAMMA, BETA, STEP = 0.3, 0.2, 0.4
+GAMMA, BETA = 0.3, 0.2
+STEP = 0.4
 # A mode of a chain between fixed ends, at rest there, dx = 1.
 SINE = np.sin(np.pi * 7 * np.arange(50) / 49)
 STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
@@ -21,9 +22,8 @@ STIFFNESS = 4.0 * math.sin(0.5 * np.pi * 7 / 49) ** 2
 def test_the_branch_free_step_is_a_taylor_step_of_order_four():
     derivatives = [1.0, 2.0]
     for _ in range(4):
-        derivatives.append(
-            -(STIFFNESS + GAMMA) * derivatives[-2] - BETA * STIFFNESS * derivatives[-1]
-        )
+        damping = BETA * STIFFNESS * derivatives[-1]
+        derivatives.append(-(STIFFNESS + GAMMA) * derivatives[-2] - damping)
     w = np.zeros((6, SINE.size))
     w[0], w[1] = SINE, 2.0 * SINE
     stencils.taylor_steps(w, np.zeros(SINE.size), 1, STEP, 1.0, GAMMA, BETA)
@@ -33,8 +33,9 @@ def test_the_branch_free_step_is_a_taylor_step_of_order_four():
 
 
 def test_the_two_stage_stencil_is_symplectic_euler():
-    slip, velocity, tau, work = SINE.copy(), 2.0 * SINE, np.zeros(SINE.size), np.zeros(SINE.size)
-    stencils.two_stage_steps(slip, velocity, tau, work, 1, STEP, 1.0, GAMMA, BETA)
+    slip, velocity = SINE.copy(), 2.0 * SINE
+    force, tau = np.zeros((2, SINE.size))
+    stencils.two_stage_steps(slip, velocity, force, tau, 1, STEP, 1.0, GAMMA, BETA)
     after = 2.0 - STEP * (STIFFNESS + GAMMA + 2.0 * BETA * STIFFNESS)
     assert velocity == pytest.approx(after * SINE, abs=tol.STENCIL)
     assert slip == pytest.approx((1.0 + STEP * after) * SINE, abs=tol.STENCIL)
@@ -59,33 +60,26 @@ def test_the_kernel_is_timed_with_everything_included():
 
 @pytest.mark.slow
 def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatch, capsys):
-    """On scenes a hundredth of the size."""
-    small = {
-        "DURATION": 20.0,
-        "DX": 0.05,
-        "REPEATS": 1,
-        "TURNS": 2,
-        "POWERS": (3, 4),
-        "LENGTH": 60.0,
-    }
-    for name, value in (small | {"CRACK": (60.0, 90.0), "PULSE": (20.0, 30.0)}).items():
+    """The scenes have a hundredth of the size."""
+    small = {"DURATION": 20.0, "DX": 0.05, "REPEATS": 1, "TURNS": 2, "POWERS": (3, 4)}
+    small |= {"LENGTH": 60.0, "CRACK": (60.0, 90.0), "PULSE": (20.0, 30.0)}
+    for name, value in small.items():
         monkeypatch.setattr(benchmark, name, value)
     benchmark.main(str(project / "config/config.yaml"), str(tmp_path))
-    found = json.loads((tmp_path / "benchmark.json").read_text(encoding="utf-8"))
-    assert set(found) == {"machine", "kernel", "whole_scene"}
-    assert found["machine"]["cores"] >= 1 and "numba" in found["machine"]["versions"]
-    scene = found["whole_scene"]
+    results = json.loads((tmp_path / "benchmark.json").read_text(encoding="utf-8"))
+    assert set(results) == {"machine", "kernel", "whole_scene"}
+    assert results["machine"]["cores"] >= 1 and "numba" in results["machine"]["versions"]
+    scene = results["whole_scene"]
     for kind in ("numba", "numpy"):
         total = scene["textbook_steps"] * scene["textbook_seconds_a_step"][kind]
         assert scene["times_faster_than_textbook"][kind] == pytest.approx(total / scene["seconds"])
     printed = capsys.readouterr().out
-    assert all(
-        f"\n  {name}: " in printed for name in ("cost_of_twice_the_duration", "numba", "numpy")
-    )
+    for name in ("cost_of_twice_the_duration", "numba", "numpy"):
+        assert f"\n  {name}: " in printed
 
 
 def test_the_critical_path_is_of_the_inputs_that_came_last(tmp_path):
-    # Name: seconds taken, when it ended, what it is made from.
+    # Each job has the seconds that it took, its end, and its inputs.
     run = {
         "a": (4.0, 4.0, []),
         "b": (1.0, 1.0, []),
@@ -95,16 +89,11 @@ def test_the_critical_path_is_of_the_inputs_that_came_last(tmp_path):
     for name, (seconds, ended, inputs) in run.items():
         path = tmp_path / f"records/{name}.json"
         path.parent.mkdir(exist_ok=True)
-        record = {
-            "outputs": {name: ""},
-            "inputs": dict.fromkeys(inputs, ""),
-            "used": {"seconds": seconds},
-        }
+        record = {"outputs": {name: ""}, "inputs": dict.fromkeys(inputs, "")}
+        record["used"] = {"seconds": seconds}
         path.write_text(json.dumps(record), encoding="utf-8")
         os.utime(path, (ended, ended))
     jobs = critical_path.jobs_in(tmp_path)
-    assert [(job.name, job.began) for job in critical_path.critical_path(jobs)] == [
-        ("a", 0.0),
-        ("c", 4.5),
-    ]
+    path = critical_path.critical_path(jobs)
+    assert [(job.name, job.began) for job in path] == [("a", 0.0), ("c", 4.5)]
     assert critical_path.at_once(jobs) == {0: 0.5, 1: 4.0, 2: 2.0}

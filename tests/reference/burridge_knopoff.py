@@ -72,7 +72,7 @@ class Chain:
         return self
 
     def _margins(self, state: np.ndarray) -> np.ndarray:
-        """Distance of each block to its release, or its velocity: above 0 as long as nothing happens."""
+        """Distance of each block to its release, or its velocity: above 0 until an event."""
         slip, velocity = np.split(state, 2)
         return np.where(self.sliding, velocity, 1.0 - self.threshold_force(slip, velocity))
 
@@ -87,7 +87,7 @@ class Chain:
         return None
 
     def _zero(self, path, block: int, before: float, now: float) -> float:
-        """Time at which the margin of a block passes 0, as it does at the very start of a release."""
+        """Time at which the margin of a block passes 0; a release begins there."""
         margin = lambda time: self._margins(path(time))[block]
         return brentq(margin, before, now, xtol=1e-15) if margin(before) > 0.0 else before
 

@@ -1,4 +1,4 @@
-"""Roots of polynomials, releases and sticks within a step, and the list of segments, at their edges."""
+"""Roots of polynomials, releases and sticks within a step, and segments, at their edges."""
 
 import math
 from functools import cache
@@ -22,7 +22,7 @@ def from_python(kernel):
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 @pytest.mark.parametrize("seed", range(5))
 def test_crossing_finds_the_one_root_between_the_ends(seed, sign, lower):
-    """A polynomial with one real root in the interval, and others outside it and in the complex plane."""
+    """A polynomial with one real root in the interval, and others outside it or complex."""
     random = np.random.default_rng(seed)
     h = float(random.uniform(0.01, 2.0))
     inside = float(random.uniform(0.02, 0.98)) * h
@@ -97,7 +97,7 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
         # Stress 0.9 + 3.2 t - 6.4 t^2 passes 1, and comes back below it at 0.4665.
         (0.9, 3.2, 12.8, 0.5, 0.0, min(np.roots([-6.4, 3.2, -0.1]))),
         (0.9, 3.2, 12.8, 0.6, 0.47, math.inf),
-        # Stress of at most 1.00125, between two of the instants at which it is evaluated; and 0.99925.
+        # Stress of at most 1.00125, between two instants at which it is evaluated; and 0.99925.
         (0.9, 0.9, 4.0, 1.0, 0.0, min(np.roots([-2.0, 0.9, -0.1]))),
         (0.898, 0.9, 4.0, 1.0, 0.0, math.inf),
         # Above from the start.

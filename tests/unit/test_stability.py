@@ -32,7 +32,7 @@ def taylor_amplification(order: int, step: float, ratio: float, gamma_dx2: float
 
 
 def euler_amplification(step: float, ratio: float, gamma_dx2: float) -> float:
-    """Largest amplification by symplectic Euler: velocity first, then slip with the new velocity."""
+    """Largest amplification by symplectic Euler: first velocity, then slip with it."""
     stiffness, damping = MODES + gamma_dx2, ratio * MODES
     from_slip, from_velocity = -step * stiffness, 1.0 - step * damping
     return spectral_radius(1.0 + step * from_slip, step * from_velocity, from_slip, from_velocity)
@@ -50,7 +50,7 @@ def beyond_the_bound(scheme: str, factor: float, **values) -> sp.Scene:
     return scene
 
 
-# Scheme, order, stiffness gamma dx^2 of the leaf spring, and a function of step, ratio and stiffness.
+# Scheme, order, stiffness gamma dx^2 of leaf springs, and a function of step, ratio, stiffness.
 AMPLIFICATIONS = [
     *(("localised", order, 0.0, partial(taylor_amplification, order)) for order in ORDERS),
     *(("fixed_step", 4, leaf, euler_amplification) for leaf in (0.0, 0.3, 5.0)),

@@ -27,6 +27,7 @@ CRACKS = [
     (1e-2, -0.1, 0.1, 1.0), (1e-2, -0.3, 1.0, 8.0), (1e-2, -1.0, 0.0, 1.0), (1e-2, -2.0, 0.1, 0.5),
     (3e-3, -0.3, 0.1, 0.5), (3e-3, -1.0, 0.1, 8.0), (3e-3, -1.0, 1.0, 1.0), (1e-3, -2.0, 0.1, 1.0),
 ]  # fmt: skip
+UNDAMPED_CRACK = 2
 # Accuracy, level, damping ratio; no leaf springs.
 FREE_FRONTS = [(1e-2, 0.1, 0.0), (1e-2, 0.3, 1.0), (3e-3, 0.6, 0.1), (1e-3, 0.9, 0.1)]
 
@@ -77,9 +78,9 @@ def test_every_covered_number_is_as_near_to_theory_as_promised_and_the_worst_not
 ):
     cases = [*PULSES, *CRACKS, *FREE_FRONTS]
     made = [*starmap(pulse, PULSES), *starmap(crack, CRACKS), *starmap(free_front, FREE_FRONTS)]
-    numbers = [9 for _ in PULSES]
-    numbers += [3 if ratio > 0.0 else 1 for _, _, ratio, _ in CRACKS]
-    numbers += [2 for _ in FREE_FRONTS]
+    # The transition of an undamped crack is not covered.
+    numbers = [9] * len(PULSES) + [3] * len(CRACKS) + [2] * len(FREE_FRONTS)
+    numbers[len(PULSES) + UNDAMPED_CRACK] = 1
     sweep = run_sweep([scene for scene, _ in made], record=("fronts", "fields"), threads=2)
     worst, runs = 0.0, measured_table(sweep, shipped["measure"]).to_dict("records")
     for case, (_, exact), number, run in zip(cases, made, numbers, runs, strict=True):

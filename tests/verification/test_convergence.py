@@ -10,8 +10,8 @@ import tolerances as tol
 
 import slippulse as sp
 
-# Without damping the lattice rings at its own scale, and under a stress boundary an event may appear
-# or vanish with the step. The order is measured where the events are the same at every step.
+# Without damping the lattice rings at its own scale, and under a stress boundary an event may
+# appear or vanish with the step. The order is measured where all steps have the same events.
 BASES = {
     "displacement, undamped": ("displacement", 0.65, 0.0, sp.Prestress(0.5, 0.5)),
     "displacement, damped": ("displacement", 0.65, 0.02, sp.Prestress(0.5, 0.5)),

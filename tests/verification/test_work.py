@@ -76,7 +76,7 @@ def test_a_block_takes_few_bytes_and_an_order_eight_more():
 
 @pytest.mark.parametrize("right", [0.5, 0.4], ids=["half lattice", "whole lattice"])
 def test_rows_begin_at_different_places_of_their_pages(right):
-    """In a page of 4096 bytes the beginnings of any two are three lines of the cache apart, or more."""
+    """In a page of 4096 bytes, any two beginnings are at least three lines of the cache apart."""
     scene = Scene("displacement", Prestress(0.5, right), 1.0, 0.1, gamma=0.5, order=8)
     lattice = Lattice(scene, None, 0.0)
     for _ in range(6):
