@@ -122,7 +122,7 @@ def shared(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def study(project, shipped, shared):
-    """A function that runs a study with the shipped settings and returns the table that it wrote."""
+    """A function that runs a study with the shipped settings and returns its written table."""
 
     def run(name: str, data: dict | None = None, tables: dict | None = None):
         path = shared / f"studies/{name}.csv"

@@ -1,11 +1,12 @@
 """slippulse: the onset of slip pulses in frictional rupture, replicated.
 
     import slippulse as sp
-    scene = sp.Scene(boundary="displacement", gamma=0.65, dx=0.01, duration=15.0, prestress=sp.Prestress(0.6, 0.6))
+    prestress = sp.Prestress(left=0.6, right=0.6)
+    scene = sp.Scene("displacement", prestress, duration=15.0, dx=0.01, gamma=0.65)
     run = sp.simulate(scene)                                # xarray.Dataset over x
     sp.theory.front_speed(0.6, damping_ratio=0.1)           # exact
 
-A module is loaded when a name of it is first used, so that importing this is light.
+A module is loaded at the first use of one of its names, so that this import is fast.
 """
 
 from importlib import import_module

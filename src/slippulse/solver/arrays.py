@@ -170,15 +170,10 @@ def make_segments(size: int) -> Segments:
 
 def make_forecast(size: int, order: int) -> Forecast:
     """No events, on a lattice of ``size`` blocks."""
-    coefficients, slopes = np.zeros((2, order + 2))
-    return Forecast(
-        release=np.full(size, np.inf),
-        stick_block=np.zeros(size, dtype=np.int64),
-        stick_time=np.zeros(size),
-        sticks=record(COUNT),
-        coefficients=coefficients,
-        slopes=slopes,
-    )
+    release, stick_time = np.full(size, np.inf), np.zeros(size)
+    stick_block = np.zeros(size, dtype=np.int64)
+    polynomials = np.zeros((2, order + 2))
+    return Forecast(release, stick_block, stick_time, record(COUNT), *polynomials)
 
 
 def make_scratch(size: int, order: int) -> Scratch:

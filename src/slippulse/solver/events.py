@@ -11,9 +11,10 @@ import numpy as np
 
 from .arrays import CENTRE, COLUMNS
 from .foresight import RECIPROCAL, find_sticks, foresee_releases, forget_sticks
+from .friction import strengthen
 from .jit import inner, once
 from .segments import sliding_beside
-from .stencils import blocks, derivative, strengthen
+from .stencils import blocks, derivative
 
 
 @inner()
@@ -128,9 +129,9 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
 
     ``segments`` are those after the event.
 
-    Returns: all velocities are finite; the first block that changed and the one after the last; the
-    velocity of the block before the event; the lowest stress of a stuck block; and the sum over
-    neighbours of dv times the change of da.
+    Returns: all velocities are finite; first block that changed and the one after the last; velocity
+    of the block before the event; lowest stress of a stuck block; sum over neighbours of dv times
+    the change of da.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
     block, now, stick = event

@@ -48,13 +48,6 @@ def next_derivative(w, k, first, last, per_dx2, leaf, damping):
         w[k, i] = derivative(w, k, i, per_dx2, leaf, damping)
 
 
-@inner()
-def strengthen(w, k, first, last, alpha):
-    """Subtract from time derivative k of slip the growth of friction with slip rate."""
-    for i in blocks(first, last):
-        w[k, i] -= alpha * w[k - 1, i]
-
-
 @inner(inline=True)
 def nest(inner, w, k, weight, lower_weight, first, last):
     """Two levels of a Taylor polynomial, in place: w[k-1] + lower_weight (w[k] + weight inner)."""
@@ -121,14 +114,4 @@ def stretching(w, first, last):
         dv = w[1, i + ONE] - w[1, i]
         square += dv * dv
         product += dv * (w[2, i + ONE] - w[2, i])
-    return square, product
-
-
-@inner(reorder=True)
-def sums_of_motion(w, first, last):
-    """Sums of v^2 and v a over blocks: dissipation by rate strengthening, and half its slope."""
-    square, product = 0.0, 0.0
-    for i in blocks(first, last):
-        square += w[1, i] * w[1, i]
-        product += w[1, i] * w[2, i]
     return square, product

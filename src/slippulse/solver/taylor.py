@@ -15,6 +15,7 @@ import numpy as np
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
 from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
+from .friction import dissipation_by_rate, strengthen
 from .jit import entry, inner, once
 from .segments import holds, release_block, stick_block
 from .stencils import (
@@ -22,9 +23,7 @@ from .stencils import (
     advance_strain,
     first_acceleration,
     next_derivative,
-    strengthen,
     stretching,
-    sums_of_motion,
     velocity_after,
 )
 
@@ -76,20 +75,6 @@ def take_samples(recorder, motion, tally, start, end, order):
             recorder.slip[n, p] = w[0, i] + motion.offset[i] + u
             recorder.velocity[n, p] = w[1, i] + v
         tally.samples_taken += 1
-
-
-@inner()
-def dissipation_by_rate(medium, w, segments):
-    """Dissipation D = alpha dx sum of v_i^2 over all segments, and dD/dt."""
-    square, product = 0.0, 0.0
-    for r in range(segments.count.n):
-        s, p = sums_of_motion(w, segments.starts[r], segments.ends[r])
-        # The block at x = 0 has no mirror image.
-        once = 0.5 if medium.mirror and segments.starts[r] == 1 else 0.0
-        square += s - once * w[1, 1] * w[1, 1]
-        product += p - once * w[1, 1] * w[2, 1]
-    scale = (2.0 if medium.mirror else 1.0) * medium.alpha * medium.dx
-    return scale * square, 2.0 * scale * product
 
 
 @once
