@@ -231,10 +231,14 @@ def _number_tuples(name: str, rows: Any, names: tuple[str, ...]) -> tuple[tuple[
         raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     tuples = []
     for row in rows:
-        complete = hasattr(row, "__len__") and len(row) == len(names)
-        if not complete or not all(isinstance(value, Real) for value in row):
+        if not _are_numbers(row, len(names)):
             raise ValueError(f"{key}: {short_repr(row)}; allowed: {allowed}, numbers")
         for part, value in zip(names, row, strict=True):
             check_number(f"{key} {part}", value)
-        tuples.append(tuple(float(value) for value in row))
+        tuples.append(tuple(map(float, row)))
     return tuple(tuples)
+
+
+def _are_numbers(row: Any, size: int) -> bool:
+    complete = hasattr(row, "__len__") and len(row) == size
+    return complete and all(isinstance(value, Real) for value in row)

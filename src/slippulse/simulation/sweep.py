@@ -47,7 +47,7 @@ def solve_sweep(
     alone = threads == 1 or any(scene.scheme == "continuum" for scene in scenes)
     with ThreadPoolExecutor(max_workers=threads) as pool:
         try:
-            finished = _one_by_one(solve_one, order, None if alone else pool)
+            finished = _one_by_one(solve_one, order, pool, alone)
             for count, _ in enumerate(finished, start=1):
                 if progress is not None:
                     progress(count, len(scenes))
@@ -59,10 +59,10 @@ def solve_sweep(
 
 
 def _one_by_one(
-    solve: Callable[[int], None], order: Sequence[int], pool: ThreadPoolExecutor | None
+    solve: Callable[[int], None], order: Sequence[int], pool: ThreadPoolExecutor, alone: bool
 ) -> Iterator[None]:
-    """Solve each, in threads where a pool is given, and yield after each that is finished."""
-    if pool is None:
+    """Solve each, alone in this thread or in those of the pool, and yield after each."""
+    if alone:
         yield from map(solve, order)
     else:
         for future in as_completed([pool.submit(solve, i) for i in order]):

@@ -129,9 +129,9 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
 
     ``segments`` are those after the event.
 
-    Returns: all velocities are finite; first block that changed and the one after the last; velocity
-    of the block before the event; lowest stress of a stuck block; sum over neighbours of dv times
-    the change of da.
+    Returns: all velocities are finite; first block that changed and the one after the last;
+    velocity of the block before the event; lowest stress of a stuck block; sum over neighbours of
+    dv times the change of da.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
     block, now, stick = event

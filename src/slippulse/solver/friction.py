@@ -1,4 +1,4 @@
-"""Friction that depends on slip rate: its force -alpha v in the Taylor step, and its dissipation."""
+"""Friction that depends on slip rate: -alpha v in the Taylor step, and its dissipation."""
 
 from .jit import inner
 from .stencils import blocks

@@ -206,7 +206,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
 
 @once
 def take_over(medium, motion, scratch, order, h):
-    """Advance slip, velocity and strain of blocks that moved. Returns the largest of some speeds."""
+    """Advance slip, velocity and strain of all that moved. Returns the largest of some speeds."""
     w, offset = motion.w, motion.offset
     moved, changed = scratch.moved, scratch.changed
     fastest = 0.0
