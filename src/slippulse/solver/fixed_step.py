@@ -141,9 +141,8 @@ class FixedStepLattice(Lattice):
     localised = False
 
     def _advance(self, limits: Limits) -> int:
-        return advance_fixed(
-            self.medium, self.motion, self.sliding, self.history, self.recorder, limits
-        )
+        state = (self.medium, self.motion, self.sliding, self.history, self.recorder)
+        return advance_fixed(*state, limits)
 
 
 # The lattice of each scheme.

@@ -137,9 +137,8 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h):
             block = segments.ends[r] if side else segments.starts[r] - 1
             if not first <= block < last or (medium.mirror and block == 0):
                 continue
-            forecast.release[block], stress = foresee_release(
-                medium, motion, forecast, block, now, h, top
-            )
+            release, stress = foresee_release(medium, motion, forecast, block, now, h, top)
+            forecast.release[block] = release
             lowest = min(lowest, stress)
     return lowest
 

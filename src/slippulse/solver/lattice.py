@@ -27,14 +27,6 @@ def _row_length(size: int) -> int:
     return size + (BEYOND_PAGES - size) % PAGE
 
 
-def _make_recorder(samples: Samples | None) -> arrays.Recorder:
-    """A recorder of these samples, whose blocks are yet to be found."""
-    blocks = np.zeros(0, dtype=np.int64)
-    times = samples.times if samples else np.zeros(0)
-    slip, velocity = np.zeros((2, times.size, samples.positions.size if samples else 0))
-    return arrays.Recorder(times, blocks, slip, velocity)
-
-
 class Lattice:
     """The state of a scene, in arrays with a ghost block at each end, by the localised scheme.
 
@@ -49,9 +41,8 @@ class Lattice:
         self.call_steps = CALL_STEPS
         self.mirror = scene.symmetric
         leaf = scene.gamma if scene.boundary == "displacement" else 0.0
-        self.medium = arrays.make_medium(
-            scene.dx, leaf, beta, self.mirror, scene.release == "total", scene.rate_strengthening
-        )
+        total, alpha = scene.release == "total", scene.rate_strengthening
+        self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, alpha)
         # Where friction weakens with slip rate, velocity can grow by this factor more.
         weakening = max(-scene.rate_strengthening, 0.0) * scene.duration
         self.growth = float(np.exp(min(weakening, 600.0)))
@@ -70,7 +61,9 @@ class Lattice:
         self.segments = arrays.make_segments(0)
         self.sliding = np.zeros(0, dtype=bool)
         self.history = arrays.History(np.zeros(0), np.zeros(0), arrays.record(arrays.TALLY))
-        self.recorder = _make_recorder(samples)
+        given = samples or Samples(np.zeros(0), np.zeros(0))
+        recorded = np.zeros((2, given.times.size, given.positions.size))
+        self.recorder = arrays.Recorder(given.times, np.zeros(0, dtype=np.int64), *recorded)
         self._extend(0, size)
         self.sliding[1:-1] = self.motion.tau[1:-1] >= 1.0
         self.history.release_time[self.sliding] = 0.0

@@ -116,19 +116,18 @@ def viscous_loss(h, rate, change, kinks):
 def derivatives(medium, motion, segments, alpha, top):
     """Fill w[2..top] with the time derivatives of slip on all segments."""
     w, mirror = motion.w, medium.mirror
+    leaf, damping = medium.leaf, medium.damping
     for r in range(segments.count.n):
         a, b = segments.starts[r], segments.ends[r]
         if mirror and a == 1:
             w[1, 0] = w[1, 2]
-        first_acceleration(
-            w, motion.strain, motion.tau, a, b, medium.per_dx, medium.leaf, medium.damping
-        )
+        first_acceleration(w, motion.strain, motion.tau, a, b, medium.per_dx, leaf, damping)
         if alpha != 0.0:
             strengthen(w, 2, a, b, alpha)
         for k in range(3, top + 1):
             if mirror and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
-            next_derivative(w, k, a, b, medium.per_dx2, medium.leaf, medium.damping)
+            next_derivative(w, k, a, b, medium.per_dx2, leaf, damping)
             if alpha != 0.0:
                 strengthen(w, k, a, b, alpha)
     if mirror:
