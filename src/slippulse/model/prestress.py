@@ -47,7 +47,7 @@ class Prestress:
 
     Examples
     --------
-    >>> barrier = Prestress(left=0.6, right=0.6, bumps=((8.0, -0.3, 0.5),))
+    >>> barrier = sp.Prestress(left=0.6, right=0.6, bumps=((8.0, -0.3, 0.5),))
     >>> float(barrier(0.0))
     1.0
     """

@@ -28,7 +28,7 @@ class Samples:
 
     Examples
     --------
-    >>> samples = Samples(times=np.linspace(0.0, 10.0, 101), positions=np.array([0.0, 5.0]))
+    >>> samples = sp.Samples(times=np.linspace(0.0, 10.0, 101), positions=[0.0, 5.0])
     """
 
     times: np.ndarray

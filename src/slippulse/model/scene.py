@@ -85,7 +85,8 @@ class Scene:
 
     Examples
     --------
-    >>> scene = Scene("displacement", Prestress(0.6, 0.6), duration=15.0, dx=0.01, gamma=0.65)
+    >>> profile = sp.Prestress(0.6, 0.6)
+    >>> scene = sp.Scene("displacement", profile, duration=15.0, dx=0.01, gamma=0.65)
     """
 
     boundary: str

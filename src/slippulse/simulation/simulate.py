@@ -58,7 +58,7 @@ def simulate(
 
     Examples
     --------
-    >>> slip = simulate(Scene("stress", Prestress(0.6, 0.6), duration=5.0, dx=0.05)).slip
+    >>> slip = sp.simulate(sp.Scene("stress", sp.Prestress(0.6, 0.6), 5.0, dx=0.05)).slip
     """
     _require(isinstance(scene, Scene), "scene", scene, "a Scene", TypeError)
     _require(isinstance(samples, Samples | None), "samples", samples, "Samples, or None", TypeError)
@@ -119,7 +119,8 @@ def run_sweep(
 
     Examples
     --------
-    >>> sweep = run_sweep([Scene("stress", Prestress(0.6, 0.6), 5.0, dx) for dx in (0.1, 0.05)])
+    >>> profile = sp.Prestress(0.6, 0.6)
+    >>> sweep = sp.run_sweep([sp.Scene("stress", profile, 5.0, dx) for dx in (0.1, 0.05)])
     """
     _check_scenes(scenes)
     samples = [None] * len(scenes) if samples is None else samples
