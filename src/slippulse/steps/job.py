@@ -62,10 +62,7 @@ def progress_of(name: str, stream: TextIO) -> Callable[[float, int], None]:
 
 @contextmanager
 def logged(path: str | Path) -> Iterator[TextIO]:
-    """Send what a job writes to its log, and a failure as one line to the terminal.
-
-    Yields the stream for its progress.
-    """
+    """Log what a job writes; show a failure in one line. Yields the stream for its progress."""
     # Snakemake prints the log: the traceback has a file of its own.
     terminal, details = sys.stderr, Path(path).with_suffix(".traceback")
     try:
