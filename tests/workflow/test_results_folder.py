@@ -101,36 +101,24 @@ NO_RECORD, UNREADABLE = "no record", "its record cannot be read"
 RULE, SOURCES = "made by another rule", "made by other sources"
 CONFIGURATION, UNKNOWN = "made by another configuration", "not known; no rule makes it"
 OLDER = "older than {}, which it is made from"
-# One of each kind of file, with its change.
-FILES = {
-    "kernels/localised.txt": "old",
-    "data/barrier.nc": "edited",
-    "data/mine/1-of-2.nc": "removed",
-    "data/mine.nc": "emptied",
-    "measurements/arrest.csv": "in the future",
-    "measurements/mine/2-of-2.csv": "old",
-    "predictions/arrest.csv": "with other line ends",
-    "uncertainties/one.csv": "removed",
-    "uncertainties/coarser/one.csv": "edited",
-    "studies/extremes.csv": "grown",
-    f"{FIGURE}.png": "edited",
-    f"{FIGURE}.csv": "removed",
-    "figures/fig02_phase_diagram.pdf": "a dead link",
-    "figures/sweep_mine.csv": "old",
-    "scenes/one.html": "in the future",
-    "scenes/barrier.pdf": "a link to a device",
-    "claims.json": "edited",
-    "findings.json": "removed",
-    "claims.html": "old",
-    "explorer.html": "removed",
-    "manuscript/replication.html": "cut",
-    "manuscript/replication.pdf": "removed",
-    "manuscript/verdicts.yaml": "emptied",
-    "provenance.json": "with zeros",
-    "checksums.txt": "edited",
-    "codecheck.yml": "removed",
-    "index.html": "removed",
-}
+# Files of each kind, by how they are changed.
+CHANGED_FILES = f"""
+removed: data/mine/1-of-2.nc uncertainties/one.csv {FIGURE}.csv findings.json explorer.html
+removed: manuscript/replication.pdf codecheck.yml index.html
+a dead link: figures/fig02_phase_diagram.pdf
+a link to a device: scenes/barrier.pdf
+edited: data/barrier.nc uncertainties/coarser/one.csv {FIGURE}.png claims.json checksums.txt
+old: kernels/localised.txt measurements/mine/2-of-2.csv figures/sweep_mine.csv claims.html
+in the future: measurements/arrest.csv scenes/one.html
+with other line ends: predictions/arrest.csv
+emptied: data/mine.nc manuscript/verdicts.yaml
+grown: studies/extremes.csv
+cut: manuscript/replication.html
+with zeros: provenance.json
+"""
+FILES = {}
+for line in CHANGED_FILES.strip().splitlines():
+    FILES |= dict.fromkeys(line.partition(": ")[2].split(), line.partition(": ")[0])
 # Commands, and what verify then says of some results. All commands of a table change one folder,
 # where each change is named and repaired by itself.
 REASONS = dict.fromkeys(HARMS, CHANGED) | dict.fromkeys(GONE, MISSING)
