@@ -4,6 +4,7 @@
     prestress = sp.Prestress(left=0.6, right=0.6)
     scene = sp.Scene("displacement", prestress, duration=15.0, dx=0.01, gamma=0.65)
     run = sp.simulate(scene)                                # xarray.Dataset over x
+    sp.measure(run)["transition_time"]                      # T_trans
     sp.theory.front_speed(0.6, damping_ratio=0.1)           # exact
 
 A module is loaded at the first use of one of its names, so that this import is fast.
@@ -18,6 +19,7 @@ _HOMES = {
     "Scene": "model.scene",
     "UnresolvedRun": "simulation.simulate",
     "UnstableRun": "simulation.simulate",
+    "measure": "predict.one_run",
     "plot": "figures.run",
     "point": "data.points",
     "run_sweep": "simulation.simulate",

@@ -21,7 +21,7 @@ from slippulse.configuration.read import read_config, read_overlay
 from slippulse.data.files import write_text
 from slippulse.data.provenance import machine_class
 from slippulse.data.versions import versions
-from slippulse.measure.fronts import front_speed
+from slippulse.measurement.fronts import front_speed
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate

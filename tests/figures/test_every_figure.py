@@ -16,7 +16,7 @@ from PIL import Image
 
 from slippulse.figures import fig02_phase_diagram as phases
 from slippulse.figures.style import PAGE, save_figure
-from slippulse.measure.regime import REGIMES
+from slippulse.measurement.regime import REGIMES
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
 NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from slippulse.measure.regime import REGIMES
+from slippulse.measurement.regime import REGIMES
 from slippulse.model.prestress import Prestress
 from slippulse.predict.final_regime import UNDECIDED, final_regime, growth_beyond
 from slippulse.theory.rupture import Rupture

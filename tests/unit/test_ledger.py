@@ -16,7 +16,7 @@ from slippulse.claims.kinds import Approximate, Existence, Qualitative
 from slippulse.claims.paper import SIMULATIONS, all_claims, written
 from slippulse.claims.reading import read_entries, read_text
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
-from slippulse.measure.uncertainty import grid_tables
+from slippulse.measurement.uncertainty import grid_tables
 from slippulse.model.measured_columns import RECORD_FOR
 
 YES, CAVEAT, DEPENDS, NO, OPEN, NONE = VERDICTS

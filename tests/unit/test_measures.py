@@ -1,19 +1,22 @@
 """What is measured of made-up and simulated runs: regime, shape, steadiness, whether a front was held up."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
-from slippulse.measure.fronts import arrival
-from slippulse.measure.pulses import LeadingPulse, leading_pulse
-from slippulse.measure.regime import REGIMES, classify
-from slippulse.measure.table import far_field, half_width, lattice_noise, sliding_at_once
-from slippulse.measure.transition import STALL, transition_stress
+import slippulse as sp
+from slippulse.measurement.fronts import arrival
+from slippulse.measurement.pulses import LeadingPulse, leading_pulse
+from slippulse.measurement.regime import REGIMES, classify
+from slippulse.measurement.table import far_field, half_width, lattice_noise, sliding_at_once
+from slippulse.measurement.transition import STALL, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
-from slippulse.predict.comparison import pulse_state
+from slippulse.predict.comparison import measured_table, pulse_state
+from slippulse.predict.one_run import SETTINGS
 from slippulse.simulation.simulate import Samples, simulate
-from slippulse.theory import ArrestingCrack, front_speed
+from slippulse.theory import ArrestingCrack, Rupture, front_speed, steady_pulse
 
 STILL, TOLERANCE, DURATION = 0.05, 0.02, 30.0
 ARRESTED, CRACKS, CRACK, PULSES, GROWING, STEADY, DECAYING = REGIMES
@@ -238,3 +241,35 @@ def test_what_a_pulse_is_called(level, duration, values, expected):
     assert pulse_state(run, leading_pulse(run, 0.3)) == expected
     # The formula without leaf springs has a faster front under the elastic rule.
     assert front_speed(0.3, 10.0, "elastic") > 1.1
+
+
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+def test_the_numbers_of_one_run_by_the_shipped_settings(shipped, scheme):
+    """T_trans and L_trans are those of the exact solution, on a lattice to its accuracy."""
+    assert shipped["measure"] == SETTINGS
+    prestress = Prestress(0.5, 0.5)
+    scene = Scene("displacement", prestress, 8.0, 0.02, 0.65, 2e-3, scheme=scheme, max_step=0.5)
+    numbers = sp.measure(simulate(scene))
+    exact = Rupture(prestress, 0.65, 0.1, duration=8.0)
+    assert numbers["transition_time"] == pytest.approx(exact.transition_time, rel=0.02)
+    assert numbers["transition_length"] == pytest.approx(exact.transition_length, rel=0.02)
+    speed = front_speed(0.5, damping_ratio=0.1)
+    assert numbers["front_speed_right"] == pytest.approx(speed, rel=0.01)
+    steady = steady_pulse(0.5, 0.65, damping_ratio=0.1)
+    assert numbers["pulse_width"] == pytest.approx(steady.width, rel=0.1)
+    assert numbers["run_flags"] == "" and numbers["pulse_state"] in ("steady", "unsteady")
+
+
+def test_one_run_of_a_sweep_has_the_numbers_of_its_row(shipped):
+    scenes = [Scene("stress", Prestress(-1.0, 0.0), time, 0.05, beta=5e-3) for time in (2.0, 9.0)]
+    sweep = sp.run_sweep(scenes, record=("fronts", "fields"))
+    table = measured_table(sweep, shipped["measure"])
+    rows = pd.DataFrame([sp.measure(sp.point(sweep, index)) for index in (0, 1)])
+    pd.testing.assert_frame_equal(rows[table.columns], table)
+    assert list(table["transition_time"].isna()) == [True, False]
+    uneven = Scene("displacement", Prestress(0.5, 0.3), 2.0, 0.1, 0.65)
+    assert np.isnan(sp.measure(simulate(uneven))["transition_time"])
+    with pytest.raises(TypeError, match="run: a sweep of 2; allowed: one run"):
+        sp.measure(sweep)
+    with pytest.raises(TypeError, match="allowed: a Dataset that simulate returned"):
+        sp.measure(scenes[0])

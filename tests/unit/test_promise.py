@@ -8,9 +8,9 @@ import pytest
 
 import slippulse as sp
 from slippulse.figures.shared.numbers import scene_numbers
-from slippulse.measure.promise import COVERED, covers, judged, summary
-from slippulse.measure.table import PARAMETERS
-from slippulse.measure.uncertainty import grid_study, grid_tables
+from slippulse.measurement.promise import COVERED, covers, judged, summary
+from slippulse.measurement.table import PARAMETERS
+from slippulse.measurement.uncertainty import grid_study, grid_tables
 from slippulse.predict.comparison import measured_table
 from slippulse.report.scene_page import scene_page
 
@@ -122,7 +122,7 @@ def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study
     # A spacing of its own promises nothing.
     own = judged(study, tables[0], math.nan, SHARE)
     assert set(own["kept"]) == {""} and own["promised"].isna().all()
-    assert summary(own, math.nan) == "its spacing is its own and promises nothing"
+    assert summary(own, math.nan) == "its spacing is user-defined and promises nothing"
 
 
 def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):

@@ -7,7 +7,7 @@ import tolerances as tol
 
 import slippulse as sp
 from slippulse import theory
-from slippulse.measure.promise import covers
+from slippulse.measurement.promise import covers
 from slippulse.predict.comparison import measured_table
 from slippulse.simulation.simulate import run_sweep
 

@@ -8,8 +8,8 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.measure.fronts import arrival, front_speed, position_at
-from slippulse.measure.pulses import leading_pulse
+from slippulse.measurement.fronts import arrival, front_speed, position_at
+from slippulse.measurement.pulses import leading_pulse
 
 GAMMA = 2.0 / 3.0
 

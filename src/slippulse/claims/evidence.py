@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..measure.fronts import straight_line
-from ..measure.regime import UNDECIDED
-from ..measure.uncertainty import grid_study
+from ..measurement.fronts import straight_line
+from ..measurement.regime import UNDECIDED
+from ..measurement.uncertainty import grid_study
 from .kinds import NAN, Approximate, Exact
 from .rules import Known
 

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ..data.numerals import number
-from ..measure.regime import REGIMES
+from ..measurement.regime import REGIMES
 from .evidence import Evidence, agreeing
 from .kinds import Approximate, Arithmetic, Exact, Existence, Qualitative
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 import pandas as pd
 
-from ..measure.fronts import straight_line
+from ..measurement.fronts import straight_line
 from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreeing, ratios, studied

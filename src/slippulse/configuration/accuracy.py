@@ -4,7 +4,7 @@ The error of each number is a constant times dx over a length of the scene, in t
 at fixed beta/dx. Each constant stands below once. Where no derivation is given, a constant is an
 upper bound over runs at two or three spacings: tau_0 = 0.1 to 0.9, beta/dx = 0 to 1 and
 gamma W^2 = 0.001 to 64 under a displacement boundary; levels -0.1 to -10 under a stress boundary.
-`slippulse.measure.promise` says which numbers are promised.
+`slippulse.measurement.promise` says which numbers are promised.
 """
 
 import math
@@ -116,7 +116,7 @@ def settings_for(
     Notes
     -----
     Source: `slippulse.configuration.accuracy`, where each constant is derived or measured; the
-    paper promises no error. `slippulse.measure.promise` lists the numbers that are covered.
+    paper promises no error. `slippulse.measurement.promise` lists the numbers that are covered.
 
     Examples
     --------

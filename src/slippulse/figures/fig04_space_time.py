@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..data.points import point
-from ..measure.fronts import position_at
+from ..measurement.fronts import position_at
 from .shared.space_time import STUCK, description, draw_map, draw_profile, run_rows
 from .style import BLACK, COLUMN, HALO, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter
 

@@ -6,7 +6,7 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
 from ..data.points import point
-from ..measure.fronts import path
+from ..measurement.fronts import path
 from .style import (
     GREY,
     ORANGE,

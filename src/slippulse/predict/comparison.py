@@ -1,13 +1,16 @@
 """Every number of every run of a sweep, one row a run, with what takes theory to say of its pulse and transition."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from ..data.points import AnyRun, runs_in
-from ..measure.fronts import path
-from ..measure.pulses import LeadingPulse, comoving, slip_variation
-from ..measure.table import measure_run
+from ..measurement.fronts import path
+from ..measurement.pulses import LeadingPulse, comoving, slip_variation
+from ..measurement.table import measure_run
 from ..model.prestress import prestress_from
 from ..theory.pulse import (
     paper_pulse,
@@ -24,24 +27,27 @@ CHANGE, WIDTH_BLOCKS = 0.05, 3.0
 THICKEST_LAYER = 0.125
 
 
-def measured_table(sweep: xr.Dataset, settings: dict) -> pd.DataFrame:
-    """One row a run of a sweep: `measure_run` by its settings, the state of its leading pulse, and the paper's T_trans
-    and L_trans (sections III B and III C) where the transition is measured.
+def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
+    """`measured_row` of every run of a sweep."""
+    return pd.DataFrame([measured_row(run, settings) for run in runs_in(sweep)])
+
+
+def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
+    """Numbers of `measure_run`, the state of its leading pulse, and the paper's T_trans and L_trans.
+
+    The latter (sections III B and III C) are there where the transition is measured.
     """
-    rows = []
-    for run in runs_in(sweep):
-        row, pulse = measure_run(run, settings)
-        if pulse is not None:
-            row["pulse_state"] = pulse_state(run, pulse)
-            row["pulse_shape_deviation"] = shape_deviation(run, pulse)
-        if "transition_time" in row:
-            if run.attrs["boundary"] == "displacement":
-                paper = paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
-            else:
-                paper = paper_transition_stress(prestress_from(run.attrs))
-            row["paper_transition_time"], row["paper_transition_length"] = paper
-        rows.append(row)
-    return pd.DataFrame(rows)
+    row, pulse = measure_run(run, settings)
+    if pulse is not None:
+        row["pulse_state"] = pulse_state(run, pulse)
+        row["pulse_shape_deviation"] = shape_deviation(run, pulse)
+    if "transition_time" in row:
+        if run.attrs["boundary"] == "displacement":
+            paper = paper_transition_displacement(run.attrs["left"], run.attrs["gamma"])
+        else:
+            paper = paper_transition_stress(prestress_from(run.attrs))
+        row["paper_transition_time"], row["paper_transition_length"] = paper
+    return row
 
 
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..measure.regime import UNDECIDED
+from ..measurement.regime import UNDECIDED
 from ..model.checks import check_number
 from ..model.scene import Scene
 from ..theory.front_speeds import front_speed

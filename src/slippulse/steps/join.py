@@ -2,8 +2,8 @@
 
 from ..data.join import join_datasets, join_grid_studies, join_tables
 from ..data.store import save_dataset
-from ..measure.table import PARAMETERS
-from ..measure.uncertainty import quantities
+from ..measurement.table import PARAMETERS
+from ..measurement.uncertainty import quantities
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:

@@ -8,9 +8,9 @@ import pandas as pd
 
 from ..configuration.expand import expand, promise_of
 from ..data.tables import load_table, save_table
-from ..measure.promise import judged, summary
-from ..measure.table import PARAMETERS
-from ..measure.uncertainty import grid_tables
+from ..measurement.promise import judged, summary
+from ..measurement.table import PARAMETERS
+from ..measurement.uncertainty import grid_tables
 from ..predict.comparison import measured_table
 from ..simulation.sweep import solve_sweep
 from ..solver.solution import solve_on_lattice

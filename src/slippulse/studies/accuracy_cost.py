@@ -13,8 +13,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measure.fronts import arrival, front_speed, path
-from ..measure.pulses import leading_pulse
+from ..measurement.fronts import arrival, front_speed, path
+from ..measurement.pulses import leading_pulse
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measure.fronts import path
-from ..measure.table import measure_run
+from ..measurement.fronts import path
+from ..measurement.table import measure_run
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step

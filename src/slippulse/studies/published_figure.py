@@ -14,8 +14,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measure.fronts import front_speed, position_at
-from ..measure.transition import between_fronts
+from ..measurement.fronts import front_speed, position_at
+from ..measurement.transition import between_fronts
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import RELEASES, Scene

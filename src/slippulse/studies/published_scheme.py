@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..measure.fronts import straight_line
+from ..measurement.fronts import straight_line
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...data.points import point
-from ...measure.pulses import comoving, leading_pulse
+from ...measurement.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
 from ..style import BLACK, PAGE, Look, colour_scale, entry, legend_below, new_panels
 from .scaling import chosen

@@ -1,4 +1,4 @@
-"""Numerical uncertainty from a grid study: three spacings, the observed order, the extrapolated value."""
+"""Numerical uncertainty by a grid study: three spacings, observed order, extrapolated value."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ ORDERS = (0.5, 6.0)
 
 
 class GridStudy(NamedTuple):
-    """What three spacings say about one number."""
+    """One number at three spacings."""
 
     value: float  # at the finest spacing
     extrapolated: float  # at spacing 0, by the observed order; the finest value where there is none
@@ -23,7 +23,9 @@ class GridStudy(NamedTuple):
 
 
 def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
-    """Observed order, extrapolation and uncertainty from values at spacings dx, c_1 dx and c_2 dx, 1 < c_1 < c_2.
+    """Observed order, extrapolation and uncertainty from three spacings.
+
+    They are dx, c_1 dx and c_2 dx, with factors 1 < c_1 < c_2.
 
     Source: f(h) = f_0 + C h^p through the three values (Richardson).
     """
@@ -46,7 +48,7 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
 
 
 def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
-    """Columns of a measured table, as read from its file, of which a grid study is made: none of the ``keys``."""
+    """Columns of a measured table, as read from its file, that a grid study has: no ``keys``."""
     return [
         name
         for name in table.columns
@@ -59,7 +61,7 @@ def grid_tables(
 ) -> pd.DataFrame:
     """A grid study of every measured number of a sweep, as a long table.
 
-    tables : measured tables at the finest, the middle and the coarsest spacing, rows in the same order
+    tables : measured, at the finest, the middle and the coarsest spacing, rows in the same order
     factors : of `grid_study`
     keys : columns that name a point rather than measure it
     """
@@ -67,7 +69,7 @@ def grid_tables(
     names = quantities(finest, keys)
     # One row a point and quantity, one column a spacing.
     values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
-    numbers = pd.DataFrame([grid_study(of_three, factors) for of_three in values])
+    numbers = pd.DataFrame([grid_study(three, factors) for three in values])
     points = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
     points = points.loc[points.index.repeat(len(names))].reset_index(drop=True)
     return points.assign(quantity=names * len(finest)).join(numbers)

@@ -1,4 +1,4 @@
-"""Where the fronts and the trailing edges are, and how fast."""
+"""Positions and speeds of fronts and trailing edges."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from ..data.points import AnyRun
 def path(
     run: AnyRun, side: str = "right", edge: str = "release_time"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times and distances from x = 0 of a front ("release_time") or trailing edge ("stick_time") on one side.
+    """Times and distances from x = 0 of a front ("release_time") or a trailing edge ("stick_time").
 
-    In order of distance, as x increases; blocks without the event are left out.
+    They are in order of distance, on one side; blocks without the event are left out.
     """
     x, time = np.asarray(run["x"]), np.asarray(run[edge])
     if side == "left":
@@ -21,22 +21,22 @@ def path(
 
 
 def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
-    """Distance from x = 0 that a front or trailing edge has reached at given times; NaN before its first event.
+    """Distance from x = 0 of a front or trailing edge at given times; NaN before its first event.
 
-    Linear between events; a block that was released out of turn does not take the front back.
+    It is linear between events; a block released out of turn does not take the front back.
     """
     times, distances = path(run, side, edge)
     time = np.asarray(time, dtype=float)
     if times.size == 0:
         return np.full(time.shape, np.nan)
     latest = np.maximum.accumulate(times)
-    # np.interp wants increasing times: of blocks with one time the farthest counts.
+    # np.interp needs increasing times: the farthest of several blocks with one time counts.
     last = np.concatenate([np.diff(latest) > 0.0, [True]])
     return np.where(time < latest[0], np.nan, np.interp(time, latest[last], distances[last]))
 
 
 def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, float]:
-    """Time at which the front on one side reaches a distance, and its longest between two blocks on the way; or NaN."""
+    """Time at which a front reaches a distance, and its longest wait between two blocks; or NaN."""
     times, distances = path(run, side)
     if times.size == 0 or distances[-1] < distance:
         return np.nan, np.nan
@@ -46,23 +46,19 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
 
 
 def front_speed(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
-    """Speed, intercept (units of H) and standard error of the speed from the last fraction of a front's path.
+    """Speed, intercept and standard error of the speed on the last fraction of a front's path.
 
-    As `straight_line`; NaN with fewer than 4 blocks.
+    They are those of `straight_line`; NaN with fewer than 4 blocks.
     """
     times, distances = path(run, side)
-    chosen = (
-        distances >= (1.0 - window) * distances[-1] if distances.size else np.zeros(0, dtype=bool)
-    )
-    return (
-        straight_line(times[chosen], distances[chosen])
-        if chosen.sum() >= 4
-        else (np.nan, np.nan, np.nan)
-    )
+    chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
+    if chosen.sum() < 4:
+        return np.nan, np.nan, np.nan
+    return straight_line(times[chosen], distances[chosen])
 
 
 def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:
-    """Slope, intercept and standard error of the slope of a straight line by least squares; NaN if all x are equal."""
+    """Slope, intercept and standard error of the slope by least squares; NaN if all x are equal."""
     mean_x, mean_y = x.sum() / x.size, y.sum() / y.size
     centred = x - mean_x
     scatter = float((centred**2).sum())

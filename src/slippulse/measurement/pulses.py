@@ -15,40 +15,39 @@ class LeadingPulse(NamedTuple):
 
     front: float  # distance from x = 0, between blocks
     speed: float  # of the front
-    width: (
-        float  # distance from the front to where blocks stick; NaN when nothing has stuck behind it
-    )
+    width: float  # distance from the front to the trailing edge; NaN when nothing has stuck
     peak_velocity: float  # largest slip velocity, from a parabola through three blocks
     peak_distance: float
-    slip: float  # of the blocks that stuck last, halfway between the trailing edge and the nucleation at the nearest
+    slip: float  # of the blocks that stuck last, in the half of the way next to the trailing edge
 
 
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
-    """Measure the pulse of a run with fronts and fields, its speed on the last fraction ``window`` of its path."""
+    """Measure the pulse of a run; its speed is that on the last fraction ``window`` of its path."""
     end = run.attrs["end_time"]
     speed, _, _ = front_speed(run, window)
     release, distance = path(run)
     front = float(distance[-1] + speed * (end - release[-1])) if distance.size else NAN
     start = np.searchsorted(run["x"], 0.0)
     r, velocity, slip = (np.asarray(run[name])[start:] for name in ("x", "slip_velocity", "slip"))
-    peak, at = parabola_peak(r, velocity)
+    peak, peak_distance = parabola_peak(r, velocity)
 
     stick, stuck = path(run, edge="stick_time")
     width, final = NAN, NAN
-    behind = stuck < at
-    if np.count_nonzero(behind) >= 4 and distance.size and np.any(velocity > 0.0):
-        # The trailing edge runs as fast as the front: its position now, from the blocks that stuck last.
-        trailing = float(np.mean(stuck[behind][-4:] + speed * (end - stick[behind][-4:])))
+    followed = stuck < peak_distance
+    if np.count_nonzero(followed) >= 4 and distance.size and np.any(velocity > 0.0):
+        # The trailing edge runs as fast as the front, from the blocks that stuck last.
+        last, late = stuck[followed][-4:], end - stick[followed][-4:]
+        trailing = float(np.mean(last + speed * late))
         width = front - trailing
         settled = (r > 0.5 * trailing) & (r < trailing - 2.0 * run.attrs["dx"]) & (velocity <= 0.0)
         if settled.any():
             near = r > r[settled].max() - max(0.5 * width, 4.0 * run.attrs["dx"])
             final = float(np.mean(slip[settled & near]))
-    return LeadingPulse(front, speed, width, peak, at, final)
+    return LeadingPulse(front, speed, width, peak, peak_distance, final)
 
 
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Largest value of sampled y and its position, from the parabola through the largest sample and its neighbours."""
+    """Largest value of sampled y and its position, by a parabola through the largest samples."""
     i = int(np.argmax(y)) if y.size else 0
     if not 0 < i < y.size - 1:
         return (float(y[i]), float(x[i])) if y.size else (NAN, NAN)
@@ -59,7 +58,7 @@ def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
 
 
 def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
-    """Slip, slip_velocity and slip_acceleration right of the nucleation point, over xi = distance - front."""
+    """Slip and its first two derivatives in time on the right, over xi = distance - front."""
     names = ("x", "slip", "slip_velocity", "slip_acceleration")
     start = np.searchsorted(run["x"], 0.0)
     fields = {name: np.asarray(run[name])[start:] for name in names}
@@ -67,10 +66,10 @@ def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
 
 
 def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Amplitude of the slip acceleration across a pulse, by projection on the sine that spans its width.
+    """Amplitude of the slip acceleration across a pulse, by projection on a sine of its width.
 
-    The undamped lattice rings at the grid scale behind the front; a projection averages the ringing out, the largest
-    value would report it. NaN for a pulse without a trailing edge.
+    A projection averages out the ringing of the undamped lattice behind the front, which the
+    largest value would report. It is NaN for a pulse without a trailing edge.
     """
     fields = comoving(run, pulse)
     inside = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
@@ -81,7 +80,7 @@ def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
 
 
 def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Largest relative change of the slip left behind over the last third of the path before the pulse."""
+    """Largest relative change of final slip over the last third of the path before the pulse."""
     fields = comoving(run, pulse)
     end = -pulse.width - 4.0 * run.attrs["dx"]
     third = (fields["xi"] < end) & (fields["xi"] > end - (pulse.front - pulse.width) / 3.0)

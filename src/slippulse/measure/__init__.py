@@ -1,1 +1,0 @@
-"""From a run to numbers: fronts, pulses, transitions, regimes. No simulation, no drawing."""

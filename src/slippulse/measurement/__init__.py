@@ -1,0 +1,1 @@
+"""Numbers of a run: fronts, pulses, transitions, regimes. No simulation, no drawing."""

@@ -1,0 +1,94 @@
+"""Numbers that a promised accuracy covers, and whether a grid study finds it kept."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+
+PULSE = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop")
+ALWAYS = ("front_speed_left", "front_speed_right", "transition_time", "transition_length")
+# Numbers that `accuracy` promises, where `covers` has nothing against the run.
+COVERED = {
+    "displacement": (*ALWAYS, "first_stick_time", *PULSE),
+    "stress": (*ALWAYS, "largest_velocity"),
+}
+# A front into less pre-stress hardly outruns the waves: it lags by an order of 2/3 to 1 in dx.
+LOWEST_LEVEL = 0.05
+# With less damping the ringing of the lattice decides how long the left front stands still.
+LEAST_DAMPING = 0.05
+# The left front slows for ever: the time to cover more of its path needs a finer lattice.
+LARGEST_FRACTION = 0.95
+
+
+def covers(run: Mapping, quantity: str, fraction: float) -> bool:
+    """Whether a promise covers one number of a run, a row of the measured table.
+
+    ``fraction`` : of |x_minus| that the left front covers at T_trans under a stress boundary.
+    """
+    known = quantity in COVERED[run["boundary"]] and math.isfinite(run[quantity])
+    if not known or run["run_flags"]:
+        return False
+    if quantity.startswith("front_speed"):
+        ahead = run[quantity.removeprefix("front_speed_")]
+        # A step of the pre-stress may be on either side.
+        lowest = ahead if run["beyond"] == run["right"] else min(ahead, run["beyond"])
+        return lowest >= LOWEST_LEVEL
+    if quantity.startswith("pulse"):
+        return run["pulse_state"] == "steady"
+    if run["boundary"] == "displacement":
+        return min(run["left"], run["right"]) >= LOWEST_LEVEL
+    return _covers_stress(run, quantity, fraction)
+
+
+def _covers_stress(run: Mapping, quantity: str, fraction: float) -> bool:
+    """Whether a promise covers the largest velocity or the transition under a stress boundary."""
+    if quantity == "largest_velocity":
+        # Theory has the far-field pulse; between two fronts that run on, velocity grows.
+        return run["left"] < 0.0 == run["right"] == run["beyond"]
+    resolved = run["transition_state"] == "resolved" and run["damping_ratio"] >= LEAST_DAMPING
+    return resolved and fraction <= LARGEST_FRACTION
+
+
+def judged(
+    study: pd.DataFrame, measured: pd.DataFrame, promise: float, fraction: float
+) -> pd.DataFrame:
+    """A grid study with columns `promised` (NaN where nothing is) and `kept` ("true", "false", "").
+
+    study : as `grid_tables` has it
+    measured : the table at the finest spacing
+    promise : largest relative uncertainty; NaN for a user-defined spacing, which promises nothing
+    fraction : see `covers`
+
+    A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept
+    its promise.
+    """
+    flags = measured["run_flags"].astype(object).fillna("")
+    rows = measured.assign(run_flags=flags).to_dict("records")
+    covered = [
+        math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction)
+        for row in study.itertuples()
+    ]
+    within = study["uncertainty"] <= promise * study["value"].abs()
+    kept = np.where(covered, np.where(within, "true", "false"), "")
+    return study.assign(promised=np.where(covered, promise, np.nan), kept=kept)
+
+
+def summary(study: pd.DataFrame, promise: float) -> str:
+    """One line: how many runs of a judged study kept their promise, and the worst misses."""
+    if not math.isfinite(promise):
+        return "its spacing is user-defined and promises nothing"
+    covered = study[study["kept"] != ""]
+    missed = covered[covered["kept"] == "false"]
+    runs, broken = covered["point"].nunique(), missed["point"].nunique()
+    text = f"accuracy {promise:g} kept by {runs - broken} of {runs} runs"
+    relative = (missed["uncertainty"] / missed["value"].abs()).fillna(np.inf)
+    worst = []
+    for point, errors in relative.groupby(missed["point"]):
+        worst.append(f"{point} ({missed.loc[errors.idxmax(), 'quantity']} {errors.max():.1e})")
+    if worst:
+        text += f"; missed by {', '.join(worst[:5])}"
+    if len(worst) > 5:
+        text += " ..."
+    rest = study["point"].nunique() - runs
+    return text + (f"; {rest} have no number that it covers" if rest else "")

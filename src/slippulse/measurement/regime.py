@@ -1,0 +1,85 @@
+"""Regime of a run: crack or pulse, one-way or two-way, growing, steady, decaying or arrested."""
+
+import numpy as np
+
+from ..data.points import AnyRun
+from .fronts import position_at
+
+REGIMES = (
+    "arrested",
+    "crack-like, two-way",
+    "crack-like, one-way",
+    "pulses, two-way",
+    "pulse, one-way, growing",
+    "pulse, one-way, steady",
+    "pulse, one-way, decaying",
+)
+# In place of one of them, where theory does not say which a rupture ends in.
+UNDECIDED = "undecided"
+
+
+def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, float | str]:
+    """Classify a run by its slip velocity at the end, and at two thirds of its duration.
+
+    run : with samples of slip velocity over time and position. Its end is taken from the blocks
+        where their slip velocity is recorded, since samples may miss a narrow or distant pulse
+    still : a velocity below this fraction of the largest one now (or, for arrest, of the largest
+        one sampled) is rest
+    steady_tolerance : a largest velocity that changes less than this fraction over the last third
+        is steady; a front this fraction slower than the waves still keeps up with them
+
+    Returns `regime`, one of REGIMES, and the numbers it is decided by. *Arrested*: no release in
+    the last tenth of the duration, or no velocity above ``still`` of the largest one sampled. Else
+    a side *runs* if its front keeps up with the waves over the last third, or, where neither does,
+    if blocks on it slide at ``still`` or more of the largest velocity now. *Two-way*: both run;
+    *one-way*: one. *Crack-like*: the nucleation point slides at ``still`` or more of the largest
+    velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or *decaying* by the
+    change of its largest velocity over the last third.
+    """
+    times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
+    before = np.max(velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))])
+    change = float(np.max(velocity[-1]) / before) - 1.0 if before > 0.0 else -1.0
+    if "slip_velocity" in run:
+        x, now = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
+    else:
+        x, now = np.asarray(run["sample_position"]), velocity[-1]
+    largest = float(np.max(now))
+    centre = float(now[int(np.argmin(np.abs(x)))])
+    speeds = {side: _late_speed(run, side) for side in ("left", "right")}
+    keeping_up = sum(speed >= 1.0 - steady_tolerance for speed in speeds.values())
+    sliding = now >= still * largest
+    running = keeping_up or int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
+    latest = float(np.nan_to_num(np.asarray(run["release_time"])).max())
+    ways = "two-way" if running == 2 else "one-way"
+    at_rest = largest <= still * max(largest, float(np.max(velocity)))
+    if at_rest or latest < 0.9 * run.attrs["duration"]:
+        regime = "arrested"
+    elif centre >= still * largest:
+        regime = f"crack-like, {ways}"
+    else:
+        regime = _pulse_regime(ways, change, steady_tolerance)
+    return {
+        "regime": regime,
+        "centre_velocity_share": centre / largest if largest > 0.0 else float("nan"),
+        "largest_velocity_change": change,
+        "late_front_speed_left": speeds["left"],
+        "late_front_speed_right": speeds["right"],
+    }
+
+
+def _late_speed(run: AnyRun, side: str) -> float:
+    """Mean speed of a front over the last third of a run; 0 where it has not begun by then."""
+    window = np.array([2.0 / 3.0, 1.0]) * run.attrs["end_time"]
+    covered = position_at(run, window, side)
+    if not np.isfinite(covered).all():
+        return 0.0
+    return float(np.diff(covered)[0] / np.diff(window)[0])
+
+
+def _pulse_regime(ways: str, change: float, tolerance: float) -> str:
+    """Regime of one or two pulses, by the relative change of the largest velocity."""
+    if ways == "two-way":
+        return "pulses, two-way"
+    if change > tolerance:
+        return "pulse, one-way, growing"
+    return f"pulse, one-way, {'decaying' if change < -tolerance else 'steady'}"

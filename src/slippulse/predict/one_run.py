@@ -1,0 +1,67 @@
+"""The public way from a run to its numbers."""
+
+from typing import Any
+
+import xarray as xr
+
+from ..model.checks import short_repr
+from .comparison import measured_row
+
+# The settings of `measure` in the shipped configuration, which is not part of the package.
+SETTINGS: dict[str, Any] = {
+    "share": 0.95,
+    "front_window": 0.3,
+    "steady_tolerance": 0.02,
+    "trailing_times": [5.0, 6.0, 7.0, 8.0, 9.0, 10.0],
+    "still": 0.05,
+}
+NAN = float("nan")
+
+
+def measure(run: xr.Dataset) -> dict[str, Any]:
+    """Measure one run: T_trans, L_trans, front speeds, the leading pulse and flags.
+
+    The numbers are those of `results/measurements`, by the settings of the shipped configuration.
+
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A run of a lattice or of the exact solution, which `simulate` returned or `point` took out
+        of a sweep. With `Samples` at two positions or more its regime is classified as well.
+
+    Returns
+    -------
+    dict of str to float or str
+        Numbers by the names in docs/columns.md, in units of H and of H over the wave speed, among
+        them ``transition_time`` and ``transition_length`` (T_trans and L_trans; NaN where the paper
+        defines none, or before they are reached), ``front_speed_left`` and ``front_speed_right``,
+        ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the right pulse at the end,
+        ``pulse_state``, ``run_flags`` ("" or a comma-separated list), and the parameters of the
+        scene. A number whose data were not recorded is not in it.
+
+    Raises
+    ------
+    TypeError
+        If `run` is not such a Dataset.
+
+    Notes
+    -----
+    Source: sections III B and III C of the paper for the transition. Under a displacement boundary
+    T_trans is the first stick; under a stress boundary the left front has then covered 95 % of
+    ``|x_minus|``.
+
+    Examples
+    --------
+    >>> layer = sp.Prestress(left=0.5, right=0.5)
+    >>> scene = sp.Scene("displacement", layer, duration=8.0, dx=0.05, gamma=0.65)
+    >>> numbers = sp.measure(sp.simulate(scene))
+    >>> round(numbers["transition_time"], 1), numbers["run_flags"]
+    (4.2, '')
+    """
+    if not isinstance(run, xr.Dataset) or not {"release_time", "stick_time"} <= set(run):
+        allowed = "a Dataset that simulate returned"
+        raise TypeError(f"run: {short_repr(run)}; allowed: {allowed}")
+    if "point" in run.dims:
+        allowed = "one run; point(sweep, index) takes it out of a sweep"
+        raise TypeError(f"run: a sweep of {run.sizes['point']}; allowed: {allowed}")
+    return {"transition_time": NAN, "transition_length": NAN} | measured_row(run, SETTINGS)
