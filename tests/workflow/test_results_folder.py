@@ -187,6 +187,8 @@ PAPER = {"data/arrest.nc": CONFIGURATION}
 SOLVER_EDIT = "edit src/slippulse/solver/taylor.py"
 FUTURE = "find results -exec touch -d '3 hours' {} +"
 LOCK = {f"{FIGURE}.png": SOURCES, "data/one.nc": SOURCES}
+COPY_PAPER = "rm -r results; cp -r paper results"
+OLD_OVERLAY = "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml"
 
 
 @pytest.mark.parametrize(
@@ -236,16 +238,8 @@ def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
         pytest.param("rm -r .snakemake", OTHER, "other.yaml", "other", id="another overlay"),
         pytest.param("rm -r .snakemake", PAPER, "paper.yaml", "paper", id="another preset"),
         pytest.param("swap results other", OTHER, "overlay.yaml", "overlay", id="swapped"),
-        pytest.param(
-            "rm -r results; cp -r paper results", PAPER, "overlay.yaml", "overlay", id="copied in"
-        ),
-        pytest.param(
-            "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml",
-            OTHER,
-            "overlay.yaml",
-            "other",
-            id="an old overlay",
-        ),
+        pytest.param(COPY_PAPER, PAPER, "overlay.yaml", "overlay", id="copied in"),
+        pytest.param(OLD_OVERLAY, OTHER, "overlay.yaml", "other", id="an old overlay"),
     ],
 )
 def test_results_of_another_overlay_are_made_anew(folder, command, reasons, overlay, made):

@@ -126,7 +126,7 @@ def settings_of(job):
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
     kind, scheme = "scenes" if name in SCENES else "simulations", sweep["scheme"]
     by_scheme = "" if scheme == "localised" else f"_{scheme}"
-    # Only a rule that asks for it computes the bound: jobs on other nodes check no scenes.
+    # The bound is computed where a rule asks for it, since jobs on other nodes check no scenes.
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
     share = config["measure"]["share"] if sweep["boundary"] == "stress" else None
