@@ -1,7 +1,7 @@
 """A claim at every combination of what the paper leaves open, and the choice that decides it."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
 from typing import Any, NamedTuple
@@ -132,9 +132,14 @@ class OverChoices(ByNumber):
         return f"{NAMES[name]}: {' and '.join(sides)}"
 
 
-def over_choices(combinations: Sequence[Combination], shown: Claim | None = None) -> OverChoices:
-    """One claim from all combinations, with the numbers of the first one, or of ``shown``."""
-    shown = shown or combinations[0].claim
+def over_choices(
+    combinations: Sequence[Combination], shown: Claim | None = None, **fields: Any
+) -> OverChoices:
+    """One claim from all combinations, with the numbers of the first one, or of ``shown``.
+
+    Some of its ``fields`` may be replaced.
+    """
+    shown = replace(shown or combinations[0].claim, **fields)
     # A claim by numbers of runs has no number that a tolerance is for.
     tolerance = shown.tolerance if isinstance(shown, ByNumber) else 0.0
     return OverChoices(combinations=combinations, shown=shown, tolerance=tolerance)

@@ -1,7 +1,7 @@
 """The tables that claims are computed from, and a claim of each measured kind from them."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -11,6 +11,11 @@ from ..measurement.regime import UNDECIDED
 from ..measurement.uncertainty import grid_study
 from .kinds import NAN, Approximate, Exact
 from .rules import Known
+
+Tables = Mapping[str, pd.DataFrame]
+Texts = Mapping[str, Mapping]
+# A table for each lattice, the finest first, or one of exact solutions.
+Levels = Sequence[pd.DataFrame]
 
 
 def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
@@ -39,7 +44,7 @@ def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     return answers
 
 
-def studied(tables: Sequence[pd.DataFrame], values: Sequence[float]) -> Known:
+def studied(tables: Levels, values: Sequence[float]) -> Known:
     """A number computed from each table, at the finest spacing, with its numerical uncertainty.
 
     With one table, the exact solution, the uncertainty is 0.
@@ -57,9 +62,7 @@ def exponent(logs: np.ndarray) -> float:
     return straight_line(x, y)[0] if x.size > 2 else NAN
 
 
-def exponent_studied(
-    tables: Sequence[pd.DataFrame], numbers: Sequence[np.ndarray], levels: Iterable[str]
-) -> Known:
+def exponent_studied(tables: Levels, numbers: Sequence[np.ndarray], levels: Iterable[str]) -> Known:
     """The exponent of measured over predicted, [2, run] of each table, with its uncertainty.
 
     The uncertainty is at least the change when the runs at one value of a level are left out.
@@ -84,18 +87,12 @@ class Evidence:
     """
 
     def __init__(
-        self,
-        tables: Mapping[str, pd.DataFrame],
-        entries: Mapping[str, Mapping],
-        steady: float,
-        readings: Mapping[str, Mapping] | None = None,
+        self, tables: Tables, entries: Texts, steady: float, readings: Texts | None = None
     ) -> None:
         self.tables, self.entries = tables, entries
-        self.steady = steady
-        self.readings = readings or {}
-        self.swept = [
-            path.removeprefix("coarser/") for path in tables if path.startswith("coarser/")
-        ]
+        self.steady, self.readings = steady, readings or {}
+        coarser = [path for path in tables if path.startswith("coarser/")]
+        self.swept = [path.removeprefix("coarser/") for path in coarser]
         self._lattices = {name: self._levels(name) for name in self.swept}
 
     def _levels(self, simulation: str) -> list[pd.DataFrame]:
@@ -123,13 +120,11 @@ class Evidence:
 
         The finest has uncertainty_QUANTITY and extrapolated_QUANTITY too, at spacing 0.
         """
-        kept = [evaluated(self._lattices[name][0], where) for name in simulations]
-        out = []
-        for i in range(3):
-            levels = [self._lattices[name][i] for name in simulations]
-            chosen = [level[rows] for level, rows in zip(levels, kept, strict=True)]
-            out.append(pd.concat(chosen))
-        return out
+        parts = []
+        for name in simulations:
+            kept = evaluated(self._lattices[name][0], where)
+            parts.append([level[kept] for level in self._lattices[name]])
+        return [pd.concat(levels) for levels in zip(*parts, strict=True)]
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
         """Runs on the finest lattice, with extrapolated values and uncertainties."""
@@ -149,40 +144,30 @@ class Evidence:
         )
 
     def approximate(
-        self,
-        id: str,
-        tables: Sequence[pd.DataFrame],
-        measured: str,
-        predicted: str,
-        levels: Iterable[str] = (),
+        self, id: str, tables: Levels, measured: str, predicted: str, levels: Iterable[str] = ()
     ) -> Approximate:
         """An estimate, from expressions over tables of lattices, or over one of exact solutions.
 
-        The uncertainty of its exponent covers leaving out one value of the ``levels``.
+        The uncertainty of its exponent covers leaving out the runs at one value of a level.
         """
         numbers = [
             np.array([evaluated(table, predicted), evaluated(table, measured)], float)
             for table in tables
         ]
-        ratio = [pd.Series(pair[1] / pair[0]) for pair in numbers]
-        deviations = [(series - 1.0).abs() for series in ratio]
+        quotients = [pd.Series(pair[1] / pair[0]) for pair in numbers]
+        deviations = [(series - 1.0).abs() for series in quotients]
         finest = deviations[0][np.isfinite(deviations[0])].to_numpy()
-        common: dict[str, Any] = {
-            "tolerance": self.tolerance(id),
-            "deviations": finest,
-            "left_out": len(deviations[0]) - finest.size,
-        }
+        left_out = len(deviations[0]) - finest.size
+        claim = Approximate(tolerance=self.tolerance(id), deviations=finest, left_out=left_out)
         if not finest.size:
-            return Approximate(**common)
+            return claim
         allowed = self.entries[id].get("tolerance_exponent")
-        slope = None if allowed is None else exponent_studied(tables, numbers, levels)
-        return Approximate(
-            **common,
-            median=studied(tables, [series.median() for series in deviations]),
-            ratio=studied(tables, [series.median() for series in ratio]),
-            exponent=slope,
-            tolerance_exponent=float(allowed or 0.0),
-        )
+        if allowed is not None:
+            slope = exponent_studied(tables, numbers, levels)
+            claim = replace(claim, exponent=slope, tolerance_exponent=float(allowed))
+        median = studied(tables, [series.median() for series in deviations])
+        ratio = studied(tables, [series.median() for series in quotients])
+        return replace(claim, median=median, ratio=ratio)
 
     def agreed(
         self, simulation: str, where: str, holds: str, told: str = "", ends: Sequence[str] = ()

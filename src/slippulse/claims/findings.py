@@ -1,7 +1,6 @@
 """Findings: numbers of our own that stand beside the claims, without a verdict."""
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from types import SimpleNamespace
 
 import numpy as np
@@ -27,22 +26,16 @@ def findings(
     for id, entry in entries.items():
         rows = entry.get("numbers", [])
         values: dict = {}
-        with suppress(NoRuns):
-            values = _values(evidence, damping_ratio, id, rows)
+        try:
+            for row in rows:
+                values |= numbers(evidence, damping_ratio, **row)
+            values |= COMPUTED[id](evidence) if id in COMPUTED else {}
+        except NoRuns:
+            values = {}
         text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
         source = ", ".join([*(row["table"] for row in rows), *entry.get("source", [])])
         out.append({"id": id, "numbers": values, "text": text, "source": source})
     return out
-
-
-def _values(evidence: Evidence, damping_ratio: float, id: str, rows: list[Mapping]) -> dict:
-    """All numbers of one finding by name."""
-    values: dict = {}
-    for row in rows:
-        values |= numbers(evidence, damping_ratio, **row)
-    if id in COMPUTED:
-        values |= COMPUTED[id](evidence)
-    return values
 
 
 def numbers(
@@ -80,15 +73,9 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
     fits = inference(evidence.tables["published_figure"])
     best = fits["best"]
     low, high = best["regions"][0.95]["damping_ratio"]
-    return {
-        "release": best["release"],
-        "chi_square": best["chi2"],
-        "degrees": float(best["dof"]),
-        "ratio": best["damping_ratio"],
-        "low": low,
-        "high": high,
-        "difference": fits["difference"],
-    }
+    out = {"release": best["release"], "chi_square": best["chi2"], "degrees": float(best["dof"])}
+    out |= {"ratio": best["damping_ratio"], "low": low, "high": high}
+    return out | {"difference": fits["difference"]}
 
 
 def never_arrives(evidence: Evidence) -> dict[str, float]:

@@ -36,6 +36,16 @@ NO_PULSE = [
     regime for regime in REGIMES if regime not in (TWO_WAY, STEADY, "pulse, one-way, growing")
 ]
 
+KEEPS_SLIP = f"slip_variation < {{tolerance}} and regime == {TWO_WAY!r}"
+STEADY_AT_ZERO = f"(beyond == 0 and abs({CHANGE}) <= {{steady}}) or (beyond != 0 and changed != 0)"
+AS_LEVEL = "changed * beyond > 0 and widened * beyond > 0"
+SMALLEST = {"smallest level": "abs(beyond).where(beyond != 0).min()"}
+# Under held stress a run tells if it lasts 2.6 |x_minus|, as the collapses of figure 5.
+COLLAPSED = "duration >= 2.6 * exact_balance_distance"
+# Runs that are counted by regime beside those that are judged.
+RIGHT_AT_ZERO = {r"at $\tau_{0,r}=0$, without a verdict": "right == 0"}
+RIGHT_ABOVE_ZERO = {r"at $\tau_{0,r}>0$, without a verdict": "left < 0 < right"}
+
 
 class Equation(NamedTuple):
     """A measured quantity, the paper's expression for it, and conditions on runs by simulation."""
@@ -80,25 +90,15 @@ ALWAYS = {
         DISPLACEMENT, "left > 0", told="duration > 1.5 * paper_transition_time", ends=[TWO_WAY]
     ),
     "one_way_pulse_displacement": Always(
-        ["regimes_displacement_asymmetric"],
-        "right > 0",
-        ends=ONE_WAY,
-        counted={r"at $\tau_{0,r}=0$, without a verdict": "right == 0"},
+        ["regimes_displacement_asymmetric"], "right > 0", ends=ONE_WAY, counted=RIGHT_AT_ZERO
     ),
     "symmetric_stress_cracks": Always(STRESS, "left == right > 0", ends=["crack-like, two-way"]),
-    # Under held stress a run tells if it lasts 2.6 |x_minus|, as the collapses of figure 5.
     "one_way_pulse_stress": Always(
-        STRESS,
-        "left < 0 and right == 0",
-        told="duration >= 2.6 * exact_balance_distance",
-        counted={r"at $\tau_{0,r}>0$, without a verdict": "left < 0 < right"},
-        ends=[STEADY],
+        STRESS, "left < 0 and right == 0", "", COLLAPSED, RIGHT_ABOVE_ZERO, ends=[STEADY]
     ),
     "stress_pulse_needs_barrier": Always(STRESS, "(left < 0) == (right < 0)", ends=NO_PULSE),
     "steady_for_any_prestress": Always(
-        ["any_prestress", "steady_elsewhere"],
-        "0 < left < 1",
-        f"slip_variation < {{tolerance}} and regime == {TWO_WAY!r}",
+        ["any_prestress", "steady_elsewhere"], "0 < left < 1", KEEPS_SLIP
     ),
     # Pulses that formed at level 0 meet another, `beyond` (see `meet`).
     "grows_above_zero": Always(BEYOND, "beyond > 0", "changed == 1 and widened == 1", CHANGED, {}),
@@ -107,17 +107,9 @@ ALWAYS = {
     ),
     # A small perturbation is within 0.03, in units of the friction drop.
     "small_perturbation_changes_pulse": Always(
-        BEYOND,
-        "0 < abs(beyond) <= 0.03",
-        "changed * beyond > 0 and widened * beyond > 0",
-        CHANGED,
-        numbers={"smallest level": "abs(beyond).where(beyond != 0).min()"},
+        BEYOND, "0 < abs(beyond) <= 0.03", AS_LEVEL, CHANGED, numbers=SMALLEST
     ),
-    "steady_only_at_zero": Always(
-        BEYOND,
-        "",
-        f"(beyond == 0 and abs({CHANGE}) <= {{steady}}) or (beyond != 0 and changed != 0)",
-    ),
+    "steady_only_at_zero": Always(BEYOND, "", STEADY_AT_ZERO),
 }
 
 
@@ -181,16 +173,11 @@ def only_positive_velocities(evidence: Evidence, id: str) -> Qualitative:
         f"in {slides_back} of {len(runs)} runs. It needs {FRICTION} of at least "
         f"{number(needed, 3)}."
     )
-    return Qualitative.counted(
-        holds,
-        condition=needed > 0.0,
-        further={
-            f"{FRICTION} needed": needed,
-            "smallest velocity": float(runs["min_velocity"].min()),
-            "runs in which blocks would slide back at the printed threshold": float(slides_back),
-        },
-        why=why if all(holds) and needed > 0.0 else "",
-    )
+    words = "runs in which blocks would slide back at the printed threshold"
+    further = {f"{FRICTION} needed": needed, "smallest velocity": float(runs["min_velocity"].min())}
+    further |= {words: float(slides_back)}
+    why = why if all(holds) and needed > 0.0 else ""
+    return Qualitative.counted(holds, condition=needed > 0.0, further=further, why=why)
 
 
 def dimensional_peak_velocity(evidence: Evidence, id: str) -> Arithmetic:
@@ -315,8 +302,7 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
     uncertainty = table[[f"uncertainty_{name}" for name in deviation]].to_numpy() / exact
     within = (deviation <= allowed).all(axis=1)
     beyond_doubt = (deviation - uncertainty > allowed).any(axis=1)
-    further = {
-        f"{name} on the lattice, with damping, off by at most": float(largest)
-        for name, largest in zip(("peak", "half-width"), deviation.max(), strict=True)
-    }
+    peak, half_width = deviation.max()
+    words = "on the lattice, with damping, off by at most"
+    further = {f"peak {words}": float(peak), f"half-width {words}": float(half_width)}
     return Qualitative.counted(agreeing(within, ~beyond_doubt), further=further)

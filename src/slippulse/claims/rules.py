@@ -49,16 +49,15 @@ def worst_tested(verdicts: Iterable[str]) -> str:
 def exact(
     deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float
 ) -> tuple[str, int | None]:
-    """Verdict on an equation, the worst of all runs, and the run that decides.
+    """Verdict on an equation, and the run that decides: the worst, and the farthest off of these.
 
-    Runs without numbers do not count; of the runs with the verdict the one with the largest
-    deviation decides, None if no run has numbers.
+    Runs without numbers do not count; the run is None if none has numbers.
     """
     verdicts = [within(*pair, tolerance) for pair in zip(deviations, uncertainties, strict=True)]
     verdict = worst_tested(verdicts)
     if verdict == NOT_TESTABLE:
         return verdict, None
-    deciding = [run for run, its_verdict in enumerate(verdicts) if its_verdict == verdict]
+    deciding = [run for run in range(len(verdicts)) if verdicts[run] == verdict]
     return verdict, max(deciding, key=deviations.__getitem__)
 
 

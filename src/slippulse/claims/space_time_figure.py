@@ -1,6 +1,7 @@
 """Claims about the two panels of the published space-time figure."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from ..data.numerals import number, rounded
 from .evidence import Evidence
@@ -21,6 +22,17 @@ def read_off(evidence: Evidence, simulation: str) -> dict[str, float]:
     }
 
 
+def fitted(evidence: Evidence, id: str, fit: Mapping, **texts: Any) -> Reading:
+    """A claim about one panel, from a fit to its readings."""
+    return Reading(
+        tolerance=evidence.tolerance(id),
+        chi_square=fit["chi2"],
+        degrees_of_freedom=fit["dof"],
+        p_value=fit["p_value"],
+        **texts,
+    )
+
+
 def left(evidence: Evidence, id: str) -> Reading:
     """The left panel at the best fit of all its readings, those of its arrows included."""
     study = evidence.tables["published_figure"]
@@ -35,16 +47,10 @@ def left(evidence: Evidence, id: str) -> Reading:
         for name, text in arrows.items():
             further[f"pull of the {text} at the fit {words} the arrows"] = fit["pulls"][name]
     parameters = ", ".join(f"{tex} = {rounded(best[name], 3)}" for name, tex in FITTED.items())
-    return Reading(
-        tolerance=evidence.tolerance(id),
-        chi_square=best["chi2"],
-        degrees_of_freedom=best["dof"],
-        p_value=best["p_value"],
-        further=further,
-        why=arrow_sentence(fits, list(arrows)) if arrows else "",
-        note="chi-square of all readings of the panel, its arrows among them, at their best fit, "
-        f"{parameters}, release rule `{best['release']}`; then the readings in our own figure",
-    )
+    note = "chi-square of all readings of the panel, its arrows among them, at their best fit, "
+    note += f"{parameters}, release rule `{best['release']}`; then the readings in our own figure"
+    why = arrow_sentence(fits, list(arrows)) if arrows else ""
+    return fitted(evidence, id, best, further=further, why=why, note=note)
 
 
 def arrow_sentence(fits: Mapping[str, Mapping], arrows: list[str]) -> str:
@@ -60,13 +66,8 @@ def arrow_sentence(fits: Mapping[str, Mapping], arrows: list[str]) -> str:
 def right(evidence: Evidence, id: str) -> Reading:
     """The right panel, of which one reading is left."""
     fit = right_panel(evidence.tables["published_figure"])
-    return Reading(
-        tolerance=evidence.tolerance(id),
-        chi_square=fit["chi2"],
-        degrees_of_freedom=fit["dof"],
-        p_value=fit["p_value"],
-        further=read_off(evidence, "space_time_stress"),
-        why="One reading is left when its pre-stress is read off.",
-        note="chi-square of its one reading, the pre-stress being read off; "
-        "then the readings in our own figure",
-    )
+    further = read_off(evidence, "space_time_stress")
+    why = "One reading is left when its pre-stress is read off."
+    note = "chi-square of its one reading, the pre-stress being read off; "
+    note += "then the readings in our own figure"
+    return fitted(evidence, id, fit, further=further, why=why, note=note)

@@ -19,8 +19,7 @@ from .kinds import NAN, Approximate, Claim, Qualitative
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
-# A front that ends within this of x_minus, in units of H, is within the smallest length of the
-# model.
+# The smallest length of the model, in H: a front that ends so near to x_minus ends there.
 GAP = 1.0
 # Fraction of the way whose numbers stand with a claim.
 SHOWN = 0.95
@@ -65,14 +64,17 @@ def shared(tables: list[pd.DataFrame]) -> Chosen:
     return {name: tables[0][name].iloc[0] for name in ("release", "damping_ratio")}
 
 
+def on_lattices(tables: list[pd.DataFrame]) -> Runs:
+    """Simulated runs with their choices."""
+    return Runs(shared(tables) | {"solution": "lattice"}, tables)
+
+
 def simulated(evidence: Evidence, boundary: str, where: str = "") -> list[Runs]:
     """Runs of figure 5, and the undamped ones of the figures with more damping."""
     undamped = f"{where} and damping_ratio == 0" if where else "damping_ratio == 0"
     sweeps = {f"scaling_{boundary}": where, f"damping_{boundary}": undamped}
-    runs = [evidence.lattices(name, where=condition) for name, condition in sweeps.items()]
-    return [
-        Runs(shared(tables) | {"solution": "lattice"}, tables) for tables in runs if len(tables[0])
-    ]
+    levels = [evidence.lattices(name, where=condition) for name, condition in sweeps.items()]
+    return [on_lattices(tables) for tables in levels if len(tables[0])]
 
 
 def solved(evidence: Evidence, boundary: str) -> list[Runs]:
@@ -96,6 +98,11 @@ def solved(evidence: Evidence, boundary: str) -> list[Runs]:
         return any(runs.choice.get(name, value) != value for name, value in ours.items())
 
     return sorted(combinations, key=differs)
+
+
+def first_sticks(evidence: Evidence) -> list[Runs]:
+    """Runs with the transition at the first stick, under a displacement boundary."""
+    return simulated(evidence, "displacement") + solved(evidence, "displacement")
 
 
 @cache
@@ -145,11 +152,8 @@ def held_displacement(evidence: Evidence, id: str, estimate: Estimate) -> OverCh
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         return evidence.approximate(id, tables, quantity, f"paper_{quantity}", ("left", "gamma"))
 
-    runs = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    combinations = judged(runs, judge)
     exact = evidence.from_exact("scaling_displacement", quantity)
-    first = judge(runs[0].tables)
-    return over_choices(combinations, replace(first, from_exact=exact))
+    return over_choices(judged(first_sticks(evidence), judge), from_exact=exact)
 
 
 def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
@@ -168,24 +172,15 @@ def held_stress(evidence: Evidence, id: str, estimate: Estimate) -> OverChoices:
         levels = ("left", "width")
         return evidence.approximate(id, tables, estimate.quantity, estimate.predicted, levels)
 
-    runs = arrests(evidence)
-    combinations = judged(runs, judge)
-    first = judge(runs[0].tables)
-    leaves = leaves_tolerance(medians(evidence, estimate), evidence.tolerance(id))
-    shown = replace(
-        first,
-        from_exact=evidence.from_exact("scaling_stress", f"transition_{estimate.quantity}"),
-        further=fraction_medians(combinations)
-        | {"fraction of the way at which the median ratio leaves the tolerance": leaves},
-    )
-    return over_choices(combinations, shown)
-
-
-def leaves_tolerance(ratio_at: dict[float, float], tolerance: float) -> float:
-    """The fraction of the way at which a ratio is above 1 by the tolerance; NaN if none is."""
-    fractions = sorted(ratio_at)
-    excess = [ratio_at[fraction] - 1.0 for fraction in fractions]
-    return float(np.interp(tolerance, excess, fractions, left=NAN, right=NAN))
+    combinations = judged(arrests(evidence), judge)
+    exact = evidence.from_exact("scaling_stress", f"transition_{estimate.quantity}")
+    further = fraction_medians(combinations)
+    fractions, ratio = zip(*sorted(medians(evidence, estimate).items()), strict=True)
+    excess = np.array(ratio) - 1.0
+    # NaN if the ratio is within the tolerance all the way, or never.
+    leaves = np.interp(evidence.tolerance(id), excess, fractions, left=NAN, right=NAN)
+    words = "fraction of the way at which the median ratio leaves the tolerance"
+    return over_choices(combinations, from_exact=exact, further=further | {words: float(leaves)})
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
@@ -198,8 +193,7 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
         return replace(front, note=f"mean speed of the {side} front, which is the farther off")
 
     combinations = judged(arrests(evidence), judge)
-    first = combinations[0].claim
-    return over_choices(combinations, replace(first, further=fraction_medians(combinations)))
+    return over_choices(combinations, further=fraction_medians(combinations))
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
@@ -230,14 +224,12 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     tables = evidence.lattices(*sweeps, where=INSIDE)
     shown, ratio = judge(tables), ratios(tables[0], covered, predicted)
     extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
-    shown = replace(shown, further={**shown.further, **extremes})
     runs = []
-    studied_damping = {*evidence.tables["open_choices"]["damping_ratio"]}
-    for damping in sorted(studied_damping & {*tables[0]["damping_ratio"]}):
-        where = f"{INSIDE} and damping_ratio == {damping}"
-        damped = evidence.lattices(*sweeps, where=where)
-        runs.append(Runs(shared(damped) | {"solution": "lattice"}, damped))
-    return over_choices(judged(runs, judge), shown)
+    dampings = {*evidence.tables["open_choices"]["damping_ratio"]}
+    for damping in sorted(dampings & {*tables[0]["damping_ratio"]}):
+        damped = evidence.lattices(*sweeps, where=f"{INSIDE} and damping_ratio == {damping}")
+        runs.append(on_lattices(damped))
+    return over_choices(judged(runs, judge), shown, further={**shown.further, **extremes})
 
 
 def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
@@ -290,8 +282,8 @@ def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:
     """The transition gets longer with the pre-stress."""
-    runs = simulated(evidence, "displacement") + solved(evidence, "displacement")
-    return over_choices(judged(runs, lambda tables: rises(tables[0], "transition_length")))
+    lengths = judged(first_sticks(evidence), lambda tables: rises(tables[0], "transition_length"))
+    return over_choices(lengths)
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Qualitative:
