@@ -223,7 +223,10 @@ HARMLESS = (
 )
 
 
-@pytest.mark.parametrize("commands", [HARMLESS, ("rm -r results; cp -r overlay results",)])
+PUT_BACK = ("rm -r results; cp -r overlay results",)
+
+
+@pytest.mark.parametrize("commands", [HARMLESS, PUT_BACK], ids=["harmless", "a copy put back"])
 def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
     assert change_and_verify(folder, {command: {} for command in commands}) == {}
     assert "and made anew where needed" not in run(folder, *TARGETS)

@@ -38,7 +38,7 @@ class Tree:
         self._read, self._compared = cache(read_record), cache(self._compare)
 
     def behind(self, names: Iterable[str]) -> list[str]:
-        """List all that some results are made from, what the same jobs make, and them, in order."""
+        """List some results after all that they are made from, with all files of the same jobs."""
         ordered: dict[str, None] = {}
 
         def visit(name: str) -> None:
@@ -52,7 +52,7 @@ class Tree:
         return [*ordered]
 
     def faults(self, names: Iterable[str]) -> dict[str, str]:
-        """Find those of some results that are not as a run would make them, with the reason."""
+        """Find which of some results are not as a run would make them, each with the reason."""
         reasons = {}
         for name in names:
             path, compared = self.results / name, self._compared(name)
@@ -72,7 +72,7 @@ class Tree:
         return {name: reason for name, reason in reasons.items() if reason}
 
     def to_remove(self, names: Iterable[str]) -> dict[str, str]:
-        """Find files that keep Snakemake from making what is faulty of some results anew."""
+        """Find files that would keep Snakemake from making some results anew, with the reason."""
         faults = self.faults(self.behind(names))
         reasons = {}
         # A missing file is made anew only where the other files of its job are missing too.

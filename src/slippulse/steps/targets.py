@@ -39,7 +39,7 @@ class Plan:
         self.tree = Tree(RESULTS, self.origins)
 
     def wanted(self, targets: Iterable[str]) -> list[str]:
-        """List the results behind some targets. Raises ConfigError with the one probably meant."""
+        """List the results that targets need. Raises ConfigError with the target probably meant."""
         known = [*self.named, *(f"{RESULTS}/{name}" for name in self.origins)]
         files: list[str] = []
         for target in targets:
@@ -51,7 +51,7 @@ class Plan:
         return self.tree.behind(map(below, files))
 
     def check_places(self, *folders: str) -> None:
-        """Refuse a file where one of the folders, or that of a result, goes; and the reverse."""
+        """Refuse a file in the place of a folder that a run needs, and the reverse."""
         files = {RESULTS / name for name in self.origins}
         files |= {RESULTS / record_path(origin) for origin in self.origins.values()}
         parents = set(map(Path, folders)).union(*(path.parents[:-1] for path in files))
@@ -74,7 +74,7 @@ class Plan:
         return int(bool(problems))
 
     def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
-        """Lock the folder until the returned file is closed, and remove what is faulty in it."""
+        """Lock the folder until the returned file is closed, and remove its faulty results."""
         held = take(locks / "run.lock")
         if held is None:
             raise ConfigError("Another run is at work in this folder: wait for it, or stop it.")
@@ -87,7 +87,7 @@ class Plan:
         return held
 
     def _settle_times(self, wanted: set[str]) -> None:
-        """Let no result be later than now, or older than its inputs, as Snakemake takes it."""
+        """Set times such that Snakemake makes no result anew for the times alone."""
         jobs = [job for job in self.jobs if below(job.outputs[0]) in wanted]
         paths = set(chain.from_iterable(job.inputs + job.outputs for job in jobs))
         times = {path: os.path.getmtime(path) for path in filter(os.path.isfile, paths)}
@@ -120,7 +120,7 @@ def _remove_unfinished(locks: Path) -> None:
 
 
 def write_faulty(reasons: Mapping[str, str], outcome: str) -> None:
-    """Write one line on faulty results, with the first that is not so because of another."""
+    """Write one line on faulty results, with the reason of the first that has its own."""
     if reasons:
         first = min(reasons, key=lambda name: "older than" in reasons[name])
         faulty = f"{len(reasons)} results are not as made by what is here now"
