@@ -7,11 +7,11 @@ import tolerances as tol
 
 pytestmark = pytest.mark.slow
 
-# By which one setting is better than another. The energy balance is a check, not a result, and the arrest is never
-# reached in the continuum.
+# One setting is better than another by these. The energy balance is a check, not a result, and the
+# arrest is never reached in the continuum.
 JUDGED = ["front_speed", "peak_velocity", "width", "final_slip", "transition_time", "share_time"]
-# Errors, and work, this close to each other are equal, since what the spacing sets does not depend on the step; so are
-# errors below the second.
+# Errors, and work, within this factor are equal, since the spacing sets some whatever the step; so
+# are errors below the second number.
 EQUAL, NEGLIGIBLE = 1.1, 1e-5
 
 
@@ -22,12 +22,12 @@ def trade(study) -> pd.DataFrame:
 
 @pytest.mark.parametrize("preset", ["draft", "paper", "reference"])
 def test_no_setting_is_cheaper_and_better_than_a_preset(trade, preset):
-    (own,) = trade[trade["preset"] == preset].index
+    (chosen,) = trade[trade["preset"] == preset].index
     cheaper = trade[
-        (trade["scheme"] != "continuum") & (EQUAL * trade["work"] <= trade["work"][own])
+        (trade["scheme"] != "continuum") & (EQUAL * trade["work"] <= trade["work"][chosen])
     ]
     errors = trade[JUDGED].clip(lower=NEGLIGIBLE)
-    errors = errors.loc[cheaper.index] / errors.loc[own]
+    errors = errors.loc[cheaper.index] / errors.loc[chosen]
     better = (errors <= EQUAL).all(axis=1) & (EQUAL * errors < 1.0).any(axis=1)
     assert len(cheaper) >= 10 and not better.any(), cheaper[better].to_string()
 
@@ -42,7 +42,7 @@ def test_front_speed_is_set_by_the_order_and_transitions_by_the_spacing(trade):
 
 
 def test_the_exact_solution_is_beside_the_lattices(trade):
-    """Fronts and sticks owe nothing to the spacing; where a front stands is read at its multiples."""
+    """Fronts and sticks do not depend on the spacing; a front stands at one of its multiples."""
     (row,) = trade[trade["scheme"] == "continuum"].itertuples()
     for name in ("front_speed", "peak_velocity", "width", "final_slip", "transition_time"):
         assert getattr(row, name) < tol.EXACT_RUN

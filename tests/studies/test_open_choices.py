@@ -6,12 +6,17 @@ from slippulse.configuration.resolve import resolve
 from slippulse.steps.inputs import given
 from slippulse.studies import open_choices
 
-# Medians in percent: by release rule and damping ratio of L_trans under leaf springs; by fraction of the way of T_trans
-# and L_trans at the damping of the figures, where the pre-stress stays above -1.
+# Medians of L_trans under leaf springs in percent, by release rule and damping ratio.
 LENGTHS = {
-    ("total", 0.0): 13.6, ("total", 0.058): 20.4, ("total", 0.08): 22.2, ("total", 0.1): 23.5,
-    ("elastic", 0.1): 15.6, ("elastic", 0.16): 16.7, ("elastic", 0.23): 17.9,
-}  # fmt: skip
+    ("total", 0.0): 13.6,
+    ("total", 0.058): 20.4,
+    ("total", 0.08): 22.2,
+    ("total", 0.1): 23.5,
+    ("elastic", 0.1): 15.6,
+    ("elastic", 0.16): 16.7,
+    ("elastic", 0.23): 17.9,
+}
+# Medians of T_trans and L_trans by fraction of the way, at the damping of the figures.
 ARRESTS = {0.9: (8.96, 5.64), 0.95: (21.8, 12.6), 0.99: (41.0, 24.1)}
 
 
@@ -26,9 +31,9 @@ def test_known_cases(project, shipped):
         table[quantity] = 100.0 * (ratio - 1.0).abs()
     springs = table[table["boundary"] == "displacement"].groupby(["release", "damping_ratio"])
     times, lengths = springs["time"].median(), springs["length"].median()
-    assert {at: round(lengths[at], 1) for at in LENGTHS} == LENGTHS
+    assert {choice: round(lengths[choice], 1) for choice in LENGTHS} == LENGTHS
     assert round(times.min(), 1) == 6.6 and round(times.max(), 1) == 7.0 and len(times) == 8
     plain = table.query("nucleation == 'Gaussian' and release == 'total' and damping_ratio == 0.1")
-    found = plain.query("-1 < left < 0").groupby("fraction")[["time", "length"]].median()
+    medians = plain.query("-1 < left < 0").groupby("fraction")[["time", "length"]].median()
     for fraction, known in ARRESTS.items():
-        assert found.loc[fraction].to_list() == pytest.approx(known, rel=5e-3)
+        assert medians.loc[fraction].to_list() == pytest.approx(known, rel=5e-3)

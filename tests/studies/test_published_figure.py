@@ -1,4 +1,4 @@
-"""The inference from the published figure, which finds known parameters by numbers of lattices; the authors' scheme."""
+"""Inference of known parameters from the published figure; the scheme of its authors."""
 
 import numpy as np
 import pandas as pd
@@ -30,8 +30,8 @@ def test_it_finds_the_parameters_of_a_lattice_run(config, panel, monkeypatch):
     ratios = {"total": (0.08, 0.1, 0.13, 0.17), "elastic": (0.1, 0.15, 0.22, 0.3)}
     monkeypatch.setattr(study_module, "DAMPING_RATIOS", ratios)
     monkeypatch.setattr(study_module, "RIGHT_RATIOS", (0.1,))
-    found = inference(study_module.table({}, {}, config))
-    best = found["best"]
+    result = inference(study_module.table({}, {}, config))
+    best = result["best"]
     assert best["release"] == "total" and best["chi2"] < 0.05
     assert best["damping_ratio"] == pytest.approx(ratio, rel=0.02)
     assert [best["tau0"], best["gamma"]] == pytest.approx(truth, abs=2e-3)
@@ -46,50 +46,49 @@ READINGS = {"profile": 10, "arrows": 12}
 @pytest.mark.parametrize("part", READINGS)
 @pytest.mark.parametrize("release", ["total", "elastic"])
 def test_the_best_fit_is_that_of_lattices_without_the_exact_solution(table, panel, release, part):
-    best, fitted = (
-        inference(table, part=part)[release],
-        ~panel.readings["arrow"] | (part == "arrows"),
-    )
+    best = inference(table, part=part)[release]
+    fitted = ~panel.readings["arrow"] | (part == "arrows")
     assert fitted.sum() == READINGS[part]
     ratio, dx = best["damping_ratio"], best["dx"]
     assert dx == pytest.approx(BETA / ratio, rel=1e-3)
-    found = least_squares(
-        lambda trial: ((panel.lattice(trial, ratio, release, dx) - panel.drawn) / panel.error)[fitted],
-        [0.25, 0.55], x_scale=[0.25, 0.55], diff_step=0.01, xtol=1e-4,
-    )  # fmt: skip
-    assert 2.0 * found.cost == pytest.approx(best["chi2"], abs=0.05)
-    assert found.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
+
+    def pulls(trial: np.ndarray) -> np.ndarray:
+        return ((panel.lattice(trial, ratio, release, dx) - panel.drawn) / panel.error)[fitted]
+
+    near = [0.25, 0.55]
+    result = least_squares(pulls, near, x_scale=near, diff_step=0.01, xtol=1e-4)
+    assert 2.0 * result.cost == pytest.approx(best["chi2"], abs=0.05)
+    assert result.x == pytest.approx([best["tau0"], best["gamma"]], abs=1e-3)
 
 
 @pytest.mark.parametrize("part", READINGS)
 def test_trials_are_smallest_in_chi_square_at_their_damping_ratio(table, panel, part):
     profile = table[(table["part"] == part) & (table["release"] == "total")]
     rows = profile[profile["damping_ratio"] == profile["damping_ratio"].unique()[2]]
-    first, correction, weight = (
-        rows.iloc[0],
-        rows["correction"].to_numpy(),
-        rows["weight"].to_numpy(),
-    )
-    own = (weight * rows["pull"] ** 2).sum()
+    first = rows.iloc[0]
+    correction, weight = rows["correction"].to_numpy(), rows["weight"].to_numpy()
+    smallest = (weight * rows["pull"] ** 2).sum()
     for change in ((0.004, 0.0), (-0.004, 0.0), (0.0, 0.008), (0.0, -0.008)):
         trial = np.array([first["tau0"] + change[0], first["gamma"] + change[1]])
         pulls = panel.exact(trial, first["damping_ratio"], "total") + correction - panel.drawn
-        assert (weight * (pulls / panel.error) ** 2).sum() > own + 0.5
+        assert (weight * (pulls / panel.error) ** 2).sum() > smallest + 0.5
 
 
 @pytest.mark.parametrize("release", ["total", "elastic"])
 @pytest.mark.parametrize("part", READINGS)
 def test_regions_end_where_chi_square_has_risen_enough(table, release, part):
-    found = inference(table, part=part)
-    assert found["best"] == min((found["total"], found["elastic"]), key=lambda entry: entry["chi2"])
+    result = inference(table, part=part)
+    assert result["best"] == min(
+        (result["total"], result["elastic"]), key=lambda entry: entry["chi2"]
+    )
     profile = table[(table["part"] == part) & (table["release"] == release)]
     line, fitted = curve(profile), profile.loc[profile["weight"] > 0.0, "reading"].unique()
-    entry = found[release]
+    entry = result[release]
     for level, regions in entry["regions"].items():
         low, high = regions["damping_ratio"]
         assert low < entry["damping_ratio"] < high
-        there = np.interp([low, high], line["damping_ratio"], line["chi2"])
-        assert there == pytest.approx(entry["chi2"] + likely(level), abs=0.15)
+        chi_square = np.interp([low, high], line["damping_ratio"], line["chi2"])
+        assert chi_square == pytest.approx(entry["chi2"] + likely(level), abs=0.15)
     assert entry["chi2"] == pytest.approx(sum(entry["pulls"][name] ** 2 for name in fitted))
     # Less three parameters.
     assert entry["dof"] == READINGS[part] - 3
@@ -98,12 +97,8 @@ def test_regions_end_where_chi_square_has_risen_enough(table, release, part):
 
 def test_an_end_beyond_the_fits_is_not_known(table):
     ratio = table["damping_ratio"]
-    kept = (
-        (table["part"] == "profile")
-        & (table["release"] == "elastic")
-        & (ratio < 0.29)
-        & (ratio > 0.1)
-    )
+    profile = (table["part"] == "profile") & (table["release"] == "elastic")
+    kept = profile & (ratio < 0.29) & (ratio > 0.1)
     low, high = inference(table[kept])["elastic"]["regions"][0.95]["damping_ratio"]
     assert np.isnan(low) and np.isfinite(high)
 
@@ -122,8 +117,8 @@ def test_the_right_panel_fixes_the_width_and_nothing_else(table):
     assert np.ptp(rows["pull"]) < 1.0
     fit = (width * rows["drawn"] / (rows["exact"] + rows["correction"])).mean()
     assert abs(fit - width) < 3.0 * (width * rows["reading_error"] / rows["exact"]).min()
-    found = right_panel(table)
-    assert (found["chi2"], found["dof"]) == (pytest.approx(rows["pull"].abs().max() ** 2), 1)
+    result = right_panel(table)
+    assert (result["chi2"], result["dof"]) == (pytest.approx(rows["pull"].abs().max() ** 2), 1)
 
 
 def test_an_unknown_quantity_is_named():
@@ -135,9 +130,9 @@ def test_an_unknown_quantity_is_named():
 @pytest.mark.slow
 def test_short_steps_of_the_published_scheme_cost_less_than_its_spacing(study):
     table = study("published_scheme").set_index("quantity")
-    off = (table[["published", "localised"]].div(table["exact"], axis=0) - 1.0).abs()
+    errors = (table[["published", "localised"]].div(table["exact"], axis=0) - 1.0).abs()
     # Here the damped front speed is 1.4725, far from the undamped 1.25.
     assert table.loc["front_speed", "exact"] == pytest.approx(1.4725, abs=1e-4)
-    assert off.loc["front_speed"].max() < 1e-3 and off.loc["pulse_slip"].max() < 1e-3
-    late = off.loc["first_stick_time"]
+    assert errors.loc["front_speed"].max() < 1e-3 and errors.loc["pulse_slip"].max() < 1e-3
+    late = errors.loc["first_stick_time"]
     assert late["published"] < 2.0 * late["localised"] < 0.01

@@ -10,10 +10,8 @@ import pytest
 
 from slippulse.report.compare import compare, main
 
-RUN = {
-    "boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65, "damping_ratio": 0.1,
-    "duration": 10.0, "release": "total",
-}  # fmt: skip
+RUN = {"boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65}
+RUN |= {"damping_ratio": 0.1, "duration": 10.0, "release": "total"}
 TABLE, STUDY = "measurements/sweep.csv", "uncertainties/sweep.csv"
 CONFIG = {"preset": "paper", "model": {"release": "total"}}
 
@@ -26,15 +24,15 @@ def tree(
     uncertainty=0.01,
     verdict="reproduced",
     config=None,
-    **more,
+    **columns,
 ) -> Path:
-    """Results with one measured number, and a grid study of it, or of another value, and more columns."""
+    """Results with one measured number and further columns, and a grid study of it."""
     run = RUN | (run or {})
     folder = folder / "results"
     for name in ("measurements", "uncertainties"):
         (folder / name).mkdir(parents=True)
     lattice = {"scheme": "localised", "dx": 0.01, "order": 8, "max_step": 1.0, "speed": speed}
-    pd.DataFrame([run | lattice | more]).to_csv(folder / TABLE, index=False)
+    pd.DataFrame([run | lattice | columns]).to_csv(folder / TABLE, index=False)
     study = {
         "quantity": "speed",
         "value": speed if studied is None else studied,
@@ -80,7 +78,7 @@ def test_what_differs_is_said(tmp_path, capsys, one, two, said):
 
 CHANGED = pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}])
 MISSING = [
-    # As after a run of a single figure with another gamma: the study of uncertainties is the old one.
+    # A run of a single figure with another gamma leaves the old study of uncertainties.
     (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
     (
         lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"),
@@ -94,24 +92,29 @@ MISSING = [
 
 @pytest.mark.parametrize(("change", "said"), MISSING)
 def test_what_is_missing_in_one_tree_is_said(tmp_path, capsys, change, said):
-    here, there = tree(tmp_path / "here"), tree(tmp_path / "there")
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
     change(here)
-    assert main([str(here), str(there)]) == 1
+    assert main([str(here), str(other)]) == 1
     assert said in capsys.readouterr().out
 
 
 def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
     here = tree(tmp_path / "here", uncertainty=NAN)
-    there = tree(tmp_path / "there", speed=2.0, uncertainty=NAN, dx=0.02)
-    result = compare(here, there)
+    other = tree(tmp_path / "other", speed=2.0, uncertainty=NAN, dx=0.02)
+    result = compare(here, other)
     assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, [])
 
 
+TEXT = ",".join(RUN) + "\n" + ",".join(["x"] * len(RUN)) + "\n"
 ODD = {
     "other columns": (TABLE, "a,b\n1,2\n", "no column boundary"),
     "other columns in a study": (STUDY, "a,b\n1,2\n", "no column point"),
-    "text for a width": (TABLE, ",".join(RUN) + "\n" + ",".join(["x"] * len(RUN)) + "\n", "text in column left"),
-    "text for a value": (STUDY, "point,quantity,value,uncertainty\n0,speed,1x0,0.1\n", "text in column value"),
+    "text for a width": (TABLE, TEXT, "text in column left"),
+    "text for a value": (
+        STUDY,
+        "point,quantity,value,uncertainty\n0,speed,1x0,0.1\n",
+        "text in column value",
+    ),
     "a folder for a table": (TABLE, None, "Is a directory"),
     "a folder for a study": (STUDY, None, "Is a directory"),
     "a folder for the provenance": ("provenance.json", None, "Is a directory"),
@@ -120,7 +123,7 @@ ODD = {
     "too deep": ("provenance.json", "[" * 100_000, ""),
     "claims without a name": ("claims.json", "[{}]", "no 'id'"),
     "a number for the claims": ("claims.json", "5", ""),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("which", ["here", "there"])

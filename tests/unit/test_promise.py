@@ -15,23 +15,21 @@ from slippulse.predict.comparison import measured_table
 from slippulse.report.scene_page import scene_page
 
 SHARE = 0.95
-PULSE = {
-    "boundary": "displacement", "run_flags": "", "left": 0.5, "right": 0.5, "beyond": 0.5, "damping_ratio": 0.1,
-    "pulse_state": "steady", "front_speed_left": 1.2, "front_speed_right": 1.2, "pulse_width": 2.0,
-    "transition_time": 3.0, "pulse_acceleration": 1.0,
-}  # fmt: skip
-CRACK = {
-    "boundary": "stress", "run_flags": "", "left": -1.0, "right": 0.0, "beyond": 0.0, "damping_ratio": 0.1,
-    "transition_state": "resolved", "front_speed_right": 1.0, "transition_time": 5.0, "largest_velocity": 1.0,
-}  # fmt: skip
+COMMON = {"run_flags": "", "damping_ratio": 0.1}
+PULSE = COMMON | {"boundary": "displacement", "left": 0.5, "right": 0.5, "beyond": 0.5}
+PULSE |= {"front_speed_left": 1.2, "front_speed_right": 1.2, "transition_time": 3.0}
+PULSE |= {"pulse_state": "steady", "pulse_width": 2.0, "pulse_acceleration": 1.0}
+CRACK = COMMON | {"boundary": "stress", "left": -1.0, "right": 0.0, "beyond": 0.0}
+CRACK |= {"front_speed_right": 1.0, "transition_time": 5.0, "largest_velocity": 1.0}
+CRACK |= {"transition_state": "resolved"}
 
 
-# What is not promised under either boundary, by the beginning of its name, and why.
+# Numbers that are not promised under either boundary, by the beginning of their names; reasons.
 NOT_COVERED = {
     "front_intercept": "a small difference of large numbers",
     "front_speed_error": "an error itself",
     "late_front_speed": "two samples of a front, a spacing of samples apart",
-    "pulse": "a position with the lag of the whole path; under a stress boundary no pulse has a width of its own",
+    "pulse": "a position with the lag of the path; under a stress boundary no pulse has a width",
     "trailing_edge": "a position at a stated time",
     ("slip_time", "slip_length"): "its slope vanishes where slip hardly reaches the stated value",
     (
@@ -43,7 +41,7 @@ NOT_COVERED = {
         "centre",
     ): "near 0",
     "sliding_at_once": "a count of blocks",
-    "largest_velocity": "near 0 if a change; under a displacement boundary a pulse may still be forming",
+    "largest_velocity": "near 0 if a change; under a displacement boundary a pulse may still form",
     "first_stick": "under a stress boundary blocks that stick first may be anywhere",
     "last_release": "the arrest never comes in the continuum",
     "transition_longest_wait": "a wait between two blocks, which shrinks with the spacing",
@@ -52,7 +50,7 @@ NOT_COVERED = {
 }
 
 
-# Of a run with changes, which of some numbers are covered and which are not.
+# Numbers of a run with changes that are covered, and others that are not.
 COVERS = [
     (PULSE, {}, ["front_speed_right", "pulse_width", "transition_time"], ["pulse_acceleration"]),
     (PULSE, {"run_flags": "unresolved_pulse"}, [], ["front_speed_right"]),
@@ -69,8 +67,8 @@ COVERS = [
 
 @pytest.mark.parametrize(("run", "changed", "those", "others"), COVERS)
 def test_what_is_covered(run, changed, those, others):
-    found = {name: covers(run | changed, name, SHARE) for name in those + others}
-    assert found == dict.fromkeys(those, True) | dict.fromkeys(others, False)
+    result = {name: covers(run | changed, name, SHARE) for name in those + others}
+    assert result == dict.fromkeys(those, True) | dict.fromkeys(others, False)
     assert not covers(CRACK, "transition_time", 0.99)
 
 
@@ -119,10 +117,10 @@ def test_a_study_judges_each_number_and_says_how_many_runs_kept_it(tables, study
     middle = float(relative.median())
     between = judged(study, tables[0], middle, SHARE)["kept"][relative.index]
     assert list(between == "true") == list(relative <= middle)
-    # A spacing of its own promises nothing.
-    own = judged(study, tables[0], math.nan, SHARE)
-    assert set(own["kept"]) == {""} and own["promised"].isna().all()
-    assert summary(own, math.nan) == "its spacing is user-defined and promises nothing"
+    # A user-defined spacing promises nothing.
+    unknown = judged(study, tables[0], math.nan, SHARE)
+    assert set(unknown["kept"]) == {""} and unknown["promised"].isna().all()
+    assert summary(unknown, math.nan) == "its spacing is user-defined and promises nothing"
 
 
 def test_an_unknown_uncertainty_has_not_kept_its_promise(tables):
@@ -165,13 +163,13 @@ def test_the_page_of_a_scene_says_what_is_kept(tmp_path):
 @pytest.mark.parametrize("order", [1.0, 2.0, 3.5])
 @pytest.mark.parametrize("factors", [(2.0, 4.0), (1.5, 2.0)])
 def test_a_power_of_the_spacing_is_recovered(order, factors):
-    found = grid_study(tuple(3.0 + 0.2 * factor**order for factor in (1.0, *factors)), factors)
-    assert (found.observed_order, found.uncertainty) == pytest.approx((order, 0.2), rel=1e-9)
-    assert found.extrapolated == pytest.approx(3.0, rel=1e-12)
+    result = grid_study(tuple(3.0 + 0.2 * factor**order for factor in (1.0, *factors)), factors)
+    assert (result.observed_order, result.uncertainty) == pytest.approx((order, 0.2), rel=1e-9)
+    assert result.extrapolated == pytest.approx(3.0, rel=1e-12)
 
 
 def test_without_an_order_the_spread_is_the_uncertainty_and_a_missing_value_leaves_none():
-    found = grid_study((1.0, 1.1, 0.95), (2.0, 4.0))
-    assert np.isnan(found.observed_order) and found.extrapolated == 1.0
-    assert found.uncertainty == pytest.approx(0.15)
+    result = grid_study((1.0, 1.1, 0.95), (2.0, 4.0))
+    assert np.isnan(result.observed_order) and result.extrapolated == 1.0
+    assert result.uncertainty == pytest.approx(0.15)
     assert np.isnan(grid_study((1.0, np.nan, 1.0), (2.0, 4.0)).uncertainty)
