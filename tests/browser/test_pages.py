@@ -162,8 +162,8 @@ def test_its_numbers_are_those_of_the_library(explorer, opened):
         exact = {
             "speed": front_speed(scene["right"], *law),
             "speedLeft": front_speed(scene["left"], *law),
-            "transitionTime": rupture.transition_time,
-            "transitionLength": rupture.transition_length,
+            "transitionTime": rupture.transition.time,
+            "transitionLength": rupture.transition.length,
             "width": rupture.pulse_width(numbers["time"]),
             "slip": float(rupture.final_slip(numbers["edge"])),
             "slipCentre": float(rupture.final_slip(0.0)),
@@ -220,7 +220,7 @@ def test_the_rate_term_delays_the_first_stick_and_ends_pulses_where_it_should(ex
             SCENE,
         )
     ruptures = [Rupture(Prestress(0.5, 0.5), 0.65, 0.1, "total", 20.0, 1, alpha) for alpha in rates]
-    exact = [rupture.transition_time for rupture in ruptures]
+    exact = [rupture.transition.time for rupture in ruptures]
     assert times == pytest.approx(exact, rel=EXPLORER_SPEED)
     assert [slip, critical] == pytest.approx([0.94727, 0.9473], rel=5e-5)
     assert exists_below and not exists_above

@@ -8,8 +8,8 @@ import tolerances as tol
 
 from slippulse.claims.inference import inference, likely
 from slippulse.model.prestress import Prestress
+from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
 from slippulse.theory.rupture import Rupture
-from slippulse.theory.slow_front import barrier_depth, barrier_depth_estimate
 
 
 def off(rows, value, exact):
@@ -220,7 +220,7 @@ def test_a_weaker_barrier_lets_a_one_way_pulse_come_later_and_farther():
         rupture = Rupture(Prestress(left, right), 0.65, 0.1, duration=9.0)
         end = rupture.front_ends[0][0]
         assert end.reason == "stops" and not rupture.limit
-        found[row, column] = -end.x, rupture.transition_time, rupture.transition_length
+        found[row, column] = -end.x, *rupture.transition
     assert np.isfinite(found).all()
     assert (np.diff(found, axis=0) > 0.0).all()
     assert (np.diff(found[:, :, 1:], axis=1) > 0.0).all()

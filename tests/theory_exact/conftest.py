@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from nudges import nudged
 
-from slippulse.theory import domains, fronts, rupture
+from slippulse.theory import domains, fast_front, rupture
 
 
 @pytest.fixture(autouse=True)
@@ -16,7 +16,7 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
         return
     rng = np.random.default_rng(int(os.environ["SLIPPULSE_NUDGED"]))
 
-    class Law(fronts.FrontLaw):
+    class Law(fast_front.FastFront):
         def __init__(self, prestress, gamma, damping_ratio, release, refinement=1, alpha=0.0):
             # Half a lattice is no other scene than the whole: equal keys give equal moves.
             rng = np.random.default_rng(abs(hash((prestress, gamma, damping_ratio))) % 2**32)
@@ -26,7 +26,7 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
             super().__init__(*moved, release, refinement, alpha)
 
     as_numbers = rupture.as_numbers
-    monkeypatch.setattr(rupture, "FrontLaw", Law)
+    monkeypatch.setattr(rupture, "FastFront", Law)
     for module in (rupture, domains):
         monkeypatch.setattr(
             module, "as_numbers", lambda *a, **k: np.array(nudged(as_numbers(*a, **k), rng))

@@ -42,7 +42,6 @@ def test_the_published_scene():
     assert rupture.final_slip(X) == pytest.approx(SLIP, abs=1e-6)
     assert rupture.stick_time(-X) == pytest.approx(rupture.stick_time(X), abs=1e-12)
     assert rupture.first_stick == pytest.approx((STICK[0], 0.0), abs=1e-6)
-    assert rupture.transition_time == pytest.approx(STICK[0], abs=1e-6)
     assert rupture.pulse_width(STICK[5]) == pytest.approx(
         rupture.fronts_at(STICK[5])[1] - X[5], abs=2e-6
     )

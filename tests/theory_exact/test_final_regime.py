@@ -97,7 +97,7 @@ def test_without_leaf_springs_the_centre_never_slows_down_between_levels_that_ar
     found = rupture(left, right, 0.0, 80.0)
     velocity = found.slip_velocity(0.0, np.linspace(5.0, 80.0, 31))
     assert (np.diff(velocity) > -1e-9).all()
-    assert np.isnan(found.transition_time)
+    assert np.isnan(found.transition.time)
 
 
 def test_a_pulse_grows_by_half_of_the_prestress_on_its_way():

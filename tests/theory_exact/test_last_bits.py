@@ -68,7 +68,7 @@ def answers(rupture: Rupture, x: np.ndarray, time: float) -> dict[str, np.ndarra
         name: getattr(rupture, name)(x)
         for name in ("release_time", "stick_time", "final_slip", "horizon")
     }
-    numbers = ("transition_time", "transition_length", "largest_velocity")
+    numbers = ("transition", "largest_velocity")
     found = fields | {name: getattr(rupture, name) for name in numbers} | at(rupture, x, time)
     found |= {
         "first_stick": (rupture.first_stick or (np.nan, np.nan))[1],

@@ -24,7 +24,7 @@ def rupture_of(alpha: float, duration: float) -> theory.Rupture:
 
 @pytest.mark.parametrize(("alpha", "time"), [(0.4, 4.02063), (0.7, 4.4913), (0.9, 5.1196)])
 def test_first_sticks_are_those_derived_independently(alpha, time):
-    assert rupture_of(alpha, 6.0).transition_time == pytest.approx(time, rel=1e-5)
+    assert rupture_of(alpha, 6.0).transition.time == pytest.approx(time, rel=1e-5)
 
 
 def test_the_steady_pulse_and_its_end_are_those_derived_independently():

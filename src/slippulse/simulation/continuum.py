@@ -9,7 +9,7 @@ from ..model.checks import check_number
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..solver.solution import MARGIN, Solution
-from ..theory.fronts import nucleations
+from ..theory.prestress_pieces import nucleations
 from ..theory.rupture import Rupture
 from .exact_rupture import exact_rupture
 

@@ -12,7 +12,7 @@ from ..model.scene import Scene
 from ..solver.solution import solve_on_lattice
 from ..theory.front_speeds import steady_pulse
 from ..theory.pulse import SteadyPulse
-from ..theory.slow_front import barrier_depth, barrier_depth_estimate
+from ..theory.barrier import barrier_depth, barrier_depth_estimate
 
 NEEDS = {}  # type: dict[str, list[str]]
 

@@ -15,7 +15,7 @@ from ..simulation.exact_rupture import exact_rupture
 from ..theory.front_motion import admissibility_table
 from ..theory.front_speeds import front_speed, steady_pulse
 from ..theory.rupture import Rupture
-from ..theory.slow_front import barrier_depth, barrier_depth_estimate
+from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from .gaussian_transition import over_paper
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
@@ -42,7 +42,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     level, gamma = step.prestress.left, step.gamma
     ratio, release = published.damping_ratio, published.release
     rupture = cache(lambda: exact_rupture(published))
-    halfway = cache(lambda: 0.5 * rupture().transition_time)
+    halfway = cache(lambda: 0.5 * rupture().transition.time)
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)
     # It is undamped, at the speed with damping.
@@ -60,8 +60,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "one_way_stop_position": lambda: stop.x,
         "one_way_stop_time": lambda: stop.time,
         "one_way_first_stick_position": lambda: first_stick[1],
-        "one_way_transition_time": lambda: one_way.transition_time,
-        "one_way_transition_length": lambda: one_way.transition_length,
+        "one_way_transition_time": lambda: one_way.transition.time,
+        "one_way_transition_length": lambda: one_way.transition.length,
         "transition_point_lowest": lambda: over_paper(levels[0]),
         "transition_point_highest": lambda: over_paper(levels[-1]),
         "transition_point_level": lambda: over_paper(level),

@@ -20,9 +20,10 @@ from ..simulation.sweep import simulate_on_lattice
 from ..solver.lattice import UnstableRun
 from ..solver.solution import solve_on_lattice
 from ..theory.arrest import ArrestingCrack
-from ..theory.exact_transition import Fronts, exact_transition_displacement
+from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_speeds import front_speed as exact_speed
 from ..theory.front_speeds import lattice_front_speed
+from ..theory.fronts import Fronts
 from ..theory.pulse import pulse_behind_front
 
 NEEDS = {"settings": ["measure.front_window"]}

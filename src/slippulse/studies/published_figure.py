@@ -132,8 +132,8 @@ class LeftPanel:
         known = {
             "front_speed_right": speed,
             "front_intercept_right": end.x - speed * end.time,
-            "first_stick_time": rupture.transition_time,
-            "transition_length": rupture.transition_length,
+            "first_stick_time": rupture.transition.time,
+            "transition_length": rupture.transition.length,
             "largest_velocity": rupture.largest_velocity,
         }
         return self._chosen(known, lambda time: np.interp(time, *edge))

@@ -5,13 +5,14 @@ from importlib import import_module
 _NAMES = {
     "arrest": "ArrestingCrack",
     "dimensional": "Layer damage_zone_stress_drop",
-    "exact_transition": "ExactTransition Fronts exact_transition_displacement slip_velocity uniform_transition_time",
+    "barrier": "barrier_depth barrier_depth_estimate",
+    "exact_transition": "ExactTransition exact_transition_displacement uniform_transition_time",
+    "fronts": "Fronts slip_velocity",
     "front_speeds": "continuum_front_speed front_speed lattice_front_speed prestress_for_speed steady_pulse",
     "front_motion": "SteadyFront admissibility_table steady_front",
     "pulse": "SteadyPulse critical_rate_strengthening front_speed_undamped paper_pulse paper_transition_displacement"
     " paper_transition_stress prestress_balance_position",
     "rupture": "FrontEnd Limit Rupture",
-    "slow_front": "barrier_depth barrier_depth_estimate",
 }
 _HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}
 __all__ = [*_HOMES]

@@ -5,7 +5,7 @@ import numpy as np
 from ..model.checks import check_number
 from ..model.prestress import Prestress, prestress_balance_position
 from ..model.roots import root_between
-from .exact_transition import Fronts
+from .fronts import Fronts
 
 
 class ArrestingCrack:

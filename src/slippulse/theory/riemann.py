@@ -1,43 +1,71 @@
-"""Riemann's formula behind a rupture front: slip, velocity and strain as integrals along the curve t = T(x).
+"""Riemann's formula behind a rupture front: slip, velocity and strain as integrals along t = T(x).
 
-Each position feels its pre-stress from T(x) on, and u_tt + alpha u_t = u_xx - gamma u + tau has the retarded solution
-E J0/2 in its future, since exp(alpha t/2) u obeys the equation without alpha at k = gamma - alpha^2/4 for gamma. With
-xi = t - y, eta = t + y, g = T - x, h = T + x, E = exp(-alpha (t - T)/2) and K(z) = J0(sqrt z) at
-z = k (xi - g)(eta - h), between the points x_l, x_r where the characteristics through (y, t) meet the curve,
+Each position feels its pre-stress from T(x) on. u_tt + alpha u_t = u_xx - gamma u + tau has the
+retarded solution E J0/2 in the future of an impulse, since exp(alpha t/2) u obeys the equation
+without alpha, with k = gamma - alpha^2/4 for gamma. With xi = t - y, eta = t + y, g = T - x,
+h = T + x, E = exp(-alpha (t - T)/2), and K(z) = J0(sqrt z) at z = k (xi - g)(eta - h), between the
+points x_l and x_r where the characteristics through (y, t) meet the curve,
 
     2 du/dt = Int tau E K dx
-    2 u     = 2 p(y) - E p(x_l) - E p(x_r) + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }
+    2 u     = 2 p(y) - E p(x_l) - E p(x_r)
+              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }
 
-as long as no stuck point lies in the past of (y, t). p(x) is any solution at rest, p'' - gamma p + tau = 0. K,
-entire in z, is evaluated by polynomials, a third of the time of scipy's j0 (a fifth of i0's, for z < 0); error
-below 1e-11. Where k < 0 it is I0, whose size would cost them their digits.
+as long as no stuck point lies in the past of (y, t). p(x) is any solution at rest,
+p'' - gamma p + tau = 0. K is an entire function of z. It is evaluated by polynomials, with an error
+below 1e-11, in a third of the time of scipy's j0 (a fifth of that of i0, for z < 0). Where k < 0 it
+is I0, whose size would cost the polynomials their digits.
 """
 
 import math
 from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import accumulate
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.special import i0, i1, j0, j1
 
-from .curve import COUNT, CUMULATIVE, PARTIAL, SLOPE, TO_POWERS, WEIGHTS, Curve, value_and_slope
+from .curve import (
+    COUNT,
+    CUMULATIVE,
+    PARTIAL,
+    SLOPE,
+    TO_POWERS,
+    WEIGHTS,
+    Crossing,
+    Curve,
+    value_and_slope,
+)
 
-# Points whose integrals are computed together: their arrays stay in the cache.
+# Number of points whose integrals are computed together: their arrays stay in the cache.
 CHUNK = 96
-# Beyond this z a polynomial would cancel.
+# A polynomial would cancel beyond this z.
 LARGEST = 256.0
 AT_ZERO = (1.0, -0.25, 1.0 / 32.0)
-# Exponents beyond it occur only outside the domain of integration.
+# Larger exponents occur only outside the domain of integration.
 LARGEST_EXPONENT = 300.0
+
+
+class RestNodes(NamedTuple):
+    """A state at rest at the nodes of a curve: p, p', and dT/ds, dg/ds and dh/ds there."""
+
+    p: np.ndarray
+    slope: np.ndarray
+    d_time: np.ndarray
+    d_early: np.ndarray
+    d_late: np.ndarray
+
+    def on(self, panels: slice) -> "RestNodes":
+        """The values on some panels, as flat arrays."""
+        return RestNodes(*(values[panels].ravel() for values in self))
 
 
 class Rest:
     """One solution p of p'' - gamma p + tau = 0 along a curve: which one makes no difference to u.
 
-    For gamma > 0 the bounded one, exp(-sqrt(gamma) |x|)/(2 sqrt(gamma)) convolved with tau, which is continued beyond
-    the curve at its outermost values; summed from panel to panel in the direction in which it decays.
+    For gamma > 0 the bounded one: exp(-sqrt(gamma) |x|)/(2 sqrt(gamma)) convolved with tau, which
+    keeps its outermost values beyond the curve. The sum runs in the direction in which it decays.
     """
 
     def __init__(self, curve: Curve, gamma: float) -> None:
@@ -52,15 +80,11 @@ class Rest:
             left = _decaying(k, -curve.x[::-1, ::-1], curve.source[::-1, ::-1], -curve.edges[::-1])
             left = left[::-1, ::-1]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
-        # p, p' and dT/ds, dg/ds, dh/ds at the nodes.
-        self.at_nodes = (
-            p,
-            slope,
-            *(values @ SLOPE.T for values in (curve.time, curve.early, curve.late)),
-        )
+        derivatives = (values @ SLOPE.T for values in (curve.time, curve.early, curve.late))
+        self.at_nodes = RestNodes(p, slope, *derivatives)
         self._powers = [TO_POWERS @ values.T for values in (p, slope)]
 
-    def at(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
+    def evaluate(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """p (order 0) or p' (1) at a parameter on panels."""
         return value_and_slope(self._powers[order].take(panel, axis=-1), s)[0]
 
@@ -82,8 +106,26 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
     return (np.array(starts[:-1])[:, None] + (source * within) @ CUMULATIVE.T) / within
 
 
+class Sources(NamedTuple):
+    """The curve as points behind it see it, with one row a point and one column a node.
+
+    d_xi is xi - g and d_eta is eta - h; kernel(order) is K or a derivative of it.
+    """
+
+    d_xi: np.ndarray
+    d_eta: np.ndarray
+    kernel: Callable[[int], np.ndarray]
+    panels: slice
+
+
+Integrand = Callable[[Sources], np.ndarray]
+
+
 class Past:
-    """The domains of dependence of points (y, time), flat arrays as gamma may be for du/dt, behind a curve."""
+    """The domains of dependence of points (y, time), flat arrays, behind a curve.
+
+    gamma may differ from point to point for du/dt.
+    """
 
     def __init__(
         self,
@@ -92,7 +134,7 @@ class Past:
         y: np.ndarray,
         time: np.ndarray,
         alpha: float = 0.0,
-    ):
+    ) -> None:
         self.curve, self.alpha, self.y = curve, alpha, y
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
@@ -101,43 +143,43 @@ class Past:
     def slip_velocity(self) -> np.ndarray:
         """du/dt."""
         source = self.curve.source
-        return 0.5 * self._along(
-            lambda behind, ahead, kernel, panels: kernel(0) * source[panels].ravel()
-        )
+        return 0.5 * self._along(lambda sources: sources.kernel(0) * source[sources.panels].ravel())
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of du/dt by t - y and by t + y: of the formula's ends and of its kernel."""
-        ends = []
-        crossings = zip(
-            ("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True
-        )
-        for name, (panel, s, _), fall in crossings:
-            slope = self.curve.at(name, panel, s, order=1)
-            # Where the slope is 0 so is tau, and the end contributes nothing.
-            slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-            ends.append(fall * self.curve.at("source", panel, s) / slope)
+        """Derivatives of du/dt by t - y and by t + y, from its ends and its kernel."""
+        decay_left, decay_right = self._decay_at_ends()
+        left = self._source_per("early", self.left, decay_left)
+        right = self._source_per("late", self.right, decay_right)
         # E falls with both alike.
         lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
-            return -0.5 * ends[0] - lag, 0.5 * ends[1] - lag
+            return -0.5 * left - lag, 0.5 * right - lag
         source, k = self.curve.source, self.stiffness
 
-        def integrand(behind, ahead, kernel, panels):
-            growth = kernel(1) * source[panels].ravel()
-            return np.stack([growth * ahead, growth * behind])
+        def integrand(sources: Sources) -> np.ndarray:
+            growth = sources.kernel(1) * source[sources.panels].ravel()
+            return np.stack([growth * sources.d_eta, growth * sources.d_xi])
 
-        by_xi, by_eta = self._along(integrand, 2)
-        return 0.5 * (k * by_xi - ends[0]) - lag, 0.5 * (k * by_eta + ends[1]) - lag
+        by_xi, by_eta = self._along(integrand, (2,))
+        return 0.5 * (k * by_xi - left) - lag, 0.5 * (k * by_eta + right) - lag
+
+    def _source_per(self, name: str, end: Crossing, decayed: np.ndarray | float) -> np.ndarray:
+        """E tau dx by dg (early) or dh (late) where the characteristics meet the curve."""
+        slope = self.curve.evaluate(name, end.panel, end.s, order=1)
+        # Where the slope is 0 so is tau, and the end contributes nothing.
+        slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
+        return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
 
     def slip(self, rest: Rest) -> np.ndarray:
         """u."""
         k, alpha = self.stiffness, self.alpha
 
-        def integrand(behind, ahead, kernel, panels):
-            p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
-            out = kernel(0) * (-slope * time - 0.25 * alpha * p * (late - early))
+        def integrand(sources: Sources) -> np.ndarray:
+            p, slope, d_time, d_early, d_late = rest.at_nodes.on(sources.panels)
+            out = sources.kernel(0) * (-slope * d_time - 0.25 * alpha * p * (d_late - d_early))
             if k:
-                out += kernel(1) * (ahead * (k * p * early) - behind * (k * p * late))
+                sides = sources.d_eta * (k * p * d_early) - sources.d_xi * (k * p * d_late)
+                out += sources.kernel(1) * sides
             return out
 
         return self._less_ends(rest, 0) + 0.5 * self._along(integrand)
@@ -149,73 +191,77 @@ class Past:
         if k == alpha == 0.0:
             return out
 
-        def integrand(behind, ahead, kernel, panels):
-            p, slope, time, early, late = (values[panels].ravel() for values in rest.at_nodes)
-            first = kernel(1)
-            growth = k**2 * kernel(2) * (ahead * (p * early) - behind * (p * late))
-            sides = first * (k * p * (early + late))
-            push = k * (slope * time + 0.25 * alpha * p * (late - early))
-            return (ahead - behind) * (first * push - growth) + sides
+        def integrand(sources: Sources) -> np.ndarray:
+            p, slope, d_time, d_early, d_late = rest.at_nodes.on(sources.panels)
+            d_xi, d_eta, first = sources.d_xi, sources.d_eta, sources.kernel(1)
+            growth = k**2 * sources.kernel(2) * (d_eta * (p * d_early) - d_xi * (p * d_late))
+            sides = first * (k * p * (d_early + d_late))
+            push = k * (slope * d_time + 0.25 * alpha * p * (d_late - d_early))
+            return (d_eta - d_xi) * (first * push - growth) + sides
 
-        (on_left, s_left, _), (on_right, s_right, _) = self.left, self.right
         at_left, at_right = self._at_ends(rest, 0)
-        behind = (self.xi - curve.at("early", on_right, s_right)) * at_right
-        ahead = (self.eta - curve.at("late", on_left, s_left)) * at_left
-        out += 0.125 * k * (behind - ahead) - 0.25 * alpha * (at_right - at_left)
+        d_xi = self.xi - curve.evaluate("early", self.right.panel, self.right.s)
+        d_eta = self.eta - curve.evaluate("late", self.left.panel, self.left.s)
+        sides = 0.125 * k * (d_xi * at_right - d_eta * at_left)
+        out += sides - 0.25 * alpha * (at_right - at_left)
         return out + 0.5 * self._along(integrand)
 
     def _less_ends(self, rest: Rest, order: int) -> np.ndarray:
         """p or p' at the points less its mean, after decay, at the ends of their integrals."""
-        return rest.at(*self.curve.locate(self.y), order) - 0.5 * sum(self._at_ends(rest, order))
+        here = rest.evaluate(*self.curve.locate(self.y), order)
+        return here - 0.5 * sum(self._at_ends(rest, order))
 
     def _at_ends(self, rest: Rest, order: int) -> list[np.ndarray]:
         """E p or E p' at the left and the right end of each integral."""
-        crossings = zip((self.left, self.right), self._decay_at_ends(), strict=True)
-        return [rest.at(panel, s, order) * fall for (panel, s, _), fall in crossings]
+        ends = zip((self.left, self.right), self._decay_at_ends(), strict=True)
+        return [rest.evaluate(end.panel, end.s, order) * decayed for end, decayed in ends]
 
     def _decay_at_ends(self) -> tuple[np.ndarray | float, np.ndarray | float]:
         """E at the left and the right end of each integral."""
         if not self.alpha:
             return 1.0, 1.0
-        (on_left, s_left, _), (on_right, s_right, _) = self.left, self.right
-        ahead = self.eta - self.curve.at("late", on_left, s_left)
-        behind = self.xi - self.curve.at("early", on_right, s_right)
-        return np.exp(-0.25 * self.alpha * ahead), np.exp(-0.25 * self.alpha * behind)
+        d_eta = self.eta - self.curve.evaluate("late", self.left.panel, self.left.s)
+        d_xi = self.xi - self.curve.evaluate("early", self.right.panel, self.right.s)
+        return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
 
-    def _along(self, integrand: Callable, *count: int) -> np.ndarray:
-        """Integrals of an integrand (or a count), per unit of the panels' parameter, over each domain."""
-        curve = self.curve
-        out, stiffness = (
-            np.empty((*count, self.xi.size)),
-            np.broadcast_to(self.stiffness, self.xi.shape),
-        )
-        # Points of about the same panels together.
+    def _along(self, integrand: Integrand, components: tuple[int, ...] = ()) -> np.ndarray:
+        """Integrals over each domain of an integrand, per unit of the parameter of the panels."""
+        out = np.empty((*components, self.xi.size))
+        # Points of about the same panels are computed together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, order.size, CHUNK):
-            part = order[start : start + CHUNK]
-            high = self.right.panel[part]
-            low = np.minimum(self.left.panel[part], high)
-            first, last = int(low.min()), int(high.max()) + 1
-            panels = slice(first, last)
-            behind = self.xi[part, None] - curve.early[panels].ravel()
-            ahead = self.eta[part, None] - curve.late[panels].ravel()
-            z = stiffness[part, None] * behind
-            z *= ahead
-            here, low, high = np.arange(last - first), low - first, high - first
-            ends = np.arange(low.size), np.array([high, low])
-            kernel = kernel_of(stiffness[0], z, z.reshape(low.size, -1, COUNT)[ends])
-            values = integrand(behind, ahead, kernel, panels)
-            if self.alpha:
-                values = values * decay(self.alpha, behind + ahead)
-            boxes = values.reshape(*count, low.size, -1, COUNT)
-            whole = (here >= low[:, None]) & (here < high[:, None])
-            # The panels at both ends are cut.
-            weights = partial_weights(np.concatenate([self.right.s[part], self.left.s[part]]))
-            cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, COUNT), axis=-1)
-            total = np.add.reduce((boxes @ WEIGHTS) * whole, axis=-1)
-            out[..., part] = total + cut[..., 0, :] - cut[..., 1, :]
-        # A point on the curve, at the end of a panel: its domain is empty.
+            points = order[start : start + CHUNK]
+            out[..., points] = self._integrals(integrand, components, points)
+        # The domain of a point on the curve, at the end of a panel, is empty.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
+
+    def _integrals(
+        self, integrand: Integrand, components: tuple[int, ...], points: np.ndarray
+    ) -> np.ndarray:
+        """Integrals for some of the points: the panels between both ends, and those cut there."""
+        curve = self.curve
+        high = self.right.panel[points]
+        low = np.minimum(self.left.panel[points], high)
+        first, last = int(low.min()), int(high.max()) + 1
+        panels = slice(first, last)
+        low, high = low - first, high - first
+        ends = np.arange(low.size), np.array([high, low])
+        d_xi = self.xi[points, None] - curve.early[panels].ravel()
+        d_eta = self.eta[points, None] - curve.late[panels].ravel()
+        stiffness = np.broadcast_to(self.stiffness, self.xi.shape)[points, None]
+        z = stiffness * d_xi
+        z *= d_eta
+        kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
+        values = integrand(Sources(d_xi, d_eta, kernel, panels))
+        if self.alpha:
+            values = values * decay(self.alpha, d_xi + d_eta)
+        boxes = values.reshape(*components, low.size, -1, COUNT)
+        here = np.arange(last - first)
+        inside = (here >= low[:, None]) & (here < high[:, None])
+        total = np.add.reduce((boxes @ WEIGHTS) * inside, axis=-1)
+        weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
+        cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, COUNT), axis=-1)
+        return total + cut[..., 0, :] - cut[..., 1, :]
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:
@@ -229,23 +275,24 @@ def decay(alpha: float, twice: np.ndarray) -> np.ndarray:
 
 
 def kernel_of(stiffness: float, z: np.ndarray, cut: np.ndarray) -> Callable:
-    """K or, by order, its derivatives at z; for k >= 0 only cut values may be below 0, continued beyond the domain."""
+    """K and its derivatives at z, by order.
+
+    For k >= 0 only cut values, continued beyond the domain, may be below 0.
+    """
     if stiffness < 0.0:
         return partial(_bessel, z)
     return partial(riemann, z, (float(cut.min()), float(z.max())))
 
 
 def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.ndarray:
-    """J0(sqrt z), J0(i y) = I0(y), or its first or second derivative by z, for z within bounds (clipped there)."""
+    """J0(sqrt z), with J0(i y) = I0(y), or its derivative of order 1 or 2, for z within bounds."""
     lower, upper = min(bounds[0], 0.0), max(bounds[1], 0.0)
     if lower == upper == 0.0:
         return np.full(z.shape, AT_ZERO[order])
     if max(-lower, upper) > LARGEST:
         return _bessel(np.clip(z, lower, upper), order)
-    # Few polynomials serve all ranges.
-    lower, upper = (
-        e and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(e)))), e) for e in (lower, upper)
-    )
+    # A few polynomials serve all ranges.
+    lower, upper = _power_of_two(lower), _power_of_two(upper)
     scaled = z - 0.5 * (lower + upper)
     scaled *= 2.0 / (upper - lower)
     scaled.clip(-1.0, 1.0, out=scaled)
@@ -257,9 +304,14 @@ def riemann(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.nd
     return out + coefficients[-1]
 
 
+def _power_of_two(bound: float) -> float:
+    """The next power of two, from 1 on, away from 0; or 0."""
+    return bound and math.copysign(2.0 ** max(0, math.ceil(math.log2(abs(bound)))), bound)
+
+
 @lru_cache(maxsize=256)
 def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
-    """Coefficients by powers, the highest first, of the scaled variable, which runs from -1 to 1 between the bounds."""
+    """Coefficients of powers, the highest first, of a variable from -1 to 1 between the bounds."""
     points = chebyshev.chebpts1(41)
     values = _bessel(0.5 * (lower + upper) + 0.5 * (upper - lower) * points, order)
     series = chebyshev.chebfit(points, values, 40)

@@ -1,8 +1,9 @@
-"""A whole rupture in the continuum limit dx -> 0 at fixed beta/dx: fronts, trailing edges, slip, without a lattice.
+"""A whole rupture in the continuum limit, dx -> 0 at fixed beta/dx.
 
-While tau(x) > 0 a front outruns the waves, so T(x) is the integral of 1/v(tau(x), beta/dx), and the damping,
-beta = (beta/dx) dx -> 0, acts at the front alone. Where tau < 0 the front is a free boundary (`slow_front`). Behind
-the fronts the undamped equation has Riemann's solution (`riemann`), up to the trailing edge (`part`).
+A front outruns the waves while tau(x) > 0: T(x) is the integral of 1/v(tau(x), beta/dx), and the
+damping, beta = (beta/dx) dx -> 0, acts at the front alone (`fast_front`). Where tau < 0 the front
+is a free boundary (`slow_front`). The undamped equation behind the fronts has Riemann's solution
+(`riemann`), up to the trailing edge (`trailing_edge`).
 """
 
 from collections.abc import Sequence
@@ -16,17 +17,20 @@ from ..model.prestress import Prestress
 from ..model.roots import root_between
 from .curve import SAME
 from .domains import broadcast_numbers
-from .fronts import NARROWEST, FrontLaw
-from .part import Part
-from .spreading import Stretch, spread
+from .exact_transition import ExactTransition
+from .fast_front import NARROWEST, FastFront
+from .part import Part, Points
+from .spreading import LEFT, RIGHT, Stretch, spread
+from .trailing_edge import FirstStick
 
-# The construction goes on this much beyond the duration, relative, so that the end is a time like any other.
+# The construction goes on beyond the duration, relative, so that the end is a time like any other.
 BEYOND = 1e-6
-# Of exponents, alpha times the duration, with room to the end of floating point.
+# The largest exponent, alpha times the duration, with room to the end of floating point.
 MOST_DECAY = 600.0
 FIELDS = ("slip_velocity", "slip", "strain")
-# Of a map, which takes 100 bytes each.
+# The largest map, which takes 100 bytes a point.
 MOST_POINTS = 10**7
+SLOW_EDGE = "the trailing edge is slower than the waves"
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,7 @@ class Limit:
 
 
 class FrontEnd(Limit):
-    """Where a front is when it stops, or at the end of the time asked for."""
+    """The last point of a front: where it stops, or at the end of the time asked for."""
 
 
 class Rupture:
@@ -47,47 +51,66 @@ class Rupture:
 
     Parameters
     ----------
-    prestress : Prestress, reaching 1 somewhere; each position where it does at t = 0 is a nucleation point
-    gamma : elasticity ratio, > 0; or 0 for the stress boundary
+    prestress : Prestress that reaches 1 somewhere: each such position is a nucleation point
+    gamma : float, elasticity ratio, > 0; or 0 for the stress boundary
     damping_ratio, release : beta/dx, from 0 to 1e6, at which dx -> 0; "total" or "elastic"
-    duration : time up to which the rupture is wanted, >= 1e-9
-    refinement : panels are cut into this number of parts, to see what the result owes to them; 1 to 10
-    rate_strengthening : alpha, of a term -alpha du/dt; above where slip runs away, and at most 600/duration in size
+    duration : float, time up to which the rupture is wanted, >= 1e-9
+    refinement : int, from 1 to 10, of the panels, to see what the result owes to them
+    rate_strengthening : float, alpha of a term -alpha du/dt, at most 600/duration; above the value
+        where slip runs away
 
-    Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a front needs more than
-    20000 panels; of every method, if a position or a time is not finite.
-    Source: derived for this project; verified against the lattice, which tends to it at first order in dx.
+    Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a
+    front needs more than 20000 panels; of every method, if a position or a time is not finite.
+    Source: derived in the supplement; the lattice tends to it at first order in dx.
+
+    Examples
+    --------
+    >>> rupture = Rupture(Prestress(0.25, 0.25), 0.55, 0.1)
+    >>> round(rupture.transition.time, 4), round(rupture.transition.length, 4)
+    (3.9312, 10.0541)
     """
 
     def __init__(
-        self, prestress: Prestress, gamma: float, damping_ratio: float = 0.0, release: str = "total",
-        duration: float = 10.0, refinement: int = 1, rate_strengthening: float = 0.0,
-    ) -> None:  # fmt: skip
+        self,
+        prestress: Prestress,
+        gamma: float,
+        damping_ratio: float = 0.0,
+        release: str = "total",
+        duration: float = 10.0,
+        refinement: int = 1,
+        rate_strengthening: float = 0.0,
+    ) -> None:
         check_number("duration", duration, at_least=NARROWEST)
-        self.law = FrontLaw(
+        self.law = FastFront(
             prestress, gamma, damping_ratio, release, refinement, rate_strengthening
         )
         check_number("rate_strengthening", rate_strengthening, at_most=MOST_DECAY / duration)
-        self.prestress, self.gamma, self.rate_strengthening = (
-            prestress,
-            self.law.gamma,
-            self.law.alpha,
-        )
+        self.prestress = prestress
+        self.gamma = self.law.gamma
+        self.rate_strengthening = self.law.alpha
         self.duration = float(duration)
         until = self.duration * (1.0 + BEYOND)
-        self.stretches, self._unknown = spread(self.law, until)
-        kinks = [0.0, *(piece.right for piece in self.law.pieces if np.isfinite(piece.right))]
-        same = self.law.refinement, prestress.symmetric, self.law.alpha
-        self._parts = [
-            Part(stretch.curve(), self.gamma, until, [*kinks, *stretch.joins], *same)
-            for stretch in self.stretches
-        ]
+        spreading = spread(self.law, until)
+        self.stretches, self._unknown = spreading.stretches, spreading.unknown
+        self._parts = [self._part(stretch, until) for stretch in self.stretches]
+
+    def _part(self, stretch: Stretch, until: float) -> Part:
+        kinks = [piece.right for piece in self.law.pieces if np.isfinite(piece.right)]
+        return Part(
+            stretch.curve(),
+            self.gamma,
+            until,
+            marks=[0.0, *kinks, *stretch.joins],
+            refinement=self.law.refinement,
+            one_side=self.prestress.symmetric,
+            alpha=self.law.alpha,
+        )
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
-        """Left and right end of each connected part: "stops" for good, or "duration" where it goes on."""
+        """Left and right end of each connected part: "stops" for good, or "duration"."""
         pairs = zip(self._parts, self.stretches, strict=True)
-        return [(self._front_end(*pair, -1.0), self._front_end(*pair, 1.0)) for pair in pairs]
+        return [(self._front_end(*pair, LEFT), self._front_end(*pair, RIGHT)) for pair in pairs]
 
     def _front_end(self, part: Part, stretch: Stretch, side: float) -> FrontEnd:
         (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
@@ -99,89 +122,128 @@ class Rupture:
         return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
-        """T(x): when the first front reaches x; NaN where none does until ``duration``."""
+        """T(x): when the first front reaches x.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, NaN where no front arrives until ``duration``
+        """
         x = as_numbers("x", x)
         times = [part.curve.arrival(x) for part in self._parts]
         return self._until_end(x, np.fmin.reduce(times))
 
     def fronts_at(self, time: float, x: float = 0.0) -> tuple[float, float]:
-        """Positions of the two fronts of the connected part around x at a time.
+        """Positions of the two fronts of the connected part that holds x.
 
-        Raises ValueError: if the time is outside (0, duration], or x has not slipped by then.
+        Parameters
+        ----------
+        time, x : a time in (0, duration], and a position that has slipped by then, or ValueError
+
+        Returns
+        -------
+        tuple of float, left and right
         """
         time = self._time(time)
         check_number("x", x)
         for part in self._parts:
             if part.curve.arrival(x) <= time * (1.0 + SAME):
-                return part.curve.front_at(time, x, -1.0), part.curve.front_at(time, x, 1.0)
+                return part.curve.front_at(time, x, LEFT), part.curve.front_at(time, x, RIGHT)
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
-        """When x sticks; NaN where it does not until ``duration``, or where the construction ends before."""
+        """Time at which x sticks.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, NaN where x does not stick until ``duration``, or beyond the horizon
+        """
         x = as_numbers("x", x)
         return self._until_end(x, self._stick(x))
 
+    def _distinct(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Distinct positions (of one side, if symmetric), and the number of each x in them."""
+        x = np.abs(x) if self.prestress.symmetric else x
+        positions, number = np.unique(x, return_inverse=True)
+        return positions, number.reshape(x.shape)
+
     def _stick(self, x: np.ndarray) -> np.ndarray:
-        """Stick times, NaN where not until a little beyond the end, whatever the horizon."""
-        positions, back = np.unique(
-            np.abs(x) if self.prestress.symmetric else x, return_inverse=True
-        )
+        """Stick times, also a little beyond the end and beyond the horizon; NaN for none."""
+        positions, number = self._distinct(x)
         out = np.full(positions.shape, np.nan)
         for part in self._parts:
             on = part.curve.covers(positions)
             out[on] = part.stick_time(positions[on])
-        return out[back].reshape(x.shape)
+        return out[number]
 
     def final_slip(self, x) -> np.ndarray:
-        """Slip at x after sticking; 0 where nothing has slipped, NaN where it has not stuck until ``duration``."""
+        """Slip at x after sticking.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``
+        """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
-        return np.where(
-            slides, np.nan, self.slip(x, np.where(np.isfinite(stick), stick, self.duration))
-        )
+        slip = self.slip(x, np.where(np.isfinite(stick), stick, self.duration))
+        return np.where(slides, np.nan, slip)
 
     @cached_property
-    def first_stick(self) -> tuple[float, float] | None:
-        """Time and position of the first sticking; None where nothing sticks until ``duration``."""
-        found = [first for part in self._parts if (first := part.first_stick())]
-        known = [(float(self._until_end(np.array(x), np.array(time))), x) for time, x in found]
-        return min((first for first in known if np.isfinite(first[0])), default=None)
-
-    @property
-    def transition_time(self) -> float:
-        """T_trans, the time of the first sticking; NaN where nothing sticks until ``duration``."""
-        return self.first_stick[0] if self.first_stick else np.nan
+    def first_stick(self) -> FirstStick | None:
+        """Time and position of the first sticking; None for none until ``duration``."""
+        known = []
+        for part in self._parts:
+            if first := part.first_stick():
+                time = float(self._until_end(np.array(first.x), np.array(first.time)))
+                if np.isfinite(time):
+                    known.append(FirstStick(time, first.x))
+        return min(known, default=None)
 
     @cached_property
-    def transition_length(self) -> float:
-        """L_trans, the distance between the two fronts around the first sticking then."""
+    def transition(self) -> ExactTransition:
+        """T_trans and L_trans; NaN for none until ``duration``."""
         if not self.first_stick:
-            return np.nan
+            return ExactTransition(np.nan, np.nan)
         left, right = self.fronts_at(*self.first_stick)
-        return right - left
+        return ExactTransition(self.first_stick.time, right - left)
 
     def pulse_width(self, time: float, side: str = "right") -> float:
-        """Distance between the front and the trailing edge behind it at a time; NaN before anything sticks.
+        """Distance between a front and the trailing edge behind it.
 
-        The time is > 0 and at most ``duration``, the side "right" or "left".
+        Parameters
+        ----------
+        time, side : a time in (0, duration]; "right" or "left"
+
+        Returns
+        -------
+        float, NaN before anything sticks
         """
         check_choice("side", side, ("right", "left"))
         time = self._time(time)
-        if not self.first_stick or time <= self.first_stick[0] * (1.0 + SAME):
+        if not self.first_stick or time <= self.first_stick.time * (1.0 + SAME):
             return np.nan
-        x = self.first_stick[1]
+        x = self.first_stick.x
         front = self.fronts_at(time, x)[side == "right"]
 
         def late(position: float) -> float:
-            return (
-                float(np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration))
-                - time
-            )
+            stick = np.nan_to_num(self._stick(np.array(position)), nan=2.0 * self.duration)
+            return float(stick) - time
 
         trailing = front if late(front) <= 0.0 else root_between(late, x, front, xtol=1e-11)
-        beyond = self._beyond_horizon(np.array([trailing, front]), time).any()
-        return np.nan if beyond else abs(front - trailing)
+        unknown = self._is_beyond_horizon(np.array([trailing, front]), time).any()
+        return np.nan if unknown else abs(front - trailing)
 
     @cached_property
     def largest_velocity(self) -> float:
@@ -189,19 +251,56 @@ class Rupture:
         return max(part.largest_velocity(self.duration, self.horizon) for part in self._parts)
 
     def slip_velocity(self, x, time) -> np.ndarray:
-        """du/dt at points, broadcast."""
+        """du/dt at points.
+
+        Parameters
+        ----------
+        x, time : float or array, positions and times up to ``duration``, broadcast
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
         return self._points(("slip_velocity",), x, time)["slip_velocity"]
 
     def slip(self, x, time) -> np.ndarray:
-        """u at points, broadcast."""
+        """u at points.
+
+        Parameters
+        ----------
+        x, time : float or array, as for `slip_velocity`
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
         return self._points(("slip",), x, time)["slip"]
 
     def strain(self, x, time) -> np.ndarray:
-        """du/dx at points, broadcast."""
+        """du/dx at points.
+
+        Parameters
+        ----------
+        x, time : float or array, as for `slip_velocity`
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
         return self._points(("strain",), x, time)["strain"]
 
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-        """Fields on a grid of times and positions, at most 1e7 points: arrays [time, position]."""
+        """Fields on a grid of times and positions.
+
+        Parameters
+        ----------
+        times, positions : arrays of one dimension, together at most 1e7 points
+        fields : tuple of str, some of "slip_velocity", "slip" and "strain"
+
+        Returns
+        -------
+        dict of arrays [time, position], NaN beyond the horizon
+        """
         if not isinstance(fields, Sequence) or isinstance(fields, str):
             raise ValueError(
                 f"fields: {short_repr(fields)}; allowed: a list of {', '.join(FIELDS)}"
@@ -217,39 +316,21 @@ class Rupture:
         return self._points(tuple(fields), x[None, :], time[:, None])
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
+        """Fields at points, broadcast."""
         x, time = broadcast_numbers(x=x, time=time)
         if np.any(time > self.duration * (1.0 + SAME)):
             raise ValueError(
                 f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}"
             )
         time = np.minimum(time, self.duration)
-        positions, column = np.unique(
-            np.abs(x) if self.prestress.symmetric else x, return_inverse=True
-        )
-        column = column.reshape(x.shape)
+        points = Points(*self._distinct(x), time)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._parts:
-            number = np.flatnonzero(part.curve.covers(positions))
-            if not number.size:
-                continue
-            release, stick = np.full((2, positions.size), np.inf)
-            release[number] = part.curve.arrival(positions[number])
-            stick[number] = np.nan_to_num(part.stick_time(positions[number]), nan=np.inf)
-            sliding = (time > release[column]) & (time < stick[column])
-            stuck = (time >= stick[column]) & np.isfinite(release[column])
-            y, t = positions[column[sliding]], time[sliding]
-            # What has stuck is computed once for each position.
-            ended = np.unique(column[stuck])
-            for name in fields:
-                out[name][sliding] = part.field(name, y, t)
-                if name != "slip_velocity" and ended.size:
-                    last = np.zeros(positions.size)
-                    last[ended] = part.field(name, positions[ended], stick[ended])
-                    out[name][stuck] = last[column[stuck]]
+            part.fill(out, points)
         if "strain" in out and self.prestress.symmetric:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
-        late = self._beyond_horizon(x, time)
-        return {name: np.where(late, np.nan, values) for name, values in out.items()}
+        unknown = self._is_beyond_horizon(x, time)
+        return {name: np.where(unknown, np.nan, values) for name, values in out.items()}
 
     def _time(self, time: float) -> float:
         """A time until the duration, which is the duration if only rounding tells them apart."""
@@ -260,27 +341,39 @@ class Rupture:
 
     def _until_end(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Times of events; NaN where they are not known to come until the duration."""
-        known = (time <= self.duration * (1.0 + SAME)) & ~self._beyond_horizon(x, time)
+        known = (time <= self.duration * (1.0 + SAME)) & ~self._is_beyond_horizon(x, time)
         return np.where(known, np.minimum(time, self.duration), np.nan)
 
-    def _beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
+    def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
         return time * (1.0 + SAME) >= self.horizon(x)
 
     @cached_property
-    def _ends(self) -> list[Limit]:
-        reason = "the trailing edge is slower than the waves"
-        found = [Limit(x, t, reason) for part in self._parts for x, t in part.violations()]
+    def _limits(self) -> list[Limit]:
+        """All points in whose future the construction says nothing."""
+        limits = []
+        for part in self._parts:
+            limits += [Limit(*point, SLOW_EDGE) for point in part.edge.violations()]
         if self.prestress.symmetric:
-            found += [Limit(-end.x, end.time, end.reason) for end in found]
-        found += [Limit(*point) for point in self._unknown]
-        return [end for end in found if end.time <= self.duration * (1.0 + SAME)]
+            limits += [Limit(-limit.x, limit.time, limit.reason) for limit in limits]
+        limits += [Limit(*point, reason) for point, reason in self._unknown]
+        return [limit for limit in limits if limit.time <= self.duration * (1.0 + SAME)]
 
     @property
     def limit(self) -> Limit | None:
-        """The earliest point in whose future the construction says nothing; None where it holds until ``duration``."""
-        return min(self._ends, key=lambda end: end.time, default=None)
+        """The earliest point in whose future the construction says nothing, or None."""
+        return min(self._limits, key=lambda limit: limit.time, default=None)
 
     def horizon(self, x) -> np.ndarray:
-        """From when on the construction says nothing at x: everything then is NaN."""
+        """Time from which on the construction says nothing at x: everything then is NaN.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, inf where there is no such time
+        """
         x = as_numbers("x", x)
-        return np.min([end.time + np.abs(x - end.x) for end in self._ends], axis=0, initial=np.inf)
+        horizons = [limit.time + np.abs(x - limit.x) for limit in self._limits]
+        return np.min(horizons, axis=0, initial=np.inf)

@@ -1,4 +1,4 @@
-"""How the rupture spreads from every nucleation point: fronts that outrun the waves, slow ones, and where they meet."""
+"""The spreading of a rupture from every nucleation point, by fast and slow fronts that may meet."""
 
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -6,46 +6,51 @@ from itertools import pairwise
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import Curve, Panel, seen
-from .fronts import FrontLaw, nucleations
+from .curve import Curve, Panel, Point, seen_from
+from .fast_front import FastFront
+from .prestress_pieces import nucleations
 from .slow_front import advance
 
-# Why a slow front cannot be followed further.
+# Reasons why a slow front cannot be followed further.
 UNKNOWN = {
     "unknown": "what decides on a slow front comes from another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
 }
-SIDES = (-1.0, 1.0)
+OVERRUN = "a front comes to where another one has stopped"
+LEFT, RIGHT = SIDES = (-1.0, 1.0)
+# A front that takes longer than this over JUST_BEFORE the meeting point is slow.
+JUST_BEFORE = 1e-6
 
 
 @dataclass
 class Stretch:
-    """A connected part of the rupture and its two fronts, side -1 (left) and +1 (right)."""
+    """A connected part of the rupture and its two fronts, by side: LEFT or RIGHT."""
 
-    # Position and time of the outermost known point, by side.
-    ends: dict[float, tuple[float, float]]
-    # How far, seen going right, a front may go before it meets another nucleation point.
+    # The outermost known point.
+    ends: dict[float, Point]
+    # Position, with the side turned to the right, of the next nucleation point.
     limits: dict[float, float]
     panels: list[Panel] = field(default_factory=list)
-    # Why a front goes no further: "dead" (it stops for good), "duration", "met", a key of UNKNOWN, or None.
+    # Reason why a front goes no further: "dead" (it stops for good), "duration", "met", a key of
+    # UNKNOWN, or None.
     stopped: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
-    # Where a front that was slow outran the waves again, and where fronts from different nucleation points met.
-    restarts: dict[float, list[float]] = field(default_factory=lambda: {-1.0: [], 1.0: []})
+    # Positions where a slow front outran the waves again, and where two fronts met.
+    restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     joins: list[float] = field(default_factory=list)
 
     def curve(self) -> Curve:
-        """Its panels, as one curve."""
-        return Curve(self.panels, self.restarts[-1.0], self.restarts[1.0])
+        """The panels as one curve."""
+        return Curve(self.panels, self.restarts[LEFT], self.restarts[RIGHT])
 
-    def add(self, side: float, panels: list[Panel], x: float, time: float) -> None:
-        """Append panels made by a front seen going right, which ends at x and time so seen."""
-        self.panels = seen(seen(self.panels, side) + panels, side)
-        self.ends[side] = (side * x, time)
+    def add(self, side: float, panels: list[Panel], end: Point) -> None:
+        """Append panels, and their end, of a front whose side is turned to the right."""
+        self.panels = seen_from(side, seen_from(side, self.panels) + panels)
+        self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
-        """Take away what lies beyond x."""
+        """Take away the panels beyond x."""
         kept = []
-        for panel in seen(self.panels, side):
+        for panel in seen_from(side, self.panels):
             left, right = panel.x_ends
             if right <= side * x:
                 kept.append(panel)
@@ -54,86 +59,109 @@ class Stretch:
                 if s > -1.0:
                     kept.append(panel.until(s, side * x))
         time = kept[-1].time_ends[1] if kept else 0.0
-        self.panels = seen(kept, side)
-        self.ends[side] = (x, time)
-        self.restarts[side] = [r for r in self.restarts[side] if side * r < side * x]
+        self.panels = seen_from(side, kept)
+        self.ends[side] = Point(x, time)
+        self.restarts[side] = [
+            restart for restart in self.restarts[side] if side * restart < side * x
+        ]
 
 
-def spread(law: FrontLaw, until: float) -> tuple[list[Stretch], list[tuple[float, float, str]]]:
-    """All connected parts of the rupture until a time, from left to right, and points where more is not known."""
+@dataclass(frozen=True)
+class Spreading:
+    """The connected parts from left to right, and points, with a reason, where no more is known."""
+
+    stretches: list[Stretch]
+    unknown: list[tuple[Point, str]]
+
+
+def spread(law: FastFront, until: float) -> Spreading:
+    """Let the rupture spread from every nucleation point until a time."""
+    laws = {RIGHT: law, LEFT: law.mirrored()}
+    stretches = _nucleated(law)
+    for stretch in stretches:
+        for side in SIDES:
+            _run(laws[side], stretch, side, until)
+    stretches = _joined(stretches)
+    # The earliest slow front goes on first: each follows from what the others did before.
+    while going := _going_fronts(stretches):
+        _, number, side = min(going)
+        _step(laws[side], stretches[number], side, until)
+        stretches = _joined(stretches)
+    unknown = []
+    for stretch in stretches:
+        for side in SIDES:
+            reason = str(stretch.stopped[side])
+            if reason in UNKNOWN:
+                unknown.append((stretch.ends[side], UNKNOWN[reason]))
+    return Spreading(stretches, unknown + _overrun(stretches))
+
+
+def _nucleated(law: FastFront) -> list[Stretch]:
+    """One stretch for each interval that is released at t = 0."""
     starts = nucleations(law.prestress)
     if not starts:
         raise ValueError(
             "prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere"
         )
-    laws = {1.0: law, -1.0: law.mirrored()}
-    befores, afters = (
-        [-np.inf, *(right for _, right in starts)],
-        [*(left for left, _ in starts[1:]), np.inf],
-    )
-    stretches = []
-    for (left, right), before, after in zip(starts, befores, afters, strict=False):
-        stretch = Stretch({-1.0: (left, 0.0), 1.0: (right, 0.0)}, {-1.0: -before, 1.0: after})
-        if left < right:
-            stretch.add(1.0, law.rightwards(left, 0.0, right, np.inf)[0], right, 0.0)
-        for side in SIDES:
-            _run(laws[side], stretch, side, until)
-        stretches.append(stretch)
-    stretches = _joined(stretches)
-    # The slow fronts, the earliest first: each follows from what the others did before.
-    while going := [
-        (s.ends[side][1], n, side)
-        for n, s in enumerate(stretches)
-        for side in SIDES
-        if s.stopped[side] is None
-    ]:
-        _, n, side = min(going)
-        _step(laws[side], stretches[n], side, until)
-        stretches = _joined(stretches)
-    stops = [(s.ends[side], str(s.stopped[side])) for s in stretches for side in SIDES]
-    unknown = [(*end, UNKNOWN[reason]) for end, reason in stops if reason in UNKNOWN]
-    return stretches, unknown + _overrun(stretches)
-
-
-def _overrun(stretches: list[Stretch]) -> list[tuple[float, float, str]]:
-    """Cut fronts that come to where another has stopped for good: what they do there is not known."""
     out = []
-    for left, right in pairwise(stretches):
-        for near, far, side in ((left, right, -1.0), (right, left, 1.0)):
-            # The front of `far` on this side has passed the end of `near`.
-            x = near.ends[-side][0]
-            if far.panels and side * far.ends[side][0] > side * x:
-                far.cut(side, x)
-                far.stopped[side] = "met"
-                out.append((*far.ends[side], "a front comes to where another one has stopped"))
+    for number, (left, right) in enumerate(starts):
+        before = starts[number - 1][1] if number > 0 else -np.inf
+        after = starts[number + 1][0] if number + 1 < len(starts) else np.inf
+        ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
+        stretch = Stretch(ends, {LEFT: -before, RIGHT: after})
+        if left < right:
+            path = law.rightwards(Point(left, 0.0), right, np.inf)
+            stretch.add(RIGHT, path.panels, Point(right, 0.0))
+        out.append(stretch)
     return out
 
 
-def _run(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
+def _going_fronts(stretches: list[Stretch]) -> list[tuple[float, int, float]]:
+    """Times, numbers of stretches and sides of the fronts that can go further."""
+    out = []
+    for number, stretch in enumerate(stretches):
+        for side in SIDES:
+            if stretch.stopped[side] is None:
+                out.append((stretch.ends[side].time, number, side))
+    return out
+
+
+def _overrun(stretches: list[Stretch]) -> list[tuple[Point, str]]:
+    """Cut fronts that come to where another has stopped for good: their motion there is unknown."""
+    out = []
+    for left, right in pairwise(stretches):
+        for stopped, moving, side in ((left, right, LEFT), (right, left, RIGHT)):
+            x = stopped.ends[-side].x
+            if moving.panels and side * moving.ends[side].x > side * x:
+                moving.cut(side, x)
+                moving.stopped[side] = "met"
+                out.append((moving.ends[side], OVERRUN))
+    return out
+
+
+def _run(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Let a front go on while it outruns the waves, as far as the next nucleation point."""
-    x, time = stretch.ends[side]
-    limit = stretch.limits[side]
-    panels, x, time = law.rightwards(side * x, time, limit, until)
+    start, limit = stretch.ends[side], stretch.limits[side]
+    panels, end = law.rightwards(Point(side * start.x, start.time), limit, until)
     if panels:
-        stretch.add(side, panels, x, time)
-    if time >= until:
+        stretch.add(side, panels, end)
+    if end.time >= until:
         stretch.stopped[side] = "duration"
-    elif x >= limit:
+    elif end.x >= limit:
         stretch.stopped[side] = "met"
 
 
-def _step(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
-    """One panel of a slow front, and where its negative piece ends the fast front that follows."""
-    x, _ = stretch.ends[side]
-    piece = law.piece_right_of(side * x)
+def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
+    """Add one panel of a slow front; where its negative piece ends, a fast front follows."""
+    piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.limits[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
     panel, stop = advance(curve, law.prestress, piece.level, law.gamma, mark, law.alpha)
     if panel is not None:
-        stretch.add(side, [panel], panel.x_ends[1], panel.time_ends[1])
+        stretch.add(side, [panel], panel.end)
     if stop in ("dead", *UNKNOWN):
         stretch.stopped[side] = stop
-    elif stretch.ends[side][1] >= until:
+    elif stretch.ends[side].time >= until:
         stretch.stopped[side] = "duration"
     elif stop == "mark":
         if mark >= stretch.limits[side]:
@@ -144,38 +172,46 @@ def _step(law: FrontLaw, stretch: Stretch, side: float, until: float) -> None:
 
 
 def _joined(stretches: list[Stretch]) -> list[Stretch]:
-    """Neighbours whose fronts have met, made one: where both have been, the earlier counts."""
+    """The stretches, with neighbours whose fronts have met made one."""
     out = [stretches[0]]
     for right in stretches[1:]:
-        left = out[-1]
-        overlap = right.ends[-1.0][0], left.ends[1.0][0]
-        if not (overlap[0] <= overlap[1] and left.panels and right.panels):
+        x = _meeting_position(out[-1], right)
+        if x is None:
             out.append(right)
-            continue
-        first, second = left.curve(), right.curve()
-
-        def lead(x: float, first=first, second=second) -> float:
-            return float(first.arrival(np.array(x)) - second.arrival(np.array(x)))
-
-        low = max(overlap[0], float(first.edges[0]))
-        high = min(overlap[1], float(second.edges[-1]))
-        if not (lead(low) <= 0.0 <= lead(high)):
-            out.append(right)
-            continue
-        x = root_between(lead, low, high, xtol=1e-14)
-        rises = np.diff(
-            [first.arrival(np.array([x - 1e-6, x])), second.arrival(np.array([x, x + 1e-6]))]
-        )
-        slow = bool(np.any(np.abs(rises) > 1e-6))
-        left.cut(1.0, x)
-        right.cut(-1.0, x)
-        restart = [x] if slow else []
-        out[-1] = Stretch(
-            ends={-1.0: left.ends[-1.0], 1.0: right.ends[1.0]},
-            limits={-1.0: left.limits[-1.0], 1.0: right.limits[1.0]},
-            panels=left.panels + right.panels,
-            stopped={-1.0: left.stopped[-1.0], 1.0: right.stopped[1.0]},
-            restarts={side: left.restarts[side] + right.restarts[side] + restart for side in SIDES},
-            joins=[*left.joins, x, *right.joins],
-        )
+        else:
+            out[-1] = _merged(out[-1], right, x)
     return out
+
+
+def _meeting_position(left: Stretch, right: Stretch) -> float | None:
+    """The position that both fronts reach at the same time; None where they have not met."""
+    if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
+        return None
+    first, second = left.curve(), right.curve()
+
+    def lead(x: float) -> float:
+        return float(first.arrival(np.array(x)) - second.arrival(np.array(x)))
+
+    low = max(right.ends[LEFT].x, float(first.edges[0]))
+    high = min(left.ends[RIGHT].x, float(second.edges[-1]))
+    if not (lead(low) <= 0.0 <= lead(high)):
+        return None
+    return root_between(lead, low, high, xtol=1e-14)
+
+
+def _merged(left: Stretch, right: Stretch, x: float) -> Stretch:
+    """One stretch of two whose fronts have met at x: each position belongs to the earlier front."""
+    just_before = left.curve().arrival(np.array([x - JUST_BEFORE, x]))
+    just_after = right.curve().arrival(np.array([x, x + JUST_BEFORE]))
+    slow = np.any(np.abs(np.diff([just_before, just_after])) > JUST_BEFORE)
+    restart = [x] if slow else []
+    left.cut(RIGHT, x)
+    right.cut(LEFT, x)
+    return Stretch(
+        ends={LEFT: left.ends[LEFT], RIGHT: right.ends[RIGHT]},
+        limits={LEFT: left.limits[LEFT], RIGHT: right.limits[RIGHT]},
+        panels=left.panels + right.panels,
+        stopped={LEFT: left.stopped[LEFT], RIGHT: right.stopped[RIGHT]},
+        restarts={side: left.restarts[side] + right.restarts[side] + restart for side in SIDES},
+        joins=[*left.joins, x, *right.joins],
+    )

@@ -1,0 +1,114 @@
+"""The distance that a steady pulse enters into a barrier of negative pre-stress."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from ..model.checks import check_number
+from ..model.prestress import Prestress
+from .curve import Curve, Panel
+from .domains import check_domains
+from .fast_front import straight_panel
+from .front_speeds import front_speed
+from .pulse import pulse_behind_front
+from .slow_front import advance
+
+# Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
+# cover, in units of the memory of the pulse.
+LONGEST = 2.0
+MEMORY = 1.5
+# The estimate may be beyond floating point below these values.
+SMALLEST = 1e-100
+# The smallest pre-stress before a barrier, and the fastest front, whose pulse takes 12000 panels.
+LOWEST = 1e-4
+FASTEST = 5e3
+# Barriers in which slow fronts were found to be resolved: the weakest, in units of the pre-stress
+# before it, and the strongest.
+WEAKEST = 0.005
+STRONGEST = 1e6
+
+
+def barrier_depth(
+    tau0: float,
+    tau_barrier: float,
+    gamma: float,
+    damping_ratio: float = 0.0,
+    release: str = "total",
+) -> float:
+    """Depth at which a steady pulse dies in a barrier; a shorter barrier is passed.
+
+    Parameters
+    ----------
+    tau0 : float, pre-stress before it, from 1e-4 to 1, whose front is no faster than 5000
+    tau_barrier : float, pre-stress of the barrier, from -1e6 to -tau0/200
+    gamma : float, elasticity ratio, > 0
+    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
+
+    Returns
+    -------
+    float, distance from the edge of the barrier (units of H), proportional to 1/sqrt(gamma)
+
+    Raises ValueError: outside the domain.
+    Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
+
+    Examples
+    --------
+    >>> round(barrier_depth(0.5, -0.5, 0.65), 3)
+    3.618
+    """
+    check_number("tau0", tau0, at_least=LOWEST, below=1.0)
+    check_number("tau_barrier", tau_barrier, at_least=-STRONGEST, at_most=-WEAKEST * tau0)
+    check_domains(gamma=gamma, damping_ratio=damping_ratio)
+    speed = float(front_speed(tau0, damping_ratio, release))
+    check_number(
+        f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST
+    )
+    panels = _steady_front(tau0, speed)
+    level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
+    # The depth is found at gamma = 1.
+    stop = None
+    while stop is None:
+        panel, stop = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
+        if panel is not None:
+            panels.append(panel)
+    if stop != "dead":
+        raise ValueError(
+            f"tau_barrier: {tau_barrier!r}, where the front is {stop} at tau0 = {tau0!r},"
+            f" damping_ratio = {damping_ratio!r}; allowed: levels on which it is resolved"
+        )
+    return panels[-1].end.x / math.sqrt(gamma)
+
+
+def _steady_front(tau0: float, speed: float) -> list[Panel]:
+    """Panels of a front that comes to x = 0 at gamma = 1, as far back as its pulse remembers."""
+    memory = MEMORY * pulse_behind_front(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
+    return [
+        straight_panel(left, right, 1.0 / speed, tau0) for left, right in pairwise(edges.tolist())
+    ]
+
+
+def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
+    """Estimate of the depth: (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
+
+    Parameters
+    ----------
+    tau0, tau_barrier, gamma : float, pre-stress before it, in (0, 1), in it, < 0, and gamma > 0
+
+    Returns
+    -------
+    float, distance (units of H)
+
+    Raises ValueError: outside the domain. Source: the authors' public code of later work.
+
+    Examples
+    --------
+    >>> round(barrier_depth_estimate(0.5, -0.5, 0.65), 3)
+    2.133
+    """
+    check_domains(tau0=tau0)
+    check_number("tau_barrier", tau_barrier, at_most=-SMALLEST)
+    check_number("gamma", gamma, at_least=SMALLEST)
+    return 2.0 / gamma * math.log((tau_barrier - tau0) / tau_barrier)

@@ -1,0 +1,168 @@
+"""Fronts that outrun the waves: T(x) is the integral of 1/v(tau(x)), in panels that resolve it."""
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ..model.checks import check_choice, check_kind, check_number, check_runaway
+from ..model.prestress import Prestress
+from ..model.scene import RELEASES
+from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel, Point
+from .prestress_pieces import EXTENT, Piece, analytic, gaussians, pieces
+from .slowness import LARGEST_RATIO, slowness
+
+# Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
+RESOLVED = 1e-10
+NARROWEST = 1e-9
+# A panel is at most this long in units of 1/sqrt(gamma): in proper length, for the waves, and in x,
+# for the state at rest.
+LONGEST = 2.0
+LONGEST_AT_REST = 4.0
+LONGEST_WITHOUT_SPRINGS = 8.0
+MOST_PANELS = 20_000
+# Slow fronts into lower pre-stress are not followed.
+LOWEST = -1e20
+# The largest factor for the numbers of panels, positions and times.
+FINEST = 10
+# Edges of panels stand at these multiples of the width of a Gaussian.
+FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
+
+
+class Path(NamedTuple):
+    """Panels of a front that goes right, and its position and time at the end."""
+
+    panels: list[Panel]
+    end: Point
+
+
+class FastFront:
+    """The law of motion of a front that outruns the waves; it makes the panels of its path."""
+
+    def __init__(
+        self,
+        prestress: Prestress,
+        gamma: float,
+        damping_ratio: float,
+        release: str,
+        refinement: int = 1,
+        alpha: float = 0.0,
+    ) -> None:
+        check_kind("prestress", prestress, Prestress)
+        check_number("gamma", gamma, at_least=0.0)
+        check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=LARGEST_RATIO)
+        check_choice("release", release, RELEASES)
+        check_number("refinement", refinement, integer=True, at_least=1, at_most=FINEST)
+        check_number("rate_strengthening", alpha)
+        check_runaway(gamma, alpha)
+        self.prestress = prestress
+        self.gamma = float(gamma)
+        self.alpha = float(alpha)
+        self.damping_ratio = float(damping_ratio)
+        self.release = release
+        self.refinement = int(refinement)
+        # The fastest rate at which a kernel changes.
+        self.rate = max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
+        # An edge of a panel stands at each feature, so that none falls between two nodes.
+        centres = [centre + width * FEATURES for centre, width in gaussians(prestress)]
+        self.features = np.unique(np.concatenate(centres))
+        levels = (prestress.left, prestress.right, *(level for _, level in prestress.steps))
+        lowest = float(np.min(prestress(self.features), initial=min(levels)))
+        check_number("lowest prestress", lowest, at_least=LOWEST)
+        self.pieces = pieces(prestress)
+
+    def mirrored(self) -> "FastFront":
+        """The law at -x."""
+        profile = self.prestress
+        steps = tuple((-position, level) for position, level in profile.steps)
+        bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
+        turned = replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)
+        return FastFront(
+            turned, self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
+        )
+
+    def slowness(self, tau: np.ndarray) -> np.ndarray:
+        """1/v at each pre-stress."""
+        return slowness(tau, self.damping_ratio, self.release)
+
+    def piece_right_of(self, x: float) -> Piece:
+        """The piece that begins at x, or holds it."""
+        return next(piece for piece in self.pieces if piece.right > x)
+
+    def longest(self, level: float) -> float:
+        """Length of the longest panel, along which the phase of the springs changes by LONGEST."""
+        if self.rate == 0.0:
+            return LONGEST_WITHOUT_SPRINGS / self.refinement
+        rate = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
+        proper = float(np.sqrt(1.0 - rate**2)) if level > 0.0 else 1.0
+        return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / self.rate / self.refinement
+
+    def rightwards(self, start: Point, stop: float, until: float) -> Path:
+        """The path from a point towards stop, as long as tau >= 0 and T < until."""
+        x, time = start
+        panels: list[Panel] = []
+        last_feature = float(self.features[-1])
+        while x < stop and time < until:
+            piece = self.piece_right_of(x)
+            if not piece.supersonic:
+                break
+            end = min(stop, piece.right)
+            if np.isinf(end) and x >= last_feature:
+                # The pre-stress is uniform from here on.
+                rate = float(self.slowness(np.array(piece.level)))
+                end = x + (until - time) / rate * (1.0 + 1e-9) + 1e-9
+            elif np.isinf(end):
+                end = max(last_feature, np.nextafter(x, np.inf))
+            panels += self.between(piece.level, Point(x, time), end)
+            x, time = end, panels[-1].time_ends[1]
+        return Path(panels, Point(x, time))
+
+    def between(self, level: float, start: Point, end: float) -> list[Panel]:
+        """Panels of a front that goes right from a point over a part of one piece."""
+        edges = self._first_edges(level, start.x, end)
+        while True:
+            half = 0.5 * np.diff(edges)[:, None]
+            x = edges[:-1, None] + half * (1.0 + NODES)
+            tau = analytic(self.prestress, level, x)
+            rate = self.slowness(tau)
+            tails = np.abs(np.stack([rate, tau]) @ TO_SERIES[-2:].T).max(axis=(0, 2))
+            size = 2.0 * half[:, 0]
+            split = (tails * size > RESOLVED) & (size > NARROWEST)
+            if not split.any():
+                break
+            if edges.size > MOST_PANELS:
+                raise self._too_many(level, end - start.x)
+            edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
+        times = start.time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (rate @ WEIGHTS))])
+        within = times[:-1, None] + (half * rate) @ CUMULATIVE.T
+        columns = x, within, tau * half, pairwise(edges), pairwise(times)
+        return [Panel(*row) for row in zip(*columns, strict=True)]
+
+    def _first_edges(self, level: float, start: float, end: float) -> np.ndarray:
+        """Edges of panels that are short enough for the waves, with one at each feature."""
+        longest = self.longest(level)
+        if (end - start) * self.refinement > MOST_PANELS * longest:
+            raise self._too_many(level, end - start)
+        inner = self.features[(self.features > start) & (self.features < end)]
+        rough = np.concatenate([[start], inner, [end]])
+        count = self.refinement * np.ceil(np.diff(rough) / longest).astype(int)
+        parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
+        edges = np.unique(np.concatenate(parts))
+        edges[0], edges[-1] = start, end
+        return edges
+
+    def _too_many(self, level: float, distance: float) -> ValueError:
+        return ValueError(
+            f"prestress: level {level!r} over a distance of {distance:g} at gamma = {self.gamma:g},"
+            f" damping_ratio = {self.damping_ratio:g}; allowed: fronts that stay within"
+            f" {MOST_PANELS} panels, of {self.longest(level):.3g} at most"
+        )
+
+
+def straight_panel(left: float, right: float, slope: float, tau: float) -> Panel:
+    """A panel of a front at constant speed in uniform pre-stress, T = slope x."""
+    half = 0.5 * (right - left)
+    x = left + half * (1.0 + NODES)
+    source = np.full(COUNT, tau * half)
+    return Panel(x, slope * x, source, (left, right), (slope * left, slope * right))

@@ -1,0 +1,158 @@
+"""A search for the first zero in time of the slip velocity, for each position by itself."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from ..model.roots import roots_between
+
+# Number of times that are computed together.
+BATCH = 8
+# Two steps in time next to a minimum of du/dt are cut into this number of parts, twice.
+FINE = 24
+# Error of a root in time.
+TIME = 1e-12
+# Slip velocities on a slow front are below this, and would be 0.
+QUIET = 1e-12
+
+
+class Brackets(NamedTuple):
+    """Intervals of time at positions, and the slip velocity at both ends: at most 0 at the end."""
+
+    x: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+    velocity_at_start: np.ndarray
+    velocity_at_end: np.ndarray
+
+
+class Samples(NamedTuple):
+    """Slip velocities at positions and times: one row a position, one column a time."""
+
+    x: np.ndarray
+    time: np.ndarray
+    velocity: np.ndarray
+
+    def brackets(self, rows: np.ndarray, columns: np.ndarray) -> Brackets:
+        """The intervals of some rows that end at these columns."""
+        start, end = (rows, columns - 1), (rows, columns)
+        times = self.time[start], self.time[end]
+        return Brackets(self.x[rows], *times, self.velocity[start], self.velocity[end])
+
+    def minima(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of the lowest of three samples, as far as a last column for each row."""
+        before, middle, after = self.velocity[:, :-2], self.velocity[:, 1:-1], self.velocity[:, 2:]
+        early = np.arange(1, self.velocity.shape[1] - 1) < columns[:, None]
+        apart = self.time[:, 2:] > self.time[:, 1:-1]
+        rows, inner = np.nonzero((middle < before) & (middle <= after) & early & apart)
+        return rows, inner + 1
+
+
+class StickSearch:
+    """A search at steps in time, until an end; velocity(x, time) is du/dt at points."""
+
+    def __init__(
+        self,
+        velocity: Callable[[np.ndarray, np.ndarray], np.ndarray],
+        step: float,
+        until: float,
+    ) -> None:
+        self.velocity = velocity
+        self.step = step
+        self.until = until
+
+    def stick_time(self, x: np.ndarray, release: np.ndarray) -> np.ndarray:
+        """Stick times at positions; NaN where there is none before the end."""
+        out = np.full(x.shape, np.nan)
+        # The last two samples are kept, since a minimum next to them may lie below 0. The first is
+        # made up.
+        last = Samples(
+            x,
+            np.stack([release, release], axis=1),
+            np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], axis=1),
+        )
+        sliding = np.flatnonzero(release < self.until)
+        while sliding.size:
+            samples = self._continued(Samples(*(values[sliding] for values in last)))
+            below = samples.velocity[:, 2:] <= 0.0
+            stuck = below.any(axis=1)
+            first = np.where(stuck, 2 + np.argmax(below, axis=1), samples.time.shape[1])
+            stick = self._zeros_next_to_minima(samples, first)
+            rows = np.flatnonzero(stuck & ~np.isfinite(stick))
+            stick[rows] = self._zeros(samples.brackets(rows, first[rows]))
+            out[sliding] = stick
+            last.time[sliding] = samples.time[:, -2:]
+            last.velocity[sliding] = samples.velocity[:, -2:]
+            sliding = sliding[~np.isfinite(stick) & (samples.time[:, -1] < self.until)]
+        return out
+
+    def _continued(self, last: Samples) -> Samples:
+        """The samples and the next batch."""
+        steps = self.step * np.arange(1, BATCH + 1)
+        batch = self._sampled(last.x, np.minimum(last.time[:, 1:] + steps, self.until))
+        time = np.concatenate([last.time, batch.time], axis=1)
+        return Samples(last.x, time, np.concatenate([last.velocity, batch.velocity], axis=1))
+
+    def _sampled(self, x: np.ndarray, time: np.ndarray) -> Samples:
+        velocity = self.velocity(np.repeat(x, time.shape[1]), time.ravel())
+        return Samples(x, time, velocity.reshape(time.shape))
+
+    def _zeros_next_to_minima(self, samples: Samples, first: np.ndarray) -> np.ndarray:
+        """Zeros between the samples next to a minimum above 0; NaN where there is none.
+
+        The minima come before the first column below 0.
+        """
+        out = np.full(samples.x.shape, np.nan)
+        rows, columns = samples.minima(first)
+        low, high = samples.time[rows, columns - 1], samples.time[rows, columns + 1]
+        for _ in range(2):
+            if not rows.size:
+                break
+            fine = self._sampled(samples.x[rows], np.linspace(low, high, FINE + 1, axis=1))
+            below = np.argmax(fine.velocity <= 0.0, axis=1)
+            hits = np.flatnonzero(below > 0)
+            zeros = self._zeros(fine.brackets(hits, below[hits]))
+            out[rows[hits]] = np.fmin(out[rows[hits]], zeros)
+            rest = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
+            lowest = np.clip(np.argmin(fine.velocity[rest], axis=1), 1, FINE - 1)
+            rows = rows[rest]
+            low, high = fine.time[rest, lowest - 1], fine.time[rest, lowest + 1]
+        return out
+
+    def _zeros(self, brackets: Brackets) -> np.ndarray:
+        """Zeros of du/dt in time; the end of a bracket where du/dt never rises from 0."""
+        # A velocity that starts at 0, at release, is followed from where it has risen.
+        level = np.where(brackets.velocity_at_start <= 0.0, QUIET, 0.0)
+        flat = self._raise_starts(brackets, np.flatnonzero(level))
+        rest = np.setdiff1d(np.arange(level.size), flat)
+        x, start, end, at_start, at_end = (values[rest] for values in brackets)
+        level = level[rest]
+        out = brackets.end.copy()
+        out[rest] = roots_between(
+            lambda time, which: self.velocity(x[which], time) - level[which],
+            start,
+            end,
+            at_start - level,
+            at_end - level,
+            TIME,
+        )
+        return out
+
+    def _raise_starts(self, brackets: Brackets, flat: np.ndarray) -> np.ndarray:
+        """Move the starts of flat brackets, in place, to where du/dt has risen; return those left.
+
+        On a slow front that is about to stop du/dt rises for a short while only.
+        """
+        for _ in range(40):
+            if not flat.size:
+                break
+            middle = 0.5 * (brackets.start[flat] + brackets.end[flat])
+            velocity = self.velocity(brackets.x[flat], middle)
+            risen = velocity > QUIET
+            brackets.start[flat[risen]] = middle[risen]
+            brackets.velocity_at_start[flat[risen]] = velocity[risen]
+            flat = flat[~risen]
+            brackets.end[flat] = middle[~risen]
+            brackets.velocity_at_end[flat] = velocity[~risen]
+        return flat
