@@ -1,4 +1,4 @@
-"""With SLIPPULSE_NUDGED set, all inputs of the exact theory are moved by some units in the last place."""
+"""All inputs of the exact theory are moved by some last digits where SLIPPULSE_NUDGED is set."""
 
 import os
 
@@ -11,7 +11,7 @@ from slippulse.theory import domains, fast_front, rupture
 
 @pytest.fixture(autouse=True)
 def inputs_nudged_in_their_last_bits(monkeypatch):
-    """Keys of a rupture, positions, times and pre-stresses: by a seed, so that a failure can be repeated."""
+    """Move keys of a rupture, positions and times, by a seed that repeats a failure."""
     if not os.environ.get("SLIPPULSE_NUDGED"):
         return
     rng = np.random.default_rng(int(os.environ["SLIPPULSE_NUDGED"]))
@@ -27,7 +27,9 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
 
     as_numbers = rupture.as_numbers
     monkeypatch.setattr(rupture, "FastFront", Law)
+
+    def nudged_numbers(key, value, **bounds):
+        return np.array(nudged(as_numbers(key, value, **bounds), rng))
+
     for module in (rupture, domains):
-        monkeypatch.setattr(
-            module, "as_numbers", lambda *a, **k: np.array(nudged(as_numbers(*a, **k), rng))
-        )
+        monkeypatch.setattr(module, "as_numbers", nudged_numbers)

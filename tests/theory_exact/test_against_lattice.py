@@ -7,6 +7,7 @@ import slippulse as sp
 from slippulse.theory import Rupture
 
 LEVEL = 0.5
+STEP = sp.Prestress(0.3, 0.3, steps=((4.0, 0.6),))
 # Profile, gamma, damping ratio, duration, positions; rate strengthening, where there is any.
 SCENES = {
     "undamped": (sp.Prestress(0.5, 0.5), 2.0 / 3.0, 0.0, 7.0, [0.0, 1.0, 2.4, 4.0]),
@@ -15,13 +16,7 @@ SCENES = {
     "asymmetric": (sp.Prestress(0.2, 0.6), 0.65, 0.1, 6.0, [-2.0, -1.0, 0.0, 1.0, 2.4, 4.0]),
     "strengthening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], 0.4),
     "weakening": (sp.Prestress(0.5, 0.5), 0.65, 0.1, 8.0, [0.0, 1.0, 2.4, 4.0], -0.3),
-    "across a step": (
-        sp.Prestress(0.3, 0.3, steps=((4.0, 0.6),)),
-        0.65,
-        0.1,
-        7.0,
-        [0.0, 2.4, 3.6, 4.4, 5.0],
-    ),
+    "across a step": (STEP, 0.65, 0.1, 7.0, [0.0, 2.4, 3.6, 4.4, 5.0]),
 }
 ORDER = (0.9, 1.1)
 RICHARDSON = 1e-4
@@ -29,14 +24,9 @@ RICHARDSON = 1e-4
 
 def lattice_run(profile, gamma, ratio, duration, dx, samples=None, alpha=0.0):
     boundary = "displacement" if gamma else "stress"
-    values = {
-        "gamma": gamma,
-        "beta": ratio * dx,
-        "max_step": 0.5,
-        "order": 8,
-        "rate_strengthening": alpha,
-    }
-    return sp.simulate(sp.Scene(boundary, profile, duration, dx, **values), samples=samples)
+    values = {"gamma": gamma, "beta": ratio * dx, "rate_strengthening": alpha}
+    scene = sp.Scene(boundary, profile, duration, dx, max_step=0.5, order=8, **values)
+    return sp.simulate(scene, samples=samples)
 
 
 def at(run, x, *quantities):
@@ -67,10 +57,14 @@ def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
 @pytest.mark.parametrize(
     ("gamma", "alpha", "first", "farthest"),
     [
-        (0.65, 0.0, 1.5, 3.0), (0.0, 0.0, 1.5, 3.0), (0.65, 0.5, 1.5, 2.4), (0.65, -0.3, 1.5, 3.0),
-        (0.0, 0.5, 1.5, 3.0), (0.65, 1.7, 2.0, 2.0),
+        (0.65, 0.0, 1.5, 3.0),
+        (0.0, 0.0, 1.5, 3.0),
+        (0.65, 0.5, 1.5, 2.4),
+        (0.65, -0.3, 1.5, 3.0),
+        (0.0, 0.5, 1.5, 3.0),
+        (0.65, 1.7, 2.0, 2.0),
     ],
-)  # fmt: skip
+)
 def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma, alpha, first, farthest):
     scene = sp.Prestress(-LEVEL, LEVEL), gamma, 0.1
     exact = Rupture(*scene, "total", 5.0, rate_strengthening=alpha)

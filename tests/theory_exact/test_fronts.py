@@ -1,4 +1,4 @@
-"""Arrival times: front law, quadrature, several nucleation points, the free boundary of negative pre-stress."""
+"""Arrival times: front law, quadrature, several nucleation points, and the free boundary."""
 
 import numpy as np
 import pytest
@@ -94,12 +94,12 @@ def test_a_slow_front_without_leaf_springs_is_the_closed_form():
 @pytest.mark.parametrize(("ratio", "depth"), [(0.0, 3.617884220), (0.1, 3.036086347)])
 def test_the_depth_of_a_barrier(ratio, depth):
     """Extrapolated lattices: 3.62 and 3.03 from dx = 0.02, 0.01, 0.005."""
-    found = barrier_depth(0.5, -0.5, 0.65, ratio)
-    assert found == pytest.approx(depth, abs=1e-8)
+    computed = barrier_depth(0.5, -0.5, 0.65, ratio)
+    assert computed == pytest.approx(depth, abs=1e-8)
     # A pulse that has become steady in a scene stops there too.
     scene = sp.Prestress(0.5, 0.5, steps=((20.0, -0.5),))
     ((_, right),) = Rupture(scene, 0.65, ratio, "total", 24.0).front_ends
-    assert right.x - 20.0 == pytest.approx(found, abs=1e-8)
+    assert right.x - 20.0 == pytest.approx(computed, abs=1e-8)
 
 
 def test_the_depth_scales_with_the_leaf_springs_and_falls_with_the_level():

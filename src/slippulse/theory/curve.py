@@ -168,8 +168,8 @@ class Curve:
         self, y: np.ndarray, xi: np.ndarray, eta: np.ndarray
     ) -> tuple[Crossing, Crossing]:
         """The points where T - x rises to xi, going left from y, and T + x to eta, going right."""
-        right, known_right = _first_rise(self.edges, self._exits_right, y, eta)
-        mirrored, known_left = _first_rise(-self.edges[::-1], self._exits_left, -y, xi)
+        right, known_right = _first_rise(self.edges, self._exits[0], y, eta)
+        mirrored, known_left = _first_rise(-self.edges[::-1], self._exits[1], -y, xi)
         left = len(self.panels) - 1 - mirrored
         rows = np.concatenate([self.row("early", left), self.row("late", right)])
         s = self._solve(rows, np.concatenate([xi, eta]))
@@ -178,16 +178,11 @@ class Curve:
         return Crossing(left, s_left, known_left), Crossing(right, s_right, known_right)
 
     @cached_property
-    def _exits_right(self) -> list[np.ndarray]:
-        """T + x at the right ends of panels, in the regions of `_least_beyond`."""
-        late = self.ends[1, self.row("late", np.arange(len(self.panels)))]
-        return _least_beyond(late, self.edges, self.restarts_left)
-
-    @cached_property
-    def _exits_left(self) -> list[np.ndarray]:
-        """T - x at the left ends of panels, likewise, from right to left."""
-        early = self.ends[0, self.row("early", np.arange(len(self.panels)))]
-        return _least_beyond(early[::-1], self.edges[::-1], self.restarts_right)
+    def _exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """`_least_beyond` of T + x going right, and of T - x going left, where panels are left."""
+        _, _, late, early = np.split(self.ends, 4, axis=1)
+        right = _least_beyond(late[1], self.edges, self.restarts_left)
+        return right, _least_beyond(early[0, ::-1], self.edges[::-1], self.restarts_right)
 
     def front_at(self, time: float, x: float, side: float) -> float:
         """Position of the front that goes to one side from x: the nearest that is released then."""

@@ -1,6 +1,7 @@
 """One connected part of a rupture, behind one curve: its fields, and its trailing edge."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -24,31 +25,24 @@ class Points(NamedTuple):
     time: np.ndarray
 
 
+@dataclass
 class Part:
-    """A connected part of the rupture behind a curve, until a time.
+    """A connected part of the rupture behind a curve, until a time."""
 
-    The marks are the kinks of the pre-stress and the meeting points of fronts; with one_side the
-    part is symmetric, and x >= 0 tells everything.
-    """
+    curve: Curve
+    gamma: float
+    until: float
+    # Kinks of the pre-stress, and points where fronts met.
+    marks: Sequence[float] = ()
+    refinement: int = 1
+    # The part is symmetric: x >= 0 tells everything.
+    one_side: bool = False
+    alpha: float = 0.0
 
-    def __init__(
-        self,
-        curve: Curve,
-        gamma: float,
-        until: float,
-        marks: Iterable[float] = (),
-        refinement: int = 1,
-        one_side: bool = False,
-        alpha: float = 0.0,
-    ) -> None:
-        self.curve = curve
-        self.gamma = gamma
-        self.until = until
-        self.alpha = alpha
-        self.marks = np.array([*marks])
-        self.refinement = refinement
-        self.one_side = one_side
-        self.rate = max(float(np.sqrt(gamma)), 0.5 * abs(alpha))
+    @property
+    def rate(self) -> float:
+        """The fastest rate at which the kernel changes."""
+        return max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
 
     @cached_property
     def rest(self) -> Rest:
@@ -108,10 +102,9 @@ class Part:
         return self.edge.first_stick()
 
     def largest_velocity(self, end: float, horizon: Callable[[np.ndarray], np.ndarray]) -> float:
-        """Largest slip velocity until an end and before a horizon.
+        """Largest slip velocity until an end and before a horizon, on a grid that is refined there.
 
-        A grid over position, and fraction of the time from release on, is refined around its
-        largest value.
+        The grid is one of positions and fractions of the time from release on.
         """
         knots = self.edge.knots
         last = np.fmin(knots.stick, np.minimum(horizon(knots.x), end))

@@ -172,17 +172,18 @@ class FreeBoundary:
         return np.linalg.solve(matrix, entered + area + rest @ (tau * paces))
 
 
+@dataclass
 class SlowFront:
     """The right end of a curve, continued for chunks of entries."""
 
-    def __init__(
-        self, curve: Curve, prestress: Prestress, level: float, stiffness: float, alpha: float
-    ) -> None:
-        self.curve = curve
-        self.prestress = prestress
-        self.level = level
-        self.stiffness, self.alpha = stiffness, alpha
-        self.x0, self.t0 = curve.right_end
+    curve: Curve
+    prestress: Prestress
+    level: float
+    stiffness: float
+    alpha: float
+
+    def __post_init__(self) -> None:
+        self.x0, self.t0 = self.curve.right_end
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress ahead of the front."""

@@ -1,7 +1,7 @@
 """The spreading of a rupture from every nucleation point, by fast and slow fronts that may meet."""
 
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -78,21 +78,16 @@ def spread(law: FastFront, until: float) -> Spreading:
     """Let the rupture spread from every nucleation point until a time."""
     laws = {RIGHT: law, LEFT: law.mirrored()}
     stretches = _nucleated(law)
-    for stretch in stretches:
-        for side in SIDES:
-            _run(laws[side], stretch, side, until)
+    for stretch, side in product(stretches, SIDES):
+        _run(laws[side], stretch, side, until)
     stretches = _joined(stretches)
     # The earliest slow front goes on first: each follows from what the others did before.
     while going := _going_fronts(stretches):
         _, number, side = min(going)
         _step(laws[side], stretches[number], side, until)
         stretches = _joined(stretches)
-    unknown = []
-    for stretch in stretches:
-        for side in SIDES:
-            reason = str(stretch.stopped[side])
-            if reason in UNKNOWN:
-                unknown.append((stretch.ends[side], UNKNOWN[reason]))
+    stops = [(s.ends[side], str(s.stopped[side])) for s, side in product(stretches, SIDES)]
+    unknown = [(point, UNKNOWN[reason]) for point, reason in stops if reason in UNKNOWN]
     return Spreading(stretches, unknown + _overrun(stretches))
 
 
@@ -118,12 +113,11 @@ def _nucleated(law: FastFront) -> list[Stretch]:
 
 def _going_fronts(stretches: list[Stretch]) -> list[tuple[float, int, float]]:
     """Times, numbers of stretches and sides of the fronts that can go further."""
-    out = []
-    for number, stretch in enumerate(stretches):
-        for side in SIDES:
-            if stretch.stopped[side] is None:
-                out.append((stretch.ends[side].time, number, side))
-    return out
+    return [
+        (stretch.ends[side].time, number, side)
+        for (number, stretch), side in product(enumerate(stretches), SIDES)
+        if stretch.stopped[side] is None
+    ]
 
 
 def _overrun(stretches: list[Stretch]) -> list[tuple[Point, str]]:

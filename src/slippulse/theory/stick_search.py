@@ -1,6 +1,7 @@
 """A search for the first zero in time of the slip velocity, for each position by itself."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,10 @@ class Samples(NamedTuple):
     time: np.ndarray
     velocity: np.ndarray
 
+    def at_rows(self, rows: np.ndarray) -> "Samples":
+        """The samples of some rows."""
+        return Samples(self.x[rows], self.time[rows], self.velocity[rows])
+
     def brackets(self, rows: np.ndarray, columns: np.ndarray) -> Brackets:
         """The intervals of some rows that end at these columns."""
         start, end = (rows, columns - 1), (rows, columns)
@@ -42,39 +47,31 @@ class Samples(NamedTuple):
 
     def minima(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Rows and columns of the lowest of three samples, as far as a last column for each row."""
-        before, middle, after = self.velocity[:, :-2], self.velocity[:, 1:-1], self.velocity[:, 2:]
+        change = np.diff(self.velocity, axis=1)
         early = np.arange(1, self.velocity.shape[1] - 1) < columns[:, None]
         apart = self.time[:, 2:] > self.time[:, 1:-1]
-        rows, inner = np.nonzero((middle < before) & (middle <= after) & early & apart)
+        rows, inner = np.nonzero((change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0) & early & apart)
         return rows, inner + 1
 
 
+@dataclass(frozen=True)
 class StickSearch:
     """A search at steps in time, until an end; velocity(x, time) is du/dt at points."""
 
-    def __init__(
-        self,
-        velocity: Callable[[np.ndarray, np.ndarray], np.ndarray],
-        step: float,
-        until: float,
-    ) -> None:
-        self.velocity = velocity
-        self.step = step
-        self.until = until
+    velocity: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    step: float
+    until: float
 
     def stick_time(self, x: np.ndarray, release: np.ndarray) -> np.ndarray:
         """Stick times at positions; NaN where there is none before the end."""
         out = np.full(x.shape, np.nan)
-        # The last two samples are kept, since a minimum next to them may lie below 0. The first is
-        # made up.
-        last = Samples(
-            x,
-            np.stack([release, release], axis=1),
-            np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], axis=1),
-        )
+        # The last two samples are kept, since a minimum next to them may lie below 0. The first
+        # sample, a velocity of -1, is made up.
+        velocity = np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], axis=1)
+        last = Samples(x, np.stack([release, release], axis=1), velocity)
         sliding = np.flatnonzero(release < self.until)
         while sliding.size:
-            samples = self._continued(Samples(*(values[sliding] for values in last)))
+            samples = self._continued(last.at_rows(sliding))
             below = samples.velocity[:, 2:] <= 0.0
             stuck = below.any(axis=1)
             first = np.where(stuck, 2 + np.argmax(below, axis=1), samples.time.shape[1])
@@ -128,15 +125,12 @@ class StickSearch:
         rest = np.setdiff1d(np.arange(level.size), flat)
         x, start, end, at_start, at_end = (values[rest] for values in brackets)
         level = level[rest]
+
+        def above_level(time: np.ndarray, which: np.ndarray) -> np.ndarray:
+            return self.velocity(x[which], time) - level[which]
+
         out = brackets.end.copy()
-        out[rest] = roots_between(
-            lambda time, which: self.velocity(x[which], time) - level[which],
-            start,
-            end,
-            at_start - level,
-            at_end - level,
-            TIME,
-        )
+        out[rest] = roots_between(above_level, start, end, at_start - level, at_end - level, TIME)
         return out
 
     def _raise_starts(self, brackets: Brackets, flat: np.ndarray) -> np.ndarray:

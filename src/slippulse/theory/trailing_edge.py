@@ -7,6 +7,7 @@ that has stuck is then d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just b
 block is ever released again.
 """
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -47,21 +48,16 @@ class Knots(NamedTuple):
         return np.isfinite(self.stick)
 
     @property
-    def rate(self) -> np.ndarray:
-        """Derivative of du/dt by time at sticking."""
-        return self.by_xi + self.by_eta
-
-    @property
     def pace(self) -> np.ndarray:
         """Derivative of the stick time by position."""
         return (self.by_xi - self.by_eta) / (self.by_xi + self.by_eta)
 
 
+@dataclass
 class TrailingEdge:
     """Stick times of a part, known at knots and found in between with their help."""
 
-    def __init__(self, part: "Part") -> None:
-        self.part = part
+    part: "Part"
 
     @cached_property
     def knots(self) -> Knots:
@@ -71,7 +67,7 @@ class TrailingEdge:
         if self.part.one_side:
             left, count = max(left, 0.0), count // 2
         grid = np.linspace(left, right, count + 1)
-        marks = self.part.marks
+        marks = np.array(self.part.marks)
         marks = marks[(marks >= left) & (marks <= right)]
         distance = np.abs(grid[:, None] - marks).min(axis=1, initial=np.inf)
         x = np.union1d(grid[distance > SAME * (right - left)], marks)
@@ -113,7 +109,8 @@ class TrailingEdge:
         stick, pace = knots.stick, knots.pace
         bow = span * ((1.0 - s) * pace[k] - s * pace[k + 1])
         guess = stick[k] + s**2 * (3.0 - 2.0 * s) * (stick[k + 1] - stick[k]) + s * (1.0 - s) * bow
-        rate = knots.rate[k] * (1.0 - s) + knots.rate[k + 1] * s
+        rate = knots.by_xi + knots.by_eta
+        rate = rate[k] * (1.0 - s) + rate[k + 1] * s
         out, time = np.full(x.shape, np.nan), guess.copy()
         todo = np.flatnonzero(wanted)
         for _ in range(12):
