@@ -10,9 +10,9 @@ import pandas as pd
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.solution import solve_on_lattice
+from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_speeds import steady_pulse
 from ..theory.pulse import SteadyPulse
-from ..theory.barrier import barrier_depth, barrier_depth_estimate
 
 NEEDS = {}  # type: dict[str, list[str]]
 

@@ -12,10 +12,10 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES
 from ..predict.numbers import or_nan
 from ..simulation.exact_rupture import exact_rupture
+from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.front_motion import admissibility_table
 from ..theory.front_speeds import front_speed, steady_pulse
 from ..theory.rupture import Rupture
-from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from .gaussian_transition import over_paper
 
 NEEDS = {"sweeps": ["space_time_displacement", "pulses_across_a_step", "scaling_displacement"]}
