@@ -18,7 +18,7 @@ _HOMES = {
     "Samples": "model.samples",
     "Scene": "model.scene",
     "UnresolvedRun": "simulation.simulate",
-    "UnstableRun": "simulation.simulate",
+    "UnstableRun": "solver.lattice",
     "measure": "predict.one_run",
     "plot": "figures.run",
     "point": "data.points",

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from slippulse.report.tables import edges
-from slippulse.simulation.simulate import UnstableRun
+from slippulse.solver.lattice import UnstableRun
 from slippulse.studies import extremes
 from slippulse.studies.extremes import Edge, Outcome, Setup
 

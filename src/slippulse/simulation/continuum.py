@@ -48,17 +48,15 @@ def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
         first = min(left.x for left, _ in rupture.front_ends)
         last = max(right.x for _, right in rupture.front_ends)
     check_number("dx", scene.dx, at_least=(last - first) / MOST_POSITIONS)
-    first_number = math.floor(first / scene.dx) - MARGIN
-    last_number = math.ceil(last / scene.dx) + MARGIN
-    return np.arange(first_number, last_number + 1) * scene.dx
+    start, end = math.floor(first / scene.dx) - MARGIN, math.ceil(last / scene.dx) + MARGIN
+    return np.arange(start, end + 1) * scene.dx
 
 
 def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:
     if rupture is None:
+        motion = ("slip", "slip_velocity", "slip_acceleration")
         times = dict.fromkeys(("release_time", "stick_time"), np.full(x.size, np.nan))
-        return times | dict.fromkeys(
-            ("slip", "slip_velocity", "slip_acceleration"), np.zeros(x.size)
-        )
+        return times | dict.fromkeys(motion, np.zeros(x.size))
     interval = LAST_FRACTION * end
     velocity = rupture.slip_velocity(x, end)
     change = velocity - rupture.slip_velocity(x, end - interval)

@@ -10,7 +10,6 @@ from ..model.checks import check_number, short_repr
 from ..model.samples import RECORDS, Samples, check_within
 from ..model.scene import Scene
 from ..solver.fixed_step import solve_by_scheme
-from ..solver.lattice import UnstableRun
 from ..solver.solution import Solution
 from .continuum import solve_exactly
 from .flags import ENERGY_RESIDUAL
@@ -47,10 +46,8 @@ def simulate(
 
     Raises
     ------
-    TypeError
-        If an argument is of another type.
-    ValueError
-        If a sample is after the end.
+    TypeError, ValueError
+        If an argument is of another type, or a sample is after the end.
     UnstableRun
         If slip velocity is not finite or beyond anything the pre-stress can drive.
     UnresolvedRun
@@ -190,6 +187,3 @@ def _solve(
 def _require(holds: bool, name: str, value: object, allowed: str, error: type = ValueError) -> None:
     if not holds:
         raise error(f"{name}: {short_repr(value)}; allowed: {allowed}")
-
-
-__all__ = ["Samples", "UnresolvedRun", "UnstableRun", "run_sweep", "simulate"]

@@ -29,9 +29,8 @@ def polynomial(coefficients, degree, h):
 def crossing(coefficients, degree, lower, upper):
     """Root of a polynomial that changes sign between two times.
 
-    Newton's steps begin at the root of the secant; bisection keeps them between the two times. The
-    sign at ``lower`` tells the direction. The sign at ``upper`` may be lost to rounding; then
-    ``upper`` is the root.
+    Newton's steps begin at the root of the secant; bisection keeps them between the two times.
+    Where the sign at ``upper`` is lost to rounding, ``upper`` is the root.
     """
     start = polynomial(coefficients, degree, lower)
     end = polynomial(coefficients, degree, upper)

@@ -10,10 +10,9 @@ What each flag gains, measured in turns with and without it:
   compile a third longer.
 - ``inline="always"``, for functions with one caller, is done before compiling: a seventh less time.
 - ``reassoc`` and ``nsz`` in the sums over many blocks: a damped crack runs 1.1 times as fast.
-- ``contract``: 1.00 to 1.07 times as fast. ``error_model="numpy"``: nothing. Without these two,
-  last bits would change.
+- ``contract``: 1.00 to 1.07 times as fast. ``error_model="numpy"``: nothing. Both change last bits.
 
-Some of these are private to numba; ``tests/unit/test_kernel_cache.py`` fails where they change.
+``tests/unit/test_kernel_cache.py`` fails where numba changes those of these that are private.
 """
 
 import hashlib

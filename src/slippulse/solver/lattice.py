@@ -28,10 +28,7 @@ def _row_length(size: int) -> int:
 
 
 class Lattice:
-    """The state of a scene, in arrays with a ghost block at each end, by the localised scheme.
-
-    ``beta`` is that of the scene, or has the other sign.
-    """
+    """The state of a scene by the localised scheme, in arrays with a ghost block at each end."""
 
     localised = True
 

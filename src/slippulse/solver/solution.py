@@ -19,11 +19,7 @@ KEPT = "steps block_updates event_updates releases sticks re_releases min_veloci
 
 @dataclass
 class Solution:
-    """The solution of a scene, from the lattice or exact.
-
-    Arrays go from left to right over all that was released and a margin; a mirrored half is
-    restored.
-    """
+    """The solution of a scene, of a lattice or exact, from the left to the right end."""
 
     x: np.ndarray
     prestress: np.ndarray
