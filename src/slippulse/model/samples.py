@@ -1,4 +1,4 @@
-"""What is recorded during a simulation."""
+"""Times and positions of the samples of a simulation."""
 
 from dataclasses import dataclass
 

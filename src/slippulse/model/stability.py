@@ -10,7 +10,7 @@ ROUNDING = 1e-12
 # Orders whose Taylor polynomial grows slightly on the imaginary axis are held to this a step.
 WEAK_GROWTH = 1e-4
 WEAK_ORDERS = (5, 6)
-# Steps are chosen at most this fraction of the bound, which simulations confirm to a hundredth.
+# A step is at most this fraction of the bound. Simulations confirm the bound to a hundredth.
 MARGIN = 0.9
 # The bound is sought in rounds; each divides the interval that is left into this many parts.
 ROUNDS, PARTS = 4, 32

@@ -1,4 +1,4 @@
-"""The exact solution of a scene in the continuum limit, in the form that the lattice's has."""
+"""The exact solution of a scene in the continuum limit, in the form of a lattice's."""
 
 import math
 from collections.abc import Callable

@@ -190,7 +190,7 @@ def due_releases(segments, forecast, latest, due):
 
 @inner()
 def foresee_stick(coefficients, slopes, degree, after, now, h):
-    """Time at which a velocity falls below 0 until h, where it is ``after``; inf if it does not."""
+    """Time until h at which a velocity, ``after`` at h, falls below 0; inf if it does not."""
     before = polynomial(coefficients, degree, now)
     if after >= 0.0:
         if after <= ROUNDING:

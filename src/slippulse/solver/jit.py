@@ -1,4 +1,4 @@
-"""The one home of the compiler's flags and of its cache.
+"""Flags of the compiler, and the folder of its cache.
 
 What each flag gains, measured in turns with and without it:
 

@@ -102,7 +102,7 @@ class Lattice:
         self._extend(left, right)
 
     def _extend(self, left: int, right: int) -> None:
-        """Put these numbers of further blocks at rest on the left and on the right."""
+        """Add blocks at rest: these numbers on the left and on the right."""
         old, segments = self.motion, self.segments
         inside = slice(left, left + self.size)
         size = left + self.size + right

@@ -78,7 +78,7 @@ def numbers_of(lattice: Lattice, status: int) -> dict:
 
 
 def _lowest_stuck_stress(lattice: Lattice, lowest: float) -> float:
-    """Lowest stress of a stuck block at the end, or until then, as the release rule takes it."""
+    """Lowest stress of a stuck block until the end, with the damping force if the rule has it."""
     medium, motion, dx = lattice.medium, lattice.motion, lattice.medium.dx
     slip, velocity = motion.w[0], motion.w[1]
     elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2

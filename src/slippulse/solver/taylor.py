@@ -137,7 +137,7 @@ def derivatives(medium, motion, segments, alpha, top):
 
 @inner()
 def strengthened_derivatives(medium, motion, segments, top):
-    """Fill w[2..top] where friction depends on slip rate: apart, so that other scenes stay fast."""
+    """Fill w[2..top] with rate-dependent friction, in a function apart to keep other scenes fast."""
     derivatives(medium, motion, segments, medium.alpha, top)
 
 
@@ -158,7 +158,7 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
 
 @once
 def end_early(motion, scratch, h, order):
-    """Velocities at h of all blocks that moved, where the step ends before its time."""
+    """Velocities of all blocks that moved, where the step ends early at h."""
     moved, changed = scratch.moved, scratch.changed
     for r in range(moved.count.n):
         velocity_after(motion.velocity, motion.w, moved.starts[r], moved.ends[r], h, order)
