@@ -137,7 +137,7 @@ def derivatives(medium, motion, segments, alpha, top):
 
 @inner()
 def strengthened_derivatives(medium, motion, segments, top):
-    """Fill w[2..top] with rate-dependent friction, in a function apart to keep other scenes fast."""
+    """Fill w[2..top] with rate-dependent friction, in a function apart so that others are fast."""
     derivatives(medium, motion, segments, medium.alpha, top)
 
 
