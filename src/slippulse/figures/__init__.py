@@ -1,1 +1,1 @@
-"""Figures: `table` makes the numbers that one draws of what its NEEDS name (`steps.inputs`), `plot` draws them."""
+"""Figures, one a module: `table` makes a figure's numbers from its NEEDS, `plot` draws them."""

@@ -1,4 +1,4 @@
-"""Figure 1: the layer on its rigid substrate, both conditions at the top, and the strip that is integrated."""
+"""Figure 1: the layer on a rigid substrate, both boundary conditions, the strip of the model."""
 
 import numpy as np
 import pandas as pd
@@ -15,35 +15,36 @@ TITLES = {
     "stress": r"$\Gamma = 0$: stress imposed",
     "displacement": r"$\Gamma = 1$: displacement held",
 }
-# In thicknesses: length of the layer, depth of what is rigid, largest displacement drawn.
-LENGTH, RIGID, DISPLACEMENT = 3.5, 0.2, 0.5
+# In thicknesses: length of the layer, depth of the rigid parts, largest displacement drawn.
+LENGTH, RIGID = 3.5, 0.2
+DISPLACEMENT = 0.5
+# Position of the strip, and of displacement 0.
+STRIP, REST = 1.68, 2.38
 LENGTHS = ["y", "displacement", "strip_width"]
-# Where the strip is, and where the displacement is counted from.
-STRIP_AT, REST = 1.68, 2.38
 RED, MUTED = "#c00000", "0.25"
 HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Displacement over the height since the start, as each condition is reduced with, and the strip's width.
+    """Displacement over the height since the start under each condition, and the strip's width.
 
-    Under an imposed stress the mean over the height stands for the interface; with the top held the displacement falls
-    linearly to 0, so that its mean is half the slip. Source: section II and appendix A of the paper.
+    Under an imposed stress the mean over the height stands for the interface. With the top held
+    the displacement falls linearly to 0, so that its mean is half of the slip.
+    Source: section II and appendix A of the paper.
     """
     panels = ["stress", "stress", "displacement", "displacement"]
-    found = pd.DataFrame(
-        {"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]}
-    )
-    found["displacement"] *= DISPLACEMENT
-    found["strip_width"] = settings["strip_width"]
-    found[LENGTHS] *= settings["thickness"]
-    return found
+    moved = {"panel": panels, "y": [0.0, 1.0] * 2, "displacement": [1.0, 1.0, 1.0, 0.0]}
+    rows = pd.DataFrame(moved)
+    rows["displacement"] *= DISPLACEMENT
+    rows["strip_width"] = settings["strip_width"]
+    rows[LENGTHS] *= settings["thickness"]
+    return rows
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Two panels, one a boundary condition."""
+    """Draw two panels, one a boundary condition."""
     figure, panels = new_panels(COLUMN, 3.4, 2, 1)
-    # Drawn in thicknesses.
+    # All lengths are drawn in thicknesses.
     table = table.assign(**(table[LENGTHS] / table["y"].max()))
     for axes, panel in zip(panels, TITLES, strict=True):
         draw_layer(axes, table["strip_width"].iloc[0])
@@ -51,7 +52,7 @@ def plot(table: pd.DataFrame) -> Figure:
             for x in np.linspace(0.03, 0.85, 6) * LENGTH:
                 arrow(axes, (x, 1.1), (x + 0.12 * LENGTH, 1.1), ORANGE, gid="imposed stress")
             label(axes, 0.5 * LENGTH, 1.19, r"$\tau$", ORANGE, va="bottom")
-            # The mean stands for the interface.
+            # The mean over the height stands for the interface.
             label(axes, REST + DISPLACEMENT + 0.06, 0.5, r"$\langle u_x\rangle_y$", BLUE, ha="left")
         else:
             axes.add_patch(Rectangle((0.0, 1.0), LENGTH, RIGID, gid="held top", **HATCHED))
@@ -60,9 +61,8 @@ def plot(table: pd.DataFrame) -> Figure:
             label(axes, REST + 0.5 * DISPLACEMENT + 0.14, 0.5, "$u_x(y)$", BLUE, ha="left")
         rows = table[table["panel"] == panel]
         axes.plot([REST, REST], [0.0, 1.0], color=BLUE, linewidth=0.8, linestyle=":")
-        axes.plot(
-            REST + rows["displacement"], rows["y"], color=BLUE, linewidth=1.5, gid="displacement"
-        )
+        look: Look = {"color": BLUE, "linewidth": 1.5, "gid": "displacement"}
+        axes.plot(REST + rows["displacement"], rows["y"], **look)
         axes.set_title(TITLES[panel], fontsize=9)
         axes.set(xlim=(-0.65, LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()
@@ -70,14 +70,13 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def draw_layer(axes: Axes, strip: float) -> None:
-    """What both conditions have: layer, substrate, strip, friction, thickness and axes."""
+    """Draw what both conditions have: layer, substrate, strip, friction, thickness and axes."""
     axes.add_patch(Rectangle((0.0, -RIGID), LENGTH, RIGID, **HATCHED))
-    axes.add_patch(
-        Rectangle((0.0, 0.0), LENGTH, 1.0, facecolor="#e6edf4", edgecolor=BLACK, linewidth=0.8)
-    )
-    look: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
-    axes.add_patch(Rectangle((STRIP_AT - 0.5 * strip, 0.0), strip, 1.0, gid="strip", **look))
-    label(axes, STRIP_AT, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
+    look: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
+    axes.add_patch(Rectangle((0.0, 0.0), LENGTH, 1.0, **look))
+    look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
+    axes.add_patch(Rectangle((STRIP - 0.5 * strip, 0.0), strip, 1.0, gid="strip", **look))
+    label(axes, STRIP, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
     label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
     substrate = label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8)
     substrate.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 1.0})

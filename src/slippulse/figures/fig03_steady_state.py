@@ -16,12 +16,12 @@ NEEDS = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Slip velocity of the pulses of both sweeps in the frame of its largest value, as `pulse_table` has it."""
+    """Rows of `pulse_table` for both sweeps, with the slip velocity alone."""
     return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Left: displacement boundary, on axes where undamped pulses are one; right: stress boundary."""
+    """Draw the displacement boundary on the left and the stress boundary on the right."""
     figure, panels = new_panels(COLUMN, 3.2, 1, 2)
     for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
         rows = table[table["panel"] == name]

@@ -1,4 +1,4 @@
-"""Slip velocity over time and position: a crack that becomes two pulses, and one that becomes one."""
+"""Figure 4: slip velocity over time and position, of cracks that become two pulses and one."""
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,7 @@ from matplotlib.patches import Patch
 
 from ..data.points import point
 from ..measurement.fronts import position_at
-from .shared.space_time import STUCK, description, draw_map, draw_profile, run_rows
+from .shared import space_time
 from .style import BLACK, COLUMN, HALO, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter
 
 NEEDS = {
@@ -25,52 +25,51 @@ COLUMNS = ["role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """`run_rows` of the first run of both sweeps (panel: the boundary); exact_front and exact_trailing; measured, paper
-    and last_release (the transition: its time, positions of the left and right front then; value: the length); fraction
-    (value: of |x_minus| that the left front has covered at T_trans under a stress boundary).
+    """Rows of `run_rows` for the first run of both sweeps, with theory and the transition.
+
+    Panel is the boundary. Further roles are exact_front and exact_trailing, those of
+    `transition_rows`, and fraction (value: the fraction of |x_minus| that the left front has
+    covered at T_trans under a stress boundary).
     """
     parts = []
     for panel in PANELS:
         name = f"space_time_{panel}"
         run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
-        edges = [
-            pd.DataFrame(
-                {"role": role, "position": exact["position"], "time": exact[column]}
-            ).dropna()
-            for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time"))
-        ]
-        found = [run_rows(run), transition_rows(run, tables[name].iloc[0]), *edges]
+        rows = [space_time.run_rows(run), transition_rows(run, tables[name].iloc[0])]
+        for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time")):
+            edge = {"role": role, "position": exact["position"], "time": exact[column]}
+            rows.append(pd.DataFrame(edge).dropna())
         if panel == "stress":
-            found.append(
-                pd.DataFrame([{"role": "fraction", "value": settings["measure"]["share"]}])
-            )
-        parts.append(pd.concat(found).assign(panel=panel))
+            fraction = {"role": "fraction", "value": settings["measure"]["share"]}
+            rows.append(pd.DataFrame([fraction]))
+        parts.append(pd.concat(rows).assign(panel=panel))
     return pd.concat(parts, ignore_index=True)[["panel", *COLUMNS]]
 
 
 def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
-    """Where the fronts are at T_trans: as measured, as the paper estimates it, at the last release."""
+    """Positions of both fronts (series) at T_trans, with its time and L_trans (value).
+
+    Role measured is the transition as measured, paper the paper's estimate, and last_release the
+    last release on the left, where the run has one.
+    """
+    rows: list[tuple] = []
+
+    def add(role: str, time: float, left: float, right: float, length: float) -> None:
+        rows.append((role, "left", time, left, length))
+        rows.append((role, "right", time, right, length))
+
     time, length = numbers["transition_time"], numbers["transition_length"]
     right, half = float(position_at(run, time, "right")), 0.5 * numbers["paper_transition_length"]
-    ends = [
-        ("measured", time, right - length, right, length),
-        ("paper", numbers["paper_transition_time"], -half, half, 2.0 * half),
-    ]
+    add("measured", time, right - length, right, length)
+    add("paper", numbers["paper_transition_time"], -half, half, 2.0 * half)
     if "last_release_time" in numbers:
-        distance, length = numbers["last_release_distance"], numbers["last_release_length"]
-        ends.append(
-            ("last_release", numbers["last_release_time"], -distance, length - distance, length)
-        )
-    rows = [
-        (role, series, time, position, length)
-        for role, time, left, right, length in ends
-        for series, position in (("left", left), ("right", right))
-    ]
+        left, length = -numbers["last_release_distance"], numbers["last_release_length"]
+        add("last_release", numbers["last_release_time"], left, length + left, length)
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Draw the figure from its table; what is in one panel alone has its letter in the legend."""
+    """Draw the figure; a legend entry that is in one panel alone names the panel."""
     figure = new_figure(COLUMN, 5.6)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
@@ -78,22 +77,24 @@ def plot(table: pd.DataFrame) -> Figure:
     sides = figure.subfigures(2, 1, squeeze=False).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.3, 1.0))
-        roles = {str(role): rows for role, rows in table[table["panel"] == panel].groupby("role")}
-        draw_profile(profile, roles["prestress"])
-        image = draw_map(axes, roles)
+        roles = space_time.rows_by_role(table[table["panel"] == panel])
+        space_time.draw_profile(profile, roles["prestress"])
+        image = space_time.draw_map(axes, roles)
         draw_transition(axes, roles)
         bar = side.colorbar(image, ax=axes, pad=0.02, aspect=22)
         bar.set_label(rf"slip velocity $\dot u$ (largest {roles['largest']['value'].iloc[0]:#.3g})")
         panel_letter(profile, letter)
         when = "first stick"
         if "fraction" in roles:
-            when = rf"left front at {100.0 * roles['fraction']['value'].iloc[0]:g} % of its way to $x_-$"
-        side.suptitle(f"{description(roles)}\n" + rf"$T_\text{{trans}}$: {when}", fontsize=9.0)
+            percent = 100.0 * roles["fraction"]["value"].iloc[0]
+            when = rf"left front at {percent:g} % of its way to $x_-$"
+        title = f"{space_time.description(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
+        side.suptitle(title, fontsize=9.0)
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             handles[label], panels[label] = handle, panels.get(label, "") + letter
-    for label, colour in (("not yet slipped", "white"), ("stuck again", STUCK)):
+    for label, colour in (("not yet slipped", "white"), ("stuck again", space_time.STUCK)):
         handles[label] = Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5)
-    # What is stuck is grey behind a trailing edge.
+    # The stuck part is grey behind a trailing edge.
     panels |= {"not yet slipped": "ab", "stuck again": panels.get("trailing edge", "a")}
     for label, handle in handles.items():
         handle.set_label(label if panels[label] == "ab" else f"{label} ({panels[label]})")
@@ -102,7 +103,7 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Exact edges, arrows of T_trans and L_trans, the paper's estimate and the last release on the left."""
+    """Draw exact edges, T_trans and L_trans, the paper's estimate and the last release."""
     look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
@@ -114,7 +115,7 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
     paper = roles["paper"]
     axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **look)
     if "last_release" in roles:
-        # Under a stress boundary the paper's estimate of the time is the way of the left front, |x_-|.
+        # Under a stress boundary the paper's estimate of the time is |x_-|.
         limit = -float(paper["time"].iloc[0])
         axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
         axes.text(0.02 * axes.get_xlim()[1], limit, "$x_-$", va="bottom", fontsize=8.5, zorder=4.0)
@@ -123,29 +124,22 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
 
 
 def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
-    """T_trans as an arrow below the lowest position that slips, L_trans between the fronts."""
+    """Draw T_trans as an arrow below the lowest position that slips, L_trans between the fronts."""
     time, length = float(ends["time"].iloc[0]), float(ends["value"].iloc[0])
     left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.04 * (high - low), high)
-    arrow = {
-        "arrowstyle": "<->",
-        "shrinkA": 0.0,
-        "shrinkB": 0.0,
-        "linewidth": 0.9,
-        "mutation_scale": 8.0,
-    }
+    arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
+    arrow |= {"mutation_scale": 8.0, "path_effects": HALO}
     axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
     end = axes.get_xlim()[1]
     for name, value, height, start, stop in (
         ("T", time, low, (0.0, low), (time, low)),
         ("L", length, 0.5 * (left + right), (time, left), (time, right)),
     ):
-        axes.annotate(
-            "", xy=stop, xytext=start, arrowprops=arrow | {"path_effects": HALO}, zorder=4.0
-        )
+        axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
         look: Look = {"x": time + 0.025 * end, "s": rf"${name}_\text{{trans}} = {value:#.3g}$"}
         if name == "T" and time > 0.45 * end:
-            # On a long arrow, away from what is marked beyond it.
+            # The label stands on a long arrow, away from the marks beyond it.
             look |= {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
         axes.text(y=height, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0, **look)

@@ -17,54 +17,58 @@ from .style import BLACK, BLUE, GREY, ORANGE, Look, entry, legend_below, new_fig
 
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
 
-# Panels, and how far apart their rows of blocks are, in spacings.
+# Panels, with the distance between their rows of blocks in spacings.
 PITCH = {"displacement": 1.62, "stress": 0.86}
 # Blocks shown besides the middle one, and blocks shown beyond the one that stops the left front.
 SHOWN, BEYOND = 18, 2
-# Block width and height in spacings, and how far above the ground the plate is.
-BLOCK, HEIGHT, PLATE = 0.5, 0.44, 1.12
-# Largest drawn displacement as a fraction of a spacing, and shortest spring as a fraction of its length.
+# Width and height of a block, and height of the plate above the ground, in spacings.
+BLOCK, HEIGHT = 0.5, 0.44
+PLATE = 1.12
+# Largest drawn displacement over a spacing, and shortest spring over its length.
 FARTHEST, SHORTEST = 0.85, 0.35
-# Inches of the width, which is narrow for the text to be read in one column, of a spacing's height, and of the strip
-# with the pre-stress.
-WIDTH, UNIT, STRIP = 5.4, 0.34, 0.42
+# Inches of the width, of a spacing's height and of the strip with the pre-stress. The width is
+# small, so that the text can be read in one column.
+WIDTH = 5.4
+UNIT, STRIP = 0.34, 0.42
 # Light, middle and dark, so that grey tells them apart too.
 COLOURS = {"at rest": "#e2e8ee", "sliding": ORANGE, "stuck after sliding": "#00402f"}
 TITLES = {
-    "displacement": r"$\Gamma = 1$: leaf springs to a held plate, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$",
+    "displacement": r"$\Gamma = 1$: leaf springs to a held plate, "
+    r"$\gamma = {gamma:g}$, $\tau_0 = {left:g}$",
     "stress": r"$\Gamma = 0$: a constant stress on each block, "
     r"$\tau_{{0,l}} = {left:g}$, $\tau_{{0,r}} = {right:g}$",
 }
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The first run of each sweep, one row a panel, instant and block: x is the position at rest, arresting_block the
-    first one that the left front never releases, scale the drawn displacement over slip. Source: the paper's discussion
-    of the Burridge-Knopoff model.
+    """First run of each sweep, one row a panel, instant and block.
+
+    x is the position at rest, arresting_block the first block that the left front never releases,
+    scale the drawn displacement over the slip.
+    Source: the paper's discussion of the Burridge-Knopoff model.
     """
     parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PITCH]
     return pd.concat(parts, ignore_index=True)
 
 
 def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
-    """Rows of one run, with one block more on each side than is shown: their springs reach in."""
+    """Rows of a run, with one more block on each side than is shown, whose springs reach in."""
     low, high = window(run)
     shown, parts = run.sel(sample_position=slice(low - 1.5, high + 1.5)), []
     x, times = shown["sample_position"].values, shown["sample_time"].values
     tau = prestress_from(run.attrs)(x)
-    for row, (instant, at) in enumerate(instants(run)):
-        slip, velocity = (shown[key].values[at] for key in ("sample_slip", "sample_velocity"))
+    for row, (instant, sample) in enumerate(instants(run)):
+        slip, velocity = (shown[key].values[sample] for key in ("sample_slip", "sample_velocity"))
         frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity, "prestress": tau})
         state = np.where(slip > 0.0, "stuck after sliding", "at rest")
         frame["state"] = np.where(velocity > 0.0, "sliding", state)
-        parts.append(frame.assign(row=row, instant=instant, time=times[at]))
+        parts.append(frame.assign(row=row, instant=instant, time=times[sample]))
     rows = pd.concat(parts, ignore_index=True)
     closer = float(-rows.groupby("row")["slip"].diff().min())
     rows["scale"] = min(FARTHEST / rows["slip"].max(), (1.0 - SHORTEST) * (1.0 - BLOCK) / closer)
     rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
-    return rows.assign(
-        panel=name, **{key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
-    )
+    parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
+    return rows.assign(panel=name, **parameters)
 
 
 def arresting_block(run: xr.Dataset) -> float:
@@ -73,7 +77,7 @@ def arresting_block(run: xr.Dataset) -> float:
 
 
 def window(run: xr.Dataset) -> tuple[float, float]:
-    """Positions of the first and last block shown: about the nucleation, or from where the left front stops."""
+    """Positions of the first and last block shown: about the nucleation, or the arrest if any."""
     if run.attrs["left"] == run.attrs["right"]:
         return -0.5 * SHOWN, 0.5 * SHOWN
     low = arresting_block(run) - BEYOND
@@ -81,7 +85,11 @@ def window(run: xr.Dataset) -> tuple[float, float]:
 
 
 def instants(run: xr.Dataset) -> list[tuple[str, int]]:
-    """Names and sample numbers: before anything slips, half-way to the first stick, at it, and two later in view."""
+    """Names and sample numbers of the instants drawn.
+
+    They are the start, half of the time to the first stick, the first stick, and two later ones
+    while all that slips is in view.
+    """
     low, high = window(run)
     x, slip, velocity = (
         run[name].values for name in ("sample_position", "sample_slip", "sample_velocity")
@@ -93,31 +101,24 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     stick = int(np.argmax(stuck.any(axis=1))) if stuck[: last + 1].any() else last
     sides = sum(bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0))
     ending = ("arrested", "pulse", "two pulses")[sides] if stuck[last, x == 0.0].all() else "crack"
-    middle = (stick + last) // 2
-    named = {0: "start", stick // 2: "crack", stick: "first stick", middle: "later", last: ending}
-    return [(name, at) for at, name in sorted(named.items())]
+    later = (stick + last) // 2
+    names = {0: "start", stick // 2: "crack", stick: "first stick", later: "later", last: ending}
+    return [(name, sample) for sample, name in sorted(names.items())]
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """One panel a boundary condition: its pre-stress, and below it the rows of blocks, time downwards."""
+    """Draw a panel a boundary condition: pre-stress, and rows of blocks with time downwards."""
     counts = table.groupby("panel")["row"].nunique()
     heights = [UNIT * (PITCH[name] * counts[name] + 0.12) for name in PITCH]
-    ratios = [height for rows in heights for height in (STRIP, rows)]
+    ratios = [STRIP, heights[0], STRIP, heights[1]]
     figure = new_figure(WIDTH, sum(ratios) + 1.75)
     grid = figure.add_gridspec(4, 1, height_ratios=ratios)
     for index, (name, letter) in enumerate(zip(PITCH, "ab", strict=True)):
         rows = table[table["panel"] == name]
         axes = figure.add_subplot(grid[2 * index + 1])
         draw_rows(axes, rows, name)
-        strip, first = figure.add_subplot(grid[2 * index], sharex=axes), rows[rows["row"] == 0]
-        strip.axhline(0.0, color=BLACK, linewidth=0.6)
-        strip.bar(first["x"], first["prestress"], width=BLOCK, color=GREY)
-        strip.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-        lowest, ticks = min(0.0, first["prestress"].min()), {0.0, 1.0, first["left"].iloc[0]}
-        strip.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
-        strip.tick_params(axis="x", length=0, labelbottom=False)
-        strip.tick_params(axis="y", labelsize=7)
-        strip.spines[["right", "top", "bottom"]].set_visible(False)
+        strip = figure.add_subplot(grid[2 * index], sharex=axes)
+        draw_prestress(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
@@ -128,34 +129,35 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
+def draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the pre-stress of each block as a bar."""
+    axes.axhline(0.0, color=BLACK, linewidth=0.6)
+    axes.bar(rows["x"], rows["prestress"], width=BLOCK, color=GREY)
+    axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
+    lowest, ticks = min(0.0, rows["prestress"].min()), {0.0, 1.0, rows["left"].iloc[0]}
+    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
+    axes.tick_params(axis="x", length=0, labelbottom=False)
+    axes.tick_params(axis="y", labelsize=7)
+    axes.spines[["right", "top", "bottom"]].set_visible(False)
+
+
 def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
-    """Blocks, coil springs and leaf springs of one run, one line an instant."""
+    """Draw blocks, coil springs and leaf springs of one run, one line an instant."""
     low, high = rows["x"].min() + 0.35, rows["x"].max() - 0.35
     leaf, pitch = name == "displacement", PITCH[name]
     for row, state in rows.groupby("row"):
         state = state.sort_values("x")
         base, rest = -pitch * row, state["x"].to_numpy()
         centre = rest + (state["scale"] * state["slip"]).to_numpy()
-        coils = [
-            coil(a + 0.5 * BLOCK, b - 0.5 * BLOCK, base + 0.5 * HEIGHT) for a, b in pairwise(centre)
-        ]
-        axes.add_collection(
-            LineCollection(coils, colors="0.35", linewidths=0.6, gid="coil springs")
-        )
+        axes.add_collection(coils(centre, base + 0.5 * HEIGHT))
         axes.plot([low, high], [base, base], color=BLACK, linewidth=0.8)
         axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
         if leaf:
             axes.plot([low, high], [base + PLATE] * 2, color=BLACK, linewidth=1.8)
-            bent = [
-                bow(top, base + PLATE, now, base + HEIGHT)
-                for top, now in zip(rest, centre, strict=True)
-            ]
-            axes.add_collection(
-                LineCollection(bent, colors=BLUE, linewidths=0.9, gid="leaf springs")
-            )
-        for now, block in zip(centre, state.itertuples(), strict=True):
+            axes.add_collection(leaves(rest, centre, base))
+        for x, block in zip(centre, state.itertuples(), strict=True):
             colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
-            patch = Rectangle((now - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)
+            patch = Rectangle((x - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)
             patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
             axes.add_patch(patch)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
@@ -168,14 +170,28 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.spines[["left", "right", "top"]].set_visible(False)
 
 
+def coils(centres: np.ndarray, y: float) -> LineCollection:
+    """Coil springs between neighbouring blocks."""
+    half = 0.5 * BLOCK
+    lines = [coil(left + half, right - half, y) for left, right in pairwise(centres)]
+    return LineCollection(lines, colors="0.35", linewidths=0.6, gid="coil springs")
+
+
+def leaves(rest: np.ndarray, centres: np.ndarray, base: float) -> LineCollection:
+    """Leaf springs from the plate, above the positions at rest, to the blocks."""
+    ends = zip(rest, centres, strict=True)
+    lines = [bow(top, base + PLATE, bottom, base + HEIGHT) for top, bottom in ends]
+    return LineCollection(lines, colors=BLUE, linewidths=0.9, gid="leaf springs")
+
+
 def coil(start: float, end: float, y: float) -> np.ndarray:
-    """A coil spring from ``start`` to ``end`` at height ``y``, as a zigzag."""
+    """Points of a coil spring from ``start`` to ``end`` at height ``y``."""
     offset = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
     return np.column_stack([np.linspace(start, end, offset.size), y + offset])
 
 
 def bow(x_top: float, y_top: float, x_bottom: float, y_bottom: float) -> np.ndarray:
-    """A leaf spring clamped upright at both ends."""
+    """Points of a leaf spring that is clamped upright at both ends."""
     along = np.linspace(0.0, 1.0, 15)
     x = x_top + (x_bottom - x_top) * along**2 * (3.0 - 2.0 * along)
     return np.column_stack([x, y_top + (y_bottom - y_top) * along])

@@ -13,13 +13,13 @@ from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, as_given, new_panels
 NEEDS = {"studies": ["damage_zone"]}
 table = as_given
 
-# Width of the sketch, and where displacements are counted from, in thicknesses of the zone.
+# Width of the sketch and position of displacement 0, in thicknesses of the zone.
 WIDTH, ORIGIN = 4.2, 1.95
 MUTED = "0.25"
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Above: the sketch. Below: stress drop against G/G_r, and the limit of rock that does not yield."""
+    """Draw the sketch above, and below it the stress drop against G/G_r with its limit."""
     figure, (above, axes) = new_panels(COLUMN, 4.6, 2, 1, height_ratios=[1.15, 1.0])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])
     curves = table[table["role"] == "curve"]
@@ -27,34 +27,24 @@ def plot(table: pd.DataFrame) -> Figure:
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):
         name = rf"$H_r/H = {thickness:g}$"
-        axes.plot(
-            curve["stiffness_ratio"], curve["stress_drop"], color=colour, label=name, gid="curve"
-        )
-        look: Look = {
-            "xytext": (3, 0),
-            "textcoords": "offset points",
-            "va": "center",
-            "fontsize": 8.0,
-        }
+        x, y = curve["stiffness_ratio"], curve["stress_drop"]
+        axes.plot(x, y, color=colour, label=name, gid="curve")
+        look: Look = {"xytext": (3, 0), "textcoords": "offset points", "fontsize": 8.0}
         end = tuple(curve[["stiffness_ratio", "stress_drop"]].iloc[-1])
-        axes.annotate(name, end, color=colour, annotation_clip=False, **look)
+        axes.annotate(name, end, color=colour, annotation_clip=False, va="center", **look)
     limit = r"$G \ll G_r$: imposed at $y = H$"
     line = axes.axhline(1.0, color=BLACK, linestyle="--", linewidth=0.8, label=limit, gid="limit")
     ends = curves["stiffness_ratio"].agg(["min", "max"])
-    axes.set(
-        xscale="log", xlim=tuple(ends), ylim=(0.0, 1.08), xlabel="ratio of shear moduli $G/G_r$"
-    )
-    axes.set_ylabel(r"stress drop $\Delta\tau\,/\,(G\delta/H)$")
+    axes.set(xscale="log", xlim=tuple(ends), xlabel="ratio of shear moduli $G/G_r$")
+    axes.set(ylim=(0.0, 1.08), ylabel=r"stress drop $\Delta\tau\,/\,(G\delta/H)$")
     axes.legend(handles=[line], loc="lower left")
     return figure
 
 
 def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
-    """Damage zone under host rock, the imposed displacement, the slip, and the displacement over the height."""
-    top, slip = (
-        float(after["y"].max()),
-        float(after["displacement"].iloc[0] - before["displacement"].iloc[0]),
-    )
+    """Draw the damage zone under host rock, and the displacement over the height."""
+    top = float(after["y"].max())
+    slip = float(after["displacement"].iloc[0] - before["displacement"].iloc[0])
     imposed = float(after["displacement"].iloc[-1])
     axes.add_patch(Rectangle((0.0, 0.0), WIDTH, 1.0, facecolor="#f6d9b8"))
     axes.add_patch(Rectangle((0.0, 1.0), WIDTH, top - 1.0, facecolor="#d7dde4"))

@@ -1,4 +1,4 @@
-"""Figure 8: slip, slip velocity and acceleration of the steady pulses, displacement boundary, with theory."""
+"""Figure 8: slip, slip velocity and acceleration of steady pulses under a displacement boundary."""
 
 from .shared.pulses import plot_fields, pulse_table
 

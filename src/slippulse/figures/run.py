@@ -1,15 +1,18 @@
-"""One run as a picture, in one call: for a notebook or a script."""
+"""A run as a picture, in one call: for a notebook or a script."""
 
 import io
 
 import matplotlib
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+DRAWN = ("prestress", "release_time", "stick_time", "slip")
 
 
 class Picture(Figure):
-    """A figure that a notebook shows as it is, whatever its backend."""
+    """A figure that a notebook shows, whatever its backend."""
 
     def _repr_png_(self) -> bytes:
         buffer = io.BytesIO()
@@ -18,47 +21,81 @@ class Picture(Figure):
 
 
 def plot(run: xr.Dataset) -> Picture:
-    """Draw pre-stress, slip velocity over time and position with fronts and trailing edge, and the slip at the end.
+    """Draw a run: pre-stress, slip velocity over time and position with both edges, final slip.
 
-    run : what `slippulse.simulate` returned; its map is there if it was given ``samples``
+    The edges are the front (time of first release) and the trailing edge (time of stick). All
+    quantities are dimensionless; the panels follow the space-time figure of the paper (figure 4).
 
-    Returns a figure: a notebook shows it, ``figure.savefig("name.png")`` writes it.
-    Raises TypeError: if it is not a run (of a sweep, `slippulse.point` takes one).
+    Parameters
+    ----------
+    run : xarray.Dataset
+        A run over x that `slippulse.simulate` returned. The slip velocity is drawn if the run has
+        samples in which anything slides; otherwise the edges are drawn alone.
+
+    Returns
+    -------
+    Picture
+        A Matplotlib figure. A notebook shows it, and ``savefig("name.png")`` writes it.
+
+    Raises
+    ------
+    TypeError
+        If `run` is no such Dataset; `slippulse.point` takes one run out of a sweep.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import slippulse as sp
+    >>> scene = sp.Scene("stress", sp.Prestress(-0.5, 0.0), duration=8.0, dx=0.05)
+    >>> samples = sp.Samples(np.linspace(0.0, 8.0, 81), np.linspace(-9.0, 9.0, 181))
+    >>> figure = sp.plot(sp.simulate(scene, samples))
     """
-    drawn = ("prestress", "release_time", "stick_time", "slip")
     known = isinstance(run, xr.Dataset) and "end_time" in run.attrs
-    if not known or not all(name in run and run[name].dims == ("x",) for name in drawn):
+    if not known or not all(name in run and run[name].dims == ("x",) for name in DRAWN):
         raise TypeError(f"run: {type(run).__name__}; allowed: a Dataset that simulate returned")
-    # The house style is not forced on the figures of whoever calls.
+    # The house style is not forced on the caller's own figures.
     with matplotlib.rc_context():
-        from .shared import space_time as parts
-        from .style import BLUE, PAGE, RC
+        from .style import RC
 
         matplotlib.rcParams.update(RC)
-        front, trailing = parts.edges(run)
-        roles = {"prestress": parts.prestress_profile(run), "front": front, "trailing": trailing}
-        figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
-        profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
-        parts.draw_profile(profile, roles["prestress"])
-        several = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
-        # Else the fronts alone are drawn.
-        if several and (run["sample_velocity"] > 0.0).any():
-            roles |= {str(role): rows for role, rows in parts.velocity_map(run).groupby("role")}
-            image = parts.draw_map(times, roles)
-            figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
-            if run.attrs.get("limit_reason"):
-                unknown = (
-                    run["sample_time"],
-                    run["sample_position"],
-                    run["sample_velocity"].isnull().T,
-                )
-                times.contourf(*unknown, [0.5, 1.5], colors="none", hatches=["///"])
-                figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
-        else:
-            # A run in which nothing moves ends at 0.
-            parts.draw_edges(times, roles, run.attrs["end_time"] or run.attrs["duration"])
-        if np.isfinite(run["release_time"]).any():
-            times.legend(loc="upper left")
-        slip.plot(run["slip"], run["x"], color=BLUE)
-        slip.set_xlabel(r"slip $u$")
+        return _draw(run)
+
+
+def _draw(run: xr.Dataset) -> Picture:
+    from .shared import space_time
+    from .style import BLUE, PAGE
+
+    front, trailing = space_time.edges(run)
+    roles = {"prestress": space_time.prestress_profile(run), "front": front, "trailing": trailing}
+    figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
+    profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
+    space_time.draw_profile(profile, roles["prestress"])
+    if _has_map(run):
+        roles |= space_time.rows_by_role(space_time.velocity_map(run))
+        image = space_time.draw_map(times, roles)
+        figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
+        if run.attrs.get("limit_reason"):
+            _hatch_unknown(times, run)
+            figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
+    else:
+        # A run in which nothing moves ends at 0.
+        space_time.draw_edges(times, roles, run.attrs["end_time"] or run.attrs["duration"])
+    if np.isfinite(run["release_time"]).any():
+        times.legend(loc="upper left")
+    slip.plot(run["slip"], run["x"], color=BLUE)
+    slip.set_xlabel(r"slip $u$")
     return figure
+
+
+def _has_map(run: xr.Dataset) -> bool:
+    """Return whether the run has samples over time and position in which anything slides."""
+    sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+    return sampled and bool((run["sample_velocity"] > 0.0).any())
+
+
+def _hatch_unknown(axes: Axes, run: xr.Dataset) -> None:
+    """Hatch the part of the map that an exact run does not reach."""
+    unknown = run["sample_velocity"].isnull().T
+    levels = [0.5, 1.5]
+    times, positions = run["sample_time"], run["sample_position"]
+    axes.contourf(times, positions, unknown, levels, colors="none", hatches=["///"])

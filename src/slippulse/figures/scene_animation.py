@@ -1,4 +1,4 @@
-"""One scene as an animation: slip velocity and slip over position, as time goes on."""
+"""A scene as an animation: slip velocity and slip over position, as time goes on."""
 
 from pathlib import Path
 
@@ -7,26 +7,28 @@ import xarray as xr
 from matplotlib.animation import FuncAnimation, PillowWriter
 
 from ..data.files import write_whole
-from .shared.space_time import limits, thin
+from .shared.selection import spaced_indices
+from .shared.space_time import limits
 from .style import BLUE, GREY, ORANGE, new_figure
 
-FRAMES, PER_SECOND, DOTS_PER_INCH = 61, 12, 90
+FRAMES, PER_SECOND = 61, 12
+DOTS_PER_INCH = 90
+FIELDS = {
+    "sample_velocity": (r"slip velocity $\dot u$", BLUE),
+    "sample_slip": (r"slip $u$", ORANGE),
+}
 
 
 def animate(run: xr.Dataset, title: str) -> FuncAnimation:
-    """Frames evenly over the samples of a run, under a title."""
+    """Make an animation of frames that are evenly spread over the samples of a run."""
     lower, upper = limits(run)
     x, times = run["sample_position"].values, run["sample_time"].values
     inside = (x >= lower) & (x <= upper)
-    frames = thin(times.size, FRAMES)
+    frames = spaced_indices(times.size, FRAMES)
     figure = new_figure(6.4, 3.6)
     panels = figure.subplots(2, 1, sharex=True)
     lines = []
-    fields = {
-        "sample_velocity": (r"slip velocity $\dot u$", BLUE),
-        "sample_slip": (r"slip $u$", ORANGE),
-    }
-    for axes, (name, (label, colour)) in zip(panels, fields.items(), strict=True):
+    for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
         values = run[name].values[:, inside]
         axes.axhline(0.0, color=GREY, linewidth=0.5)
         (line,) = axes.plot(x[inside], values[0], color=colour)
@@ -42,7 +44,7 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
         clock.set_text(rf"{plain}: $t = {times[frame]:.2f}$")
         return [line for line, _ in lines]
 
-    # Laid out once, with the longest title, and then left alone: the frames must not jump.
+    # The layout is found once, for the longest title, and kept: the frames must not jump.
     draw(int(frames[-1]))
     figure.draw_without_rendering()
     figure.set_layout_engine("none")

@@ -1,4 +1,4 @@
-"""Error against work for every scheme, order, step and spacing, and how the textbook front locks on its step."""
+"""Error against work for every scheme, order, step and spacing; fronts that lock on the step."""
 
 import numpy as np
 import pandas as pd
@@ -11,21 +11,23 @@ from .style import BLACK, BLUE, GREY, HALO, ORDER_COLOURS, PAGE, Look, entry, ne
 NEEDS = {"studies": ["accuracy_cost"]}
 
 PANELS = {
-    "front_speed": "front speed", "peak_velocity": "peak slip velocity", "transition_time": r"$T_\text{trans}$"
-}  # fmt: skip
+    "front_speed": "front speed",
+    "peak_velocity": "peak slip velocity",
+    "transition_time": r"$T_\text{trans}$",
+}
 MARKERS = dict(zip(ORDER_COLOURS, "osD^P>", strict=True))
-# Marker sizes of steps of 1, 1/2 and 1/4 of the spacing.
+# Marker sizes by step, in spacings.
 SIZES = {1.0: 4.0, 0.5: 2.8, 0.25: 1.8}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The rows of the study; the exact solution, which does no work on a lattice, is not drawn."""
+    """Rows of the study without the exact solution, which does no work on a lattice."""
     study = tables["accuracy_cost"]
     return study[study["scheme"] != "continuum"]
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Three errors against the work, and the speed of the front against the step."""
+    """Draw three errors against the work, and the speed of the front against the step."""
     figure, axes = new_panels(PAGE, 5.0, 2, 2)
     trade = table[table["part"] == "trade"]
     for panel, (name, title) in zip(axes, PANELS.items(), strict=False):
@@ -39,21 +41,21 @@ def plot(table: pd.DataFrame) -> Figure:
 
 
 def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
-    """One mark a setting; the textbook scheme joined over its steps, steps of 1 over spacings; presets ringed."""
+    """Draw a mark a setting; presets have a ring.
+
+    Lines join the textbook scheme over its steps, and the localised one at step 1 over spacings.
+    """
     textbook = rows[rows["scheme"] == "fixed_step"]
     axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6)
     for (order, step), marks in rows[rows["scheme"] == "localised"].groupby(["order", "step"]):
         look: Look = {"linewidth": 0.6} if step == 1.0 else {"alpha": 0.35, "linestyle": "none"}
-        look |= {
-            "color": ORDER_COLOURS[order],
-            "marker": MARKERS[order],
-            "markersize": SIZES.get(step, 2.3),
-        }
+        look |= {"color": ORDER_COLOURS[order], "marker": MARKERS[order]}
+        look["markersize"] = SIZES.get(step, 2.3)
         marks = marks.sort_values("work")
         axes.plot(marks["work"], marks[name], markeredgewidth=0.0, **look)
     presets = rows[rows["preset"].notna()]
     axes.plot(presets["work"], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none")
-    # On the side that is empty.
+    # The names of the presets stand on the side that is empty.
     look = {"xytext": (4, 6), "textcoords": "offset points", "fontsize": 7.5, "path_effects": HALO}
     for _, preset in presets.iterrows():
         axes.annotate(preset["preset"], (preset["work"], preset[name]), **look)
@@ -61,30 +63,24 @@ def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
 
 
 def _handles(rows: pd.DataFrame) -> list[Line2D]:
-    """Legend: colours and markers are orders, sizes steps."""
-    spacings = ", ".join(
-        f"{dx:g}" for dx in rows.loc[rows["scheme"] == "fixed_step", "dx"].unique()
-    )
+    """Legend entries: colours and markers are orders, sizes are steps."""
+    textbook = rows.loc[rows["scheme"] == "fixed_step", "dx"].unique()
+    spacings = ", ".join(f"{dx:g}" for dx in textbook)
     orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
     line: Look = {"linewidth": 0.6, "linestyle": "-"}
-    found = [entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", **line)]
-    found.append(entry("preset", color=BLACK, marker="o", markersize=8.0, fillstyle="none"))
+    entries = [entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", **line)]
+    entries.append(entry("preset", color=BLACK, marker="o", markersize=8.0, fillstyle="none"))
     for order in orders:
         look = line | {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": 4.0}
-        found.append(entry(f"order {order:g}", **look))
+        entries.append(entry(f"order {order:g}", **look))
     for step, size in SIZES.items():
-        look = {
-            "alpha": 1.0 if step == 1.0 else 0.5,
-            "marker": "o",
-            "markersize": size,
-            "color": GREY,
-        }
-        found.append(entry(f"step {step:g} dx", **look))
-    return found
+        look = {"alpha": 1.0 if step == 1.0 else 0.5, "marker": "o", "color": GREY}
+        entries.append(entry(f"step {step:g} dx", markersize=size, **look))
+    return entries
 
 
 def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
-    """Front speed of both schemes, the exact one, and the speeds dx/(n dt) that the textbook scheme locks on."""
+    """Draw the front speeds of both schemes and theory, and dx/(n dt), on which fronts lock."""
     fixed, local = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
     steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
     low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03

@@ -1,4 +1,4 @@
-"""The arrest that never comes: the left front under a stress boundary against the exact theory."""
+"""The arrest of the left front under a stress boundary, which takes for ever, and exact theory."""
 
 import numpy as np
 import pandas as pd
@@ -7,17 +7,8 @@ from matplotlib.figure import Figure
 
 from ..data.points import point
 from ..measurement.fronts import path
-from .style import (
-    GREY,
-    ORANGE,
-    PAGE,
-    Look,
-    colour_scale,
-    entry,
-    few_ticks,
-    legend_below,
-    new_panels,
-)
+from . import style
+from .style import GREY, ORANGE, PAGE, Look, entry
 
 NEEDS = {
     "data": ["arrest"],
@@ -34,8 +25,10 @@ OPEN: Look = {"markerfacecolor": "white"}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """In units of |x_minus|: roles path (of the left front at the finest spacing) and exact_path (time, to_go), and run
-    (dx, last_release, and fraction_time and exact_fraction_time of the fraction that counts as arrest).
+    """Paths and times of the left front in units of |x_minus|.
+
+    Roles path (at the finest spacing) and exact_path have time and to_go. Role run has dx,
+    last_release, and fraction_time and exact_fraction_time of the fraction that counts as arrest.
     """
     runs = tables["arrest"]
     # The paper estimates the time of the transition by |x_minus|.
@@ -57,17 +50,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) what is left of the way, at the finest spacing; (b) times of the fraction and of the last release."""
-    figure, (path_axes, spacing_axes) = new_panels(PAGE, 3.1, 1, 2)
+    """Draw (a) the rest of the way, (b) the times of the fraction and of the last release."""
+    figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, 1, 2)
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     handles: list[Artist] = []
+    scale = style.colour_scale("damping_ratio")
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
-        # On a logarithmic scale of colours 0 is as its lower end.
-        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio) if ratio else ORANGE}
+        # The scale of colours is logarithmic, and has none for 0.
+        look: Look = {"color": scale.to_rgba(ratio) if ratio else ORANGE}
         handles.append(entry(f"$b$ = {ratio:g}", marker=marker, **look))
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
-        path_axes.plot(simulated["time"], simulated["to_go"], **PALE, **look)
+        path_axes.plot(simulated["time"], simulated["to_go"], **PALE | look)
         path_axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
         path_axes.plot(simulated["time"].iloc[-1:], simulated["to_go"].iloc[-1:], marker, **look)
         runs = rows[rows["role"] == "run"].sort_values("dx")
@@ -78,7 +72,7 @@ def plot(table: pd.DataFrame) -> Figure:
     looks = {"simulation": PALE, "exact": {"linewidth": 0.9}, "last release": {"marker": "o"}}
     looks |= {fraction_label: {"marker": "o"} | OPEN, "the same, exact": {"marker": "<"}}
     handles += [entry(label, color=GREY, **look) for label, look in looks.items()]
-    legend_below(figure, handles, 5)
+    style.legend_below(figure, handles, 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     path_axes.set_ylabel(r"still to go, $1-|x|/|x_{-}|$")
     left, right, width = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
@@ -90,5 +84,5 @@ def plot(table: pd.DataFrame) -> Figure:
     words = ("last release: does not converge", f"{fraction_label}: converges to the exact time")
     for height, word, va in zip((0.98, 0.02), words, ("top", "bottom"), strict=True):
         spacing_axes.text(0.98, height, word, transform=spacing_axes.transAxes, ha="right", va=va)
-    few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
+    style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
     return figure

@@ -1,4 +1,4 @@
-"""How deep a steady pulse enters negative pre-stress: exact, on lattices, and by the later estimate."""
+"""Depth to which a steady pulse enters negative pre-stress: exact, on lattices, by an estimate."""
 
 from collections.abc import Iterable
 
@@ -15,80 +15,97 @@ NEEDS = {"studies": ["barriers"]}
 
 MAP = "cividis"
 # Points of the interpolated map along each axis, its bands of colour, and contour lines on it.
-FINE, BANDS, CONTOURS = 41, 33, (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
-# Above this depth the map is light, and what is written on it dark.
+FINE, BANDS = 41, 33
+CONTOURS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
+# Above this depth the map is light, and lines and labels on it are dark.
 LIGHT = 3.5
 MARKERS = ("o", "s", "^")
 OPEN: Look = {"markersize": 3.8, "markerfacecolor": "white"}
-# gamma of the curves, for which the later estimate is drawn; exact depths scale to it.
+# Curves have this gamma, for which the estimate is drawn; exact depths scale to it.
 GAMMA = 0.65
 LEVELS = (0.2, 0.5, 0.8)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Part "depth" as in the study; interpolated parts "fine" (exact at gamma = 1) and "curve" (exact and paper, the
-    later estimate, over the barrier's level at gamma = GAMMA).
+    """Part depth as in the study, and the interpolated parts fine and curve.
+
+    Part fine has exact depths at gamma = 1; part curve has exact depths and the later estimate
+    (paper) over the barrier's level at gamma = GAMMA.
     """
     study = tables["barriers"]
     parts = [study[study["part"] == "depth"]]
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):
-        # log depth over tau_0 and log |tau_b| is nearly straight.
-        at = np.sort(rows["tau0"].unique()), np.sort(np.log(-rows["barrier"].unique()))
-        x, y = (np.linspace(nodes[0], nodes[-1], FINE) for nodes in at)
-        for part, levels, gamma, powers in (
-            ("fine", x, 1.0, {"exact": 0.5}),
-            ("curve", np.array(LEVELS), GAMMA, {"exact": 0.5, "paper": 1.0}),
-        ):
-            pairs = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"])
-            out = pairs.to_frame(index=False)
-            for name, power in powers.items():
-                depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[
-                    :, ::-1
-                ]
-                depth = np.exp(_between(at[0], levels) @ np.log(depths) @ _between(at[1], y).T)
-                out[name] = depth.ravel() / gamma**power
-            parts.append(out.assign(part=part, gamma=gamma, damping_ratio=ratio))
+        levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), FINE)
+        fine = _interpolated(rows, levels, 1.0, {"exact": 0.5})
+        curve = _interpolated(rows, np.array(LEVELS), GAMMA, {"exact": 0.5, "paper": 1.0})
+        parts.append(fine.assign(part="fine", damping_ratio=ratio))
+        parts.append(curve.assign(part="curve", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
 
 
-def _between(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Weights of the values at the nodes in the polynomial through them; nodes are denser at the ends."""
+def _interpolated(
+    rows: pd.DataFrame, levels: np.ndarray, gamma: float, powers: dict[str, float]
+) -> pd.DataFrame:
+    """Depths over FINE barriers at some levels, from those at gamma = 1 on a grid of the study.
+
+    ``powers`` has the columns, each with the power of 1/gamma to which its depth is proportional.
+    """
+    # The logarithm of the depth is nearly straight over tau_0 and log |tau_b|.
+    tau0, log_barrier = np.sort(rows["tau0"].unique()), np.sort(np.log(-rows["barrier"].unique()))
+    y = np.linspace(log_barrier[0], log_barrier[-1], FINE)
+    pairs = pd.MultiIndex.from_product([levels, -np.exp(y)], names=["tau0", "barrier"])
+    columns = pairs.to_frame(index=False)
+    for name, power in powers.items():
+        depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
+        depth = np.exp(_weights(tau0, levels) @ np.log(depths) @ _weights(log_barrier, y).T)
+        columns[name] = depth.ravel() / gamma**power
+    return columns.assign(gamma=gamma)
+
+
+def _weights(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Weights of the values at nodes (denser at the ends) in the polynomial through them."""
     middle, half = 0.5 * (nodes[0] + nodes[-1]), 0.5 * (nodes[-1] - nodes[0])
-    by_node, by_point = (chebvander((x - middle) / half, nodes.size - 1) for x in (nodes, at))
+    by_node, by_point = (chebvander((x - middle) / half, nodes.size - 1) for x in (nodes, points))
     return np.linalg.solve(by_node.T, by_point.T).T
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Above: maps without and with damping. Below: curves with the estimate, and convergence."""
-    figure, (*maps, curve_axes, last) = new_panels(PAGE, 5.4, 2, 2)
+    """Draw maps without and with damping above; below curves with the estimate, and convergence."""
+    figure, (*maps, curve_axes, convergence_axes) = new_panels(PAGE, 5.4, 2, 2)
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()
     scale, bands = LogNorm(*ends), np.geomspace(*ends, BANDS)
     ratios = np.sort(runs["damping_ratio"].unique())
     for axes, ratio in zip(maps, ratios, strict=True):
-        at, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
-        image = _draw_map(axes, at, marked, scale, bands)
+        drawn, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
+        image = _draw_map(axes, drawn, marked, scale, bands)
         axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOURS)
-    # At the larger damping ratio, which is the last above.
+    # The curves are at the larger damping ratio, the last above.
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
     _draw_curves(curve_axes, curves, marked)
     curve_axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
-    for style, (ratio, chosen) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
+    _draw_convergence(convergence_axes, runs)
+    return figure
+
+
+def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
+    """Draw the depth on lattices over the exact one, a line a scene."""
+    for style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
         look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio), "markersize": 2.4}
         look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
-        for number, (_, line) in enumerate(chosen.groupby(["tau0", "barrier", "gamma"])):
-            line, label = line.sort_values("dx"), None if number else rf"$b = {ratio:g}$"
-            last.plot(line["dx"], line["measured"] / line["exact"], style, label=label, **look)
-    last.axhline(1.0, color=BLACK, linewidth=0.8)
-    last.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
+        for _, line in rows.groupby(["tau0", "barrier", "gamma"]):
+            line = line.sort_values("dx")
+            axes.plot(line["dx"], line["measured"] / line["exact"], style, **look)
+        axes.lines[-1].set_label(rf"$b = {ratio:g}$")
+    axes.axhline(1.0, color=BLACK, linewidth=0.8)
+    axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
     scenes = runs.groupby(["tau0", "barrier", "gamma"]).ngroups
-    last.set_title(rf"$\Gamma = 1$, {scenes} scenes a ratio", loc="right")
-    last.legend(loc="upper left")
-    return figure
+    axes.set_title(rf"$\Gamma = 1$, {scenes} scenes a ratio", loc="right")
+    axes.legend(loc="upper left")
 
 
 def _draw_map(
@@ -97,11 +114,10 @@ def _draw_map(
     grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     x, y = grid.columns.to_numpy(), -grid.index.to_numpy()
     image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
-    lines = axes.contour(
-        x, y, grid.to_numpy(), levels=CONTOURS, colors=_ink(CONTOURS), linewidths=0.5
-    )
+    look: Look = {"levels": CONTOURS, "colors": _ink(CONTOURS), "linewidths": 0.5}
+    lines = axes.contour(x, y, grid.to_numpy(), **look)
     axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
-    look: Look = {"s": 26.0, "linewidths": 0.9, "norm": scale, "cmap": MAP, "zorder": 3.0}
+    look = {"s": 26.0, "linewidths": 0.9, "norm": scale, "cmap": MAP, "zorder": 3.0}
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
         depth = group["measured"] * np.sqrt(gamma)
         look |= {"c": depth, "edgecolors": _ink(depth), "marker": marker}
@@ -112,19 +128,19 @@ def _draw_map(
 
 
 def _ink(depths: Iterable[float]) -> list[str]:
-    return [BLACK if depth > LIGHT else "white" for depth in depths]
+    return np.where(np.asarray(depths) > LIGHT, BLACK, "white").tolist()
 
 
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:
-    """Exact lines, the estimate, and the finest lattices scaled to one gamma."""
+    """Draw exact lines, the estimate, and the finest lattices scaled to one gamma."""
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):
         colour = colour_scale("tau_0").to_rgba(tau0)
         axes.plot(-rows["barrier"], rows["exact"], color=colour, label=rf"$\tau_0 = {tau0:g}$")
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
-        for gamma, found in finest[finest["tau0"] == tau0].groupby("gamma"):
-            depth = found["measured"] * np.sqrt(gamma / GAMMA)
-            axes.plot(-found["barrier"], depth, markers[gamma], color=colour, **OPEN)
+        for gamma, runs in finest[finest["tau0"] == tau0].groupby("gamma"):
+            depth = runs["measured"] * np.sqrt(gamma / GAMMA)
+            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
         axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)

@@ -1,4 +1,6 @@
-"""A whole rupture, exact and on lattices: velocity, fronts, trailing edge and slip, and how their difference falls."""
+"""Ruptures from beginning to end, exact and on lattices, and how the difference falls."""
+
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -7,19 +9,7 @@ from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from . import style
-from .style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    VELOCITY_MAP,
-    Look,
-    entry,
-    few_ticks,
-    new_panels,
-)
+from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, Look
 
 NEEDS = {"studies": ["exact_rupture"]}
 table = style.as_given
@@ -29,50 +19,54 @@ MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
-    figure, (map_axes, edge_axes, slip_axes, difference_axes) = new_panels(PAGE, 5.4, 2, 2)
+    """Draw (a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
+    figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(PAGE, 5.4, 2, 2)
     _draw_map(figure, map_axes, table[table["scene"] == next(iter(SCENES))])
-    scenes, names = table[table["role"] == "scene"], {}
-    for row in scenes.itertuples():
-        springs = rf"$\Gamma = 1$, $\gamma = {row.gamma:g}$" if row.gamma > 0.0 else r"$\Gamma = 0$"
-        levels = dict.fromkeys([setting(row.left), setting(row.right)])
-        names[row.scene] = rf"{springs}, $\tau_0$ = {', '.join(levels)}"
+    scenes = table[table["role"] == "scene"]
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
-        for axes, quantity in ((edge_axes, "release"), (edge_axes, "stick"), (slip_axes, "slip")):
-            _draw_edge(axes, rows, quantity, colour)
-    dx = scenes["dx"].iloc[0]
-    drawn = table.loc[table["role"] == "exact", "scene"].unique()
-    looks = {
-        "-": "front, exact",
-        "--": "trailing edge, exact",
-        "o": rf"front, lattice, $\Delta x = {dx:g}$",
-    }
-    for look, label in (looks | {"s": "trailing edge, lattice"}).items():
-        edge_axes.plot(
-            [], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label
-        )
+        _draw_edge(edge_axes, rows, "release", colour)
+        _draw_edge(edge_axes, rows, "stick", colour)
+        _draw_edge(slip_axes, rows, "slip", colour)
+    _draw_key(edge_axes, scenes["dx"].iloc[0])
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
-    edge_axes.legend(loc="upper left", fontsize=7.0)
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
-    others = {names[scene]: SCENES[scene] for scene in SCENES.keys() - set(drawn)}
+    # A scene without an exact solution is named in the panel of the differences.
+    names = {row.scene: _scene_name(row) for row in scenes.itertuples()}
+    solved = set(table.loc[table["role"] == "exact", "scene"])
+    others = {names[scene]: SCENES[scene] for scene in SCENES.keys() - solved}
     _draw_differences(difference_axes, table[table["role"] == "difference"], others)
-    lines = [
-        entry(names[scene], color=colour) for scene, colour in SCENES.items() if scene in drawn
-    ]
+    named = [scene for scene in SCENES if scene in solved]
+    lines = [style.entry(names[scene], color=SCENES[scene]) for scene in named]
     figure.legend(handles=lines, loc="outside upper center", ncols=3)
     return figure
 
 
+def _scene_name(scene: Any) -> str:
+    """Boundary condition and pre-stress of a row of role scene."""
+    held = rf"$\Gamma = 1$, $\gamma = {scene.gamma:g}$"
+    boundary = held if scene.gamma > 0.0 else r"$\Gamma = 0$"
+    levels = dict.fromkeys([setting(scene.left), setting(scene.right)])
+    return rf"{boundary}, $\tau_0$ = {', '.join(levels)}"
+
+
+def _draw_key(axes: Axes, dx: float) -> None:
+    """Name lines and marks of the edges in a legend."""
+    looks = {"-": "front, exact", "--": "trailing edge, exact"}
+    looks |= {"o": rf"front, lattice, $\Delta x = {dx:g}$", "s": "trailing edge, lattice"}
+    for look, label in looks.items():
+        axes.plot([], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label)
+    axes.legend(loc="upper left", fontsize=7.0)
+
+
 def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     samples = rows[rows["role"].isin(["map_exact", "map_lattice"])]
-    look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": samples["slip_velocity"].max()}
+    look: Look = {"cmap": style.VELOCITY_MAP, "shading": "nearest", "rasterized": True}
+    look |= {"vmin": 0.0, "vmax": samples["slip_velocity"].max()}
     for _, half in samples.groupby("role"):
-        # What does not slide stays white.
+        # Positions that do not slide stay white.
         grid = half.pivot(index="position", columns="time", values="slip_velocity")
-        image = axes.pcolormesh(
-            grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look
-        )
+        image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
     exact = rows[rows["role"] == "exact"]
     for quantity, dashes in (("release", "-"), ("stick", "--")):
         axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
@@ -84,28 +78,22 @@ def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
-    """The exact line and the lattice's marks."""
-    look: Look = {
-        "linewidth": 0.9,
-        "markersize": 2.2,
-        "markerfacecolor": "white",
-        "markeredgewidth": 0.6,
-    }
-    # Space-time has time on the horizontal axis, as in every figure.
+    """Draw the exact line and the marks of the lattice."""
+    look: Look = {"linewidth": 0.9, "markersize": 2.2, "markerfacecolor": "white"}
+    # Edges have time on the horizontal axis, as in every figure.
     x, y = ("position", "slip") if quantity == "slip" else (quantity, "position")
     marks = ("--", "s") if quantity == "stick" else ("-", "o")
     for role, mark in zip(("exact", "lattice"), marks, strict=True):
         line = rows[rows["role"] == role]
-        axes.plot(line[x], line[y], mark, color=colour, **look)
+        axes.plot(line[x], line[y], mark, color=colour, markeredgewidth=0.6, **look)
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) -> None:
-    """The largest and the smallest difference of each scene; its others lie between them."""
+    """Draw the largest and the smallest difference of each scene; the others lie between them."""
     drawn = []
     for scene, colour in SCENES.items():
-        lines = rows[rows["scene"] == scene].pivot(
-            index="dx", columns="quantity", values="difference"
-        )
+        scene_rows = rows[rows["scene"] == scene]
+        lines = scene_rows.pivot(index="dx", columns="quantity", values="difference")
         finest = lines.iloc[0].dropna().sort_values()
         for quantity in finest.index[[0, -1]]:
             axes.plot(lines[quantity], MARKERS[quantity] + "-", color=colour, linewidth=0.7)
@@ -119,6 +107,6 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) ->
     axes.plot(ends, 1.5 * ends, color=GREY, linewidth=0.8, linestyle=":", label="first order")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
-    few_ticks(axes.xaxis, np.unique(rows["dx"]))
+    style.few_ticks(axes.xaxis, np.unique(rows["dx"]))
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)
     axes.legend(loc="lower right", ncols=2, columnspacing=0.8)

@@ -1,4 +1,4 @@
-"""What selects the front speed: pre-stress and beta/dx, leaf springs at coarse spacing; so refine at fixed beta/dx."""
+"""The front speed by pre-stress, beta/dx and leaf springs; lattices refined at fixed beta/dx."""
 
 import numpy as np
 import pandas as pd
@@ -9,61 +9,58 @@ from .style import BLACK, GREY, HALO, PAGE, Look, colour_scale, few_ticks, legen
 
 NEEDS = {
     "measured": [
-        "front_speed", "front_speed_slow", "front_speed_springs", "continuum_fixed_ratio", "continuum_fixed_beta",
+        "front_speed",
+        "front_speed_slow",
+        "front_speed_springs",
+        "continuum_fixed_ratio",
+        "continuum_fixed_beta",
         "front_speed_fixed_beta",
     ],
     "predicted": {
-        "front_speed": ["front"], "front_speed_slow": ["front"], "front_speed_springs": ["front"],
-        "continuum_fixed_ratio": ["front"], "continuum_fixed_beta": ["front"], "front_speed_fixed_beta": ["front"],
+        "front_speed": ["front"],
+        "front_speed_slow": ["front"],
+        "front_speed_springs": ["front"],
+        "continuum_fixed_ratio": ["front"],
+        "continuum_fixed_beta": ["front"],
+        "front_speed_fixed_beta": ["front"],
     },
     "studies": ["front_law"],
-}  # fmt: skip
+}
 
 RULES = ("total", "elastic")
 # Narrower pulses stick within the layer of lattice waves at their front, which theory leaves out.
 FEWEST_BLOCKS = 4.0
 MARKERS = ("o", "s", "^", "D", "v", "P")
-COLUMNS = [
-    "panel",
-    "release",
-    "left",
-    "gamma",
-    "beta",
-    "damping_ratio",
-    "dx",
-    "springs",
-    "held",
-    "fixed",
-]
+COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx"]
+COLUMNS += ["springs", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Role theory is the study front_law; role simulation has speed, theory (but for refined), undamped (the paper's
-    formula) and sound (whether theory should hold); each of panel prestress, springs or refined.
+    """Role theory is the study front_law, role simulation the runs; panels by the study.
+
+    Runs have speed, theory (except on refined lattices), undamped (the paper's formula) and sound
+    (true where the theory should hold); panel is prestress, springs or refined.
     """
     lines = tables["front_law"].assign(role="theory")
-    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]]).assign(
-        panel="prestress"
-    )
+    uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
     springs = tables["front_speed_springs"]
-    springs = springs[
-        springs["release"] == lines.loc[lines["panel"] == "springs", "release"].iloc[0]
-    ]
-    ratio = tables["continuum_fixed_ratio"].assign(
-        held="b", fixed=lambda runs: runs["damping_ratio"]
-    )
+    rule = lines.loc[lines["panel"] == "springs", "release"].iloc[0]
+    springs = springs[springs["release"] == rule]
+    springs = springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2)
+    ratio = tables["continuum_fixed_ratio"]
+    ratio = ratio.assign(held="b", fixed=ratio["damping_ratio"])
     betas = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
     refined = pd.concat([ratio, betas.assign(held="beta", fixed=betas["beta"])])
+    # The lines are drawn of some of the refined scenes only.
     drawn = lines.loc[lines["panel"] == "refined", ["release", "left", "gamma", "held", "fixed"]]
-    springs = springs.assign(panel="springs", springs=springs["gamma"] * springs["dx"] ** 2)
     refined = refined.merge(drawn.drop_duplicates()).assign(panel="refined")
-    runs = pd.concat([uniform, springs, refined])
+    runs = pd.concat([uniform.assign(panel="prestress"), springs, refined])
     wide = (runs["pulse_state"] == "steady") & (runs["pulse_width"] >= FEWEST_BLOCKS * runs["dx"])
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     runs = runs[COLUMNS].assign(
         role="simulation",
         speed=runs["front_speed_right"],
-        # Refined lattices have theirs in the lines.
+        # The theory of refined lattices stands in the lines.
         theory=theory.where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
         sound=runs["run_flags"].isna() & (wide | (runs["panel"] == "prestress")),
@@ -72,7 +69,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a, b) both rules against tau_0, over the undamped speed; (c) leaf springs; (d) refined lattices."""
+    """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
     figure, grid = new_panels(PAGE, 5.2, 2, 2)
     panels = dict(list(table.groupby("panel")))
     for axes, rule in zip(grid, RULES, strict=False):
@@ -111,9 +108,8 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(line["springs"], line["speed"], style, color=_colour(ratio))
         known = line.dropna(subset="speed")
         if len(known) < len(line):
-            axes.plot(
-                known["springs"].iloc[-1:], known["speed"].iloc[-1:], "x", color=_colour(ratio)
-            )
+            last = known.iloc[-1:]
+            axes.plot(last["springs"], last["speed"], "x", color=_colour(ratio))
         _points(axes, group, "springs", "speed", marker)
     for left, (style, marker) in looks.items():
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
@@ -156,7 +152,7 @@ def _speed_axis(axes: Axes, xlabel: str, ticks: tuple[float, ...]) -> None:
 def _points(
     axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None
 ) -> None:
-    """Simulated speeds in the colour of their damping ratio; open where theory should not hold."""
+    """Mark simulated speeds in colours of damping ratios, open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
         look: Look = {"label": label} if sound else {"markerfacecolor": "white"}

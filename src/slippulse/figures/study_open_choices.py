@@ -1,4 +1,4 @@
-"""Every claim that is judged by numbers, at each choice that the paper leaves open: a specification curve."""
+"""A specification curve: claims judged by numbers, at each choice that the paper leaves open."""
 
 import numpy as np
 import pandas as pd
@@ -9,9 +9,9 @@ from .style import BLACK, BLUE, COLUMN, GREEN, GREY, ORANGE, Look, entry, legend
 NEEDS = {"lists": ["results/claims.json"]}
 
 NUMERIC = ("exact", "approximate")
-# Below this fraction of the tolerance a deviation is drawn there.
+# A deviation below this fraction of the tolerance is drawn at it.
 LEAST = 1e-2
-# What changes a verdict if a tolerance is taken this much larger or smaller.
+# A verdict in this band changes if the tolerance is larger or smaller by this factor.
 BAND = 1.5
 LOOKS: dict[str, Look] = {
     "fraction": {"color": ORANGE, "label": "fraction that is arrest"},
@@ -23,28 +23,29 @@ MARKERS: dict[str, Look] = {
     "exact": {"marker": "o", "markersize": 3.0},
     "lattice": {"marker": "s", "markersize": 3.0, "markerfacecolor": "white"},
 }
-# The rows of the printed rule are drawn this far below, those of the total force as far above.
+# Distance above its row at which a deviation is drawn, by release rule.
 APART = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """A row of each claim at each combination, or at the one that there is: over is deviation over tolerance, choice
-    what matters most, release the rule, solution exact or lattice.
+    """One row a claim and combination of choices; a claim without choices has one row.
+
+    over is deviation over tolerance, choice the choice that matters most, release the rule,
+    solution exact or lattice.
     """
     rows, names = [], ["id", "label", "verdict", "tolerance", "choice"]
     for claim in tables["claims"].to_dict("records"):
         if claim["kind"] in NUMERIC and claim["tolerance"]:
-            for found in claim["choices"] or [{"deviation": claim["deviation"]}]:
-                own = {name: claim[name] for name in names}
-                rows.append({"release": "", "solution": "lattice"} | found | own)
-    drawn = pd.DataFrame(rows)[[*names, "deviation", "release", "solution"]].dropna(
-        subset="deviation"
-    )
+            for choices in claim["choices"] or [{"deviation": claim["deviation"]}]:
+                judged = {name: claim[name] for name in names}
+                rows.append({"release": "", "solution": "lattice"} | choices | judged)
+    columns = [*names, "deviation", "release", "solution"]
+    drawn = pd.DataFrame(rows)[columns].dropna(subset="deviation")
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Deviation over tolerance, a claim a row; those that depend on a choice above."""
+    """Draw deviation over tolerance, a claim a row, the largest deviation above."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
     figure = new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
@@ -62,9 +63,8 @@ def plot(table: pd.DataFrame) -> Figure:
     axes.set_ylim(-0.7, len(farthest) - 0.3)
     figure.supylabel("claim", fontsize=9.0)
     axes.grid(axis="y", linewidth=0.3, color=GREY, alpha=0.5)
-    handles = [
-        entry(marker="o", **LOOKS[name]) for name in LOOKS if (table["choice"] == name).any()
-    ]
+    shown = [name for name in LOOKS if (table["choice"] == name).any()]
+    handles = [entry(marker="o", **LOOKS[name]) for name in shown]
     handles += [entry(name, color=BLACK, **look) for name, look in MARKERS.items()]
     legend_below(figure, handles, 2)
     return figure

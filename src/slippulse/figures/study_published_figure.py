@@ -1,4 +1,4 @@
-"""Which parameters the published space-time figure was made with, and how surely its readings tell."""
+"""Parameters of the published space-time figure, inferred from readings, with their regions."""
 
 import numpy as np
 import pandas as pd
@@ -15,18 +15,21 @@ NEEDS = {
 
 LOOKS = {"total": (BLUE, "o", "total force"), "elastic": (ORANGE, "s", "elastic stress")}
 LEVELS = (0.68, 0.95)
-# Every how many points of each curve are kept.
+# One of this many points of each curve is kept.
 KEPT = 25
 NAMES = {
-    "front_speed": "front slope", "intercept": "intercept", "centre_stick": "centre stops",
+    "front_speed": "front slope",
+    "intercept": "intercept",
+    "centre_stick": "centre stops",
     "velocity_displacement": r"largest $\dot u$",
-}  # fmt: skip
+}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """The study, and by release rule interpolated part "curve" (damping_ratio, dx, tau0, gamma, their errors, chi2) and
-    part "best" (one row a reading: pull, with the parameters that fit best); part "ours": the scene of our space-time
-    figure.
+    """Rows of the study, and by release rule the parts curve and best; part ours is our own scene.
+
+    Part curve has the interpolated fits (damping_ratio, dx, tau0, gamma, errors, chi2), part best
+    the pull of each reading with the parameters that fit best.
     """
     study = tables["published_figure"]
     parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
@@ -39,17 +42,13 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         parts.append(kept.assign(part="curve", release=release))
         parts.append(rows.assign(part="best", release=release, **best[names]))
     scene = settings["simulations"]["space_time_displacement"]
-    ours = {
-        "part": "ours",
-        "tau0": scene["left"][0],
-        "gamma": scene["gamma"][0],
-        **settings["model"],
-    }
+    ours = {"tau0": scene["left"][0], "gamma": scene["gamma"][0], **settings["model"]}
+    ours["part"] = "ours"
     return pd.concat([*parts, pd.DataFrame([ours])], ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Above: chi-square and regions over the damping ratio. Below: what is left of each reading."""
+    """Draw chi-square and regions over the damping ratio above, and residuals below."""
     figure = new_figure(PAGE, 4.7)
     axes = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.8))
     _draw_chi2(axes["a"], table)
@@ -61,7 +60,7 @@ def plot(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _of(table: pd.DataFrame, part: str, release: str) -> pd.DataFrame:
+def _select(table: pd.DataFrame, part: str, release: str) -> pd.DataFrame:
     return table[(table["part"] == part) & (table["release"] == release)]
 
 
@@ -71,25 +70,24 @@ def _ratio_axis(axes: Axes) -> None:
 
 
 def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
-    """Smallest chi-square over the damping ratio, as far as a fit is accepted."""
+    """Draw the smallest chi-square over the damping ratio, as far as a fit is accepted."""
     best = table[table["part"] == "best"]
     dof = best["reading"].nunique() - 3
     accepted = likely(LEVELS[1], dof)
     for release, (colour, marker, label) in LOOKS.items():
-        line, found = _of(table, "curve", release), _of(table, "best", release).iloc[0]
+        line, best_fit = _select(table, "curve", release), _select(table, "best", release).iloc[0]
         shown = line[line["chi2"] <= accepted]
         axes.plot(shown["damping_ratio"], shown["chi2"], color=colour, gid=release)
         inside = line[line["chi2"] <= line["chi2"].min() + likely(LEVELS[1])]
-        axes.fill_between(
-            inside["damping_ratio"], inside["chi2"], color=colour, alpha=0.18, linewidth=0.0
-        )
-        label = rf"{label}: $\chi^2 = {found['chi2']:.1f}$"
-        axes.plot(found["damping_ratio"], found["chi2"], marker, color=colour, label=label)
+        look: Look = {"color": colour, "alpha": 0.18, "linewidth": 0.0}
+        axes.fill_between(inside["damping_ratio"], inside["chi2"], **look)
+        label = rf"{label}: $\chi^2 = {best_fit['chi2']:.1f}$"
+        axes.plot(best_fit["damping_ratio"], best_fit["chi2"], marker, color=colour, label=label)
     top = 1.75 * accepted
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
     label = rf"notebook, total force: $\chi^2 = {(notebook['pull'] ** 2).sum():.0f}$"
-    look: Look = {"color": LOOKS["total"][0], "markersize": 4.5, "clip_on": False}
-    # Far above the axes, to which the marker points.
+    look = {"color": LOOKS["total"][0], "markersize": 4.5, "clip_on": False}
+    # The value is far above the axes; the marker points to it.
     axes.plot(notebook["damping_ratio"].iloc[0], top, "^", label=label, **look)
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
     look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
@@ -100,18 +98,17 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
 
 
 def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None:
-    """The region of the damping ratio and another parameter, the third being what fits best."""
+    """Draw the regions of the damping ratio and a parameter, where the third one fits best."""
     for release, (colour, marker, _) in LOOKS.items():
-        line, best = _of(table, "curve", release), _of(table, "best", release).iloc[0]
+        line, best = _select(table, "curve", release), _select(table, "best", release).iloc[0]
         for level, alpha in zip(LEVELS[::-1], (0.22, 0.45), strict=True):
             room = likely(level, 2) - (line["chi2"] - line["chi2"].min())
             inside = line[room >= 0.0]
             half = np.sqrt(room[room >= 0.0]) * inside[f"{name}_error"]
-            ends = inside["damping_ratio"], inside[name] - half, inside[name] + half
-            axes.fill_between(
-                *ends, color=colour, alpha=alpha, linewidth=0.0, gid=f"{release} {level:g}"
-            )
-        look: Look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
+            look: Look = {"color": colour, "alpha": alpha, "gid": f"{release} {level:g}"}
+            low, high = inside[name] - half, inside[name] + half
+            axes.fill_between(inside["damping_ratio"], low, high, linewidth=0.0, **look)
+        look = {"color": colour, "markeredgecolor": "white", "markersize": 4.5}
         axes.plot(best["damping_ratio"], best[name], marker, **look)
     ours = table[table["part"] == "ours"].iloc[0]
     axes.plot(ours["damping_ratio"], ours[name], "x", color=BLACK, label="our scene")
@@ -124,15 +121,14 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
 
 
 def _draw_pulls(axes: Axes, table: pd.DataFrame) -> None:
-    """What the best fits leave of each reading, in units of its error."""
+    """Draw what the best fits leave of each reading, in units of its error."""
     axes.axhspan(-1.0, 1.0, color="0.92")
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
-        rows = _of(table, "best", release)
+        rows = _select(table, "best", release)
         axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
-    labels = [
-        NAMES.get(name, rf"edge, $t = {name.rpartition('_')[2]}$") for name in rows["reading"]
-    ]
+    edges = {name: rf"edge, $t = {name.rpartition('_')[2]}$" for name in rows["reading"]}
+    labels = [NAMES.get(name, edge) for name, edge in edges.items()]
     axes.set_xticks(np.arange(len(labels)), labels, rotation=35, ha="right", rotation_mode="anchor")
     axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
     axes.legend(title="released by", loc="upper right", ncols=2)

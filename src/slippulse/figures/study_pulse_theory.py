@@ -1,7 +1,8 @@
-"""The steady pulse against damping: the paper's formulas, the damped theory, simulations, and their limit dx -> 0."""
+"""The steady pulse against damping: the paper's formulas, exact theory, simulations, dx -> 0."""
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .style import CYCLE, GREY, PAGE, Look, colour_scale, legend_above, new_panels
@@ -13,14 +14,16 @@ NEEDS = {
 }
 
 QUANTITIES = {"peak_velocity": "largest velocity", "width": "width", "slip": "final slip"}
-# Measured columns on refined lattices.
+# The columns that are measured on refined lattices.
 REFINED = {name: f"pulse_{name}" for name in QUANTITIES} | {"front_speed": "front_speed_right"}
 MARKERS = ("o", "s", "^", "D")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Of each quantity role simulation (value, theory and paper), theory (over_paper) and refined (value over dx, and
-    theory: the limit).
+    """Rows of each quantity by role.
+
+    Role simulation has value, theory and paper; role theory has over_paper; role refined has the
+    value over dx, and as theory the limit.
     """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     lines = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
@@ -33,54 +36,52 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     runs = tables["continuum_fixed_ratio"]
     limits = study[study["role"] == "limit"].set_index("quantity")["value"]
     for quantity, column in REFINED.items():
-        values = {
-            "value": runs[column],
-            "theory": limits[quantity],
-            "quantity": quantity,
-            "role": "refined",
-        }
-        parts.append(runs[["left", "gamma", "damping_ratio", "dx"]].assign(**values))
+        values = {"value": runs[column], "theory": limits[quantity], "quantity": quantity}
+        rows = runs[["left", "gamma", "damping_ratio", "dx"]]
+        parts.append(rows.assign(**values, role="refined"))
     return pd.concat(parts, ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a to c) each quantity in units of the paper's formula; (d) the distance from the limit on refined lattices."""
-    figure, (*grid, fine) = new_panels(PAGE, 4.6, 2, 2)
+    """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
+    figure, (*grid, refined_axes) = new_panels(PAGE, 4.6, 2, 2)
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
-        axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
-        for left, rows in table[table["quantity"] == quantity].groupby("left"):
-            colour = colour_scale("tau_0").to_rgba(left)
-            line, runs = rows[rows["role"] == "theory"], rows[rows["role"] == "simulation"]
-            name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
-            axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
-            for flagged, group in runs.groupby(runs["run_flags"].notna()):
-                look: Look = {"color": colour} | ({"markerfacecolor": "white"} if flagged else {})
-                axes.plot(group["damping_ratio"], group["value"] / group["paper"], "o", **look)
+        _draw_quantity(axes, table[table["quantity"] == quantity])
         gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]
         axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", loc="right")
-        axes.set(
-            xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula", xlim=(-0.02, None)
-        )
+        axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
+        axes.set_xlim(-0.02, None)
     grid[0].plot([], [], "o", color=GREY, label="simulation")
     legend_above(figure, grid[0], columnspacing=1.0)
-    rows = table[table["role"] == "refined"]
-    for quantity, shade, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
+    _draw_refined(refined_axes, table[table["role"] == "refined"])
+    return figure
+
+
+def _draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
+    axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
+    for left, group in rows.groupby("left"):
+        colour = colour_scale("tau_0").to_rgba(left)
+        line, runs = group[group["role"] == "theory"], group[group["role"] == "simulation"]
+        name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
+        axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
+        for flagged, marks in runs.groupby(runs["run_flags"].notna()):
+            look: Look = {"color": colour} | ({"markerfacecolor": "white"} if flagged else {})
+            axes.plot(marks["damping_ratio"], marks["value"] / marks["paper"], "o", **look)
+
+
+def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw the relative distance of each quantity from its limit over the spacing."""
+    for quantity, colour, marker in zip(REFINED, CYCLE, MARKERS, strict=False):
         line = rows[rows["quantity"] == quantity].sort_values("dx")
         error = np.abs(line["value"] / line["theory"] - 1.0)
-        look = {"color": shade, "label": QUANTITIES.get(quantity, "front speed")}
-        fine.plot(line["dx"], error, marker=marker, **look)
+        label = QUANTITIES.get(quantity, "front speed")
+        axes.plot(line["dx"], error, marker=marker, color=colour, label=label)
     ends = rows["dx"].agg(["min", "max"]).to_numpy()
-    fine.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
-    fine.set(
-        xscale="log",
-        yscale="log",
-        xlabel=r"spacing $\Delta x$",
-        ylabel=r"|simulation / limit $-$ 1|",
-    )
+    axes.plot(ends, 0.4 * ends, color=GREY, linestyle=":", linewidth=0.8, label="first order")
+    axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
+    axes.set_ylabel(r"|simulation / limit $-$ 1|")
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
-    fine.set_title(
-        rf"$\Gamma = 1$, $\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$", loc="right"
-    )
-    fine.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
-    fine.set_ylim(1e-6, None)
-    return figure
+    scene = rf"$\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$"
+    axes.set_title(rf"$\Gamma = 1$, {scene}", loc="right")
+    axes.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
+    axes.set_ylim(1e-6, None)

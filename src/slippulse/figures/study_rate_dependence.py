@@ -1,4 +1,4 @@
-"""Friction that depends linearly on slip rate: where pulses end, the pulses, maps of both sides, and Gamma = 0."""
+"""Friction linear in the slip rate: where pulses end, the pulses, maps of both sides, Gamma = 0."""
 
 import matplotlib
 import numpy as np
@@ -19,33 +19,35 @@ RATE = r"$\alpha/\sqrt{\gamma}$"
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) regimes, (b) width and slip of pulses, (c) maps on both sides of the line, (d) the stress held."""
+    """Draw (a) regimes, (b) width and slip of pulses, (c) maps of both regimes, (d) Gamma = 0."""
     figure, (plane, pulses, maps, arrest) = new_panels(PAGE, 5.4, 2, 2)
     table = table.assign(over=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     parts = dict(list(table.groupby("role")))
     _draw_plane(plane, parts["lattice"], parts["limit"])
     shown = parts["lattice"]["level"] == parts["map"]["level"].iloc[0]
     runs, steady = parts["lattice"][shown], parts["steady"]
-    sizes = {
-        "pulse_width": (BLACK, "o", r"width $W_\text{p}$"),
-        "pulse_slip": (GREY, "s", r"slip $u$"),
-    }
-    for column, (colour, marker, label) in sizes.items():
-        pulses.plot(steady["over"], steady[column], color=colour, label=label)
-        pulses.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
-    pulses.set(xlabel=RATE, ylabel=r"width $W_\text{p}$, slip $u$", yscale="log")
-    level = runs["level"].iloc[0]
-    pulses.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice", loc="right")
-    pulses.legend(loc="upper center")
+    _draw_sizes(pulses, runs, steady)
     _draw_maps(figure, maps, parts["map"])
     _draw_arrest(arrest, parts["arrest"], parts["asymptote"])
     return figure
 
 
+def _draw_sizes(axes: Axes, runs: pd.DataFrame, steady: pd.DataFrame) -> None:
+    """Draw width and slip of pulses against the rate dependence."""
+    width, slip = r"width $W_\text{p}$", r"slip $u$"
+    sizes = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
+    for column, (colour, marker, label) in sizes.items():
+        axes.plot(steady["over"], steady[column], color=colour, label=label)
+        axes.plot(runs["over"], runs[column], marker, color=colour, **OPEN)
+    axes.set(xlabel=RATE, ylabel=f"{width}, {slip}", yscale="log")
+    level = runs["level"].iloc[0]
+    axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice", loc="right")
+    axes.legend(loc="upper center")
+
+
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
-    axes.fill_betweenx(
-        limit["level"], -limit["over"], limit["over"], color=BLUE, alpha=0.12, linewidth=0.0
-    )
+    look: Look = {"color": BLUE, "alpha": 0.12, "linewidth": 0.0}
+    axes.fill_betweenx(limit["level"], -limit["over"], limit["over"], **look)
     for sign, label in ((1.0, "exact"), (-1.0, None)):
         axes.plot(sign * limit["over"], limit["level"], label=label, **LINES)
     flags = runs["run_flags"].notna()
@@ -59,24 +61,16 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$", loc="right")
-    axes.legend(
-        loc="lower center",
-        bbox_to_anchor=(0.5, 1.09),
-        ncols=2,
-        columnspacing=0.8,
-        handletextpad=0.4,
-    )
+    look = {"ncols": 2, "columnspacing": 0.8, "handletextpad": 0.4}
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.09), **look)
 
 
 def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
-    look: Look = {"cmap": VELOCITY_MAP, "vmin": 0.0, "vmax": rows["slip_velocity"].max()}
+    look: Look = {"cmap": VELOCITY_MAP, "shading": "nearest", "rasterized": True}
+    look |= {"vmin": 0.0, "vmax": rows["slip_velocity"].max()}
     for regime, half in rows.groupby("regime"):
-        grid = half.pivot(index="position", columns="time", values="slip_velocity").where(
-            lambda v: v > 0.0
-        )
-        image = axes.pcolormesh(
-            grid.columns, grid.index, grid, shading="nearest", rasterized=True, **look
-        )
+        grid = half.pivot(index="position", columns="time", values="slip_velocity")
+        image = axes.pcolormesh(grid.columns, grid.index, grid.where(grid > 0.0), **look)
         name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
         axes.text(0.04, 0.92 if regime == "crack" else 0.04, name, transform=axes.transAxes)
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")

@@ -1,9 +1,10 @@
-"""Pulses sent from one pre-stress into another: held displacement settles, imposed stress grows, decays or keeps."""
+"""Pulses that enter another pre-stress: they settle (Gamma = 1), or grow, decay or keep (0)."""
 
 from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -15,50 +16,55 @@ from .style import BLACK, GREY, PAGE, Look, colour_scale, entry, legend_below, n
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
-# Points of a lattice, how many there are to a mark, and what rounding leaves of the exact distance.
-POINTS, MARKED, ROUNDING = 100, 5, 2e-9
+# Points of a lattice, and points to a mark.
+POINTS, MARKED = 100, 5
+# Rounding leaves this much of a distance that is exactly 0.
+ROUNDING = 2e-9
 # The smallest velocity drawn.
 LEAST = 0.03
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Of each level beyond the step role exact (as the study has it), lattice (Gamma = 1; x: distance beyond the step,
-    slip left behind) and velocity (Gamma = 0; time, largest_velocity right of the nucleation, step: its position).
+    """Roles exact, lattice and velocity for each level beyond the step.
+
+    Role exact is the study; role lattice (Gamma = 1) has the slip left behind over x, the distance
+    beyond the step; role velocity (Gamma = 0) has time, the largest velocity right of the
+    nucleation, and step, the position of the step.
     """
     exact = tables["pulse_memory"]
+    across, beyond_step = data["pulses_across_a_step"], data["regimes_beyond"]
     parts = [exact.assign(role="exact")]
-    across, beyond = (
-        [point(runs, i) for i in range(runs.sizes["point"])] for runs in data.values()
-    )
-    for run in across:
-        position, level = prestress_from(run.attrs).steps[-1]
-        x = run["x"].values - position
-        drawn = exact.loc[np.isclose(exact["level"], level), "x"]
-        inside = np.flatnonzero(
-            np.isfinite(run["stick_time"]) & (x > drawn.min()) & (x < drawn.max())
-        )
-        kept = inside[:: max(1, inside.size // POINTS)]
-        lines = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
-        parts.append(lines.assign(role="lattice", level=level, dx=run.attrs["dx"]))
-    # The runs with the lowest level on the left, which sends the narrowest pulse.
-    lowest = float(data["regimes_beyond"]["left"].min())
-    for run in beyond:
-        if run.attrs["left"] == lowest:
-            largest = (
-                run["sample_velocity"].sel(sample_position=slice(1e-9, None)).max("sample_position")
-            )
-            lines = pd.DataFrame(
-                {"time": run["sample_time"].values, "largest_velocity": largest.values}
-            )
-            position, level = prestress_from(run.attrs).steps[-1]
-            parts.append(
-                lines.assign(role="velocity", level=level, before=run.attrs["right"], step=position)
-            )
+    parts += [slip_rows(point(across, i), exact) for i in range(across.sizes["point"])]
+    # The runs with the lowest level on the left send the narrowest pulse.
+    lowest = float(beyond_step["left"].min())
+    runs = [point(beyond_step, i) for i in range(beyond_step.sizes["point"])]
+    parts += [velocity_rows(run) for run in runs if run.attrs["left"] == lowest]
     return pd.concat(parts, ignore_index=True)
 
 
+def slip_rows(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
+    """Slip of a run where it has stuck, over the distances of the exact solution."""
+    position, level = prestress_from(run.attrs).steps[-1]
+    x = run["x"].values - position
+    drawn = exact.loc[np.isclose(exact["level"], level), "x"]
+    inside = np.isfinite(run["stick_time"].values) & (x > drawn.min()) & (x < drawn.max())
+    kept = np.flatnonzero(inside)
+    kept = kept[:: max(1, kept.size // POINTS)]
+    rows = pd.DataFrame({"x": x[kept], "slip": run["slip"].values[kept]})
+    return rows.assign(role="lattice", level=level, dx=run.attrs["dx"])
+
+
+def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
+    """Largest slip velocity of a run right of the nucleation over time."""
+    right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
+    largest = right.max("sample_position").values
+    position, level = prestress_from(run.attrs).steps[-1]
+    rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
+    return rows.assign(role="velocity", level=level, before=run.attrs["right"], step=position)
+
+
 def plot(table: pd.DataFrame) -> Figure:
-    """(a) slip across the step, (b) how far from the new steady pulse, (c) largest velocity under imposed stress."""
+    """Draw (a) slip across the step, (b) its distance from the new steady slip, (c) velocity."""
     figure, (slip_axes, rest_axes, velocity_axes) = new_panels(PAGE, 3.2, 1, 3)
     slip = table[table["role"].isin(["exact", "lattice"])]
     for level, rows in slip.groupby("level"):
@@ -73,13 +79,12 @@ def plot(table: pd.DataFrame) -> Figure:
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
     legend_below(figure, handles, 4)
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
-    # What is exactly 0 is drawn as what rounding leaves.
+    # A distance of exactly 0 is drawn at ROUNDING.
     rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
     rest_axes.text(0.04, 0.45 * ROUNDING, "rounding", va="center", fontsize=8.0)
     rest_axes.set(yscale="log", xlim=(0.0, 1.35), ylim=(0.1 * ROUNDING, 3.0))
-    rest_axes.set(
-        xlabel=r"distance / $W_\text{p}/(v - 1)$", ylabel="|slip / new steady slip $-$ 1|"
-    )
+    rest_axes.set_xlabel(r"distance / $W_\text{p}/(v - 1)$")
+    rest_axes.set_ylabel("|slip / new steady slip $-$ 1|")
     rest_axes.set_title(r"$\Gamma = 1$", loc="right")
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure
@@ -95,7 +100,7 @@ def _draw_level(
     look: Look = {"color": colour, "markerfacecolor": "white"}
     slip_axes.plot(marks["x"], marks["slip"], "o", markersize=1.8, markeredgewidth=0.5, **look)
     slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
-    # From the memory on the exact rest is 0.
+    # The exact distance is 0 beyond the memory.
     exact = exact[(exact["x"] > 0.0) & ((exact["x"] <= memory) | (exact["x"].shift() <= memory))]
     marks = marks[marks["x"] > 0.0]
     look |= {"linewidth": 1.0, "markersize": 2.2, "markeredgewidth": 0.6}
@@ -105,41 +110,29 @@ def _draw_level(
 
 
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
-    """One line a level, in the colour of what the pulse does, with the level at its end."""
+    """Draw a line a level, in the colour of what the pulse does, with the level at its end."""
     rows = rows[rows["largest_velocity"] > 0.0]
+    colours = {-1.0: style.GREEN, 0.0: style.YELLOW, 1.0: style.PURPLE}
+    look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center"}
     for level, line in rows.groupby("level"):
-        colour = style.GREEN if level < 0.0 else style.PURPLE if level > 0.0 else style.YELLOW
-        axes.plot(
-            line["time"],
-            line["largest_velocity"],
-            "o-",
-            color=colour,
-            markersize=2.0,
-            linewidth=0.8,
-        )
-        # Where the line ends or leaves the panel; velocities fall with time there.
-        seen, below = (
-            line[line["largest_velocity"] > LEAST],
-            line[line["largest_velocity"] <= LEAST],
-        )
-        at = tuple(seen[["time", "largest_velocity"]].iloc[-1])
-        if len(below):
-            two = pd.concat([below.iloc[:1], seen.iloc[-1:]])
-            at = (
-                np.interp(np.log(LEAST), np.log(two["largest_velocity"]), two["time"]),
-                1.15 * LEAST,
-            )
-        look: Look = {
-            "xytext": (4, 0),
-            "textcoords": "offset points",
-            "va": "center",
-            "fontsize": 7.0,
-        }
-        axes.annotate(setting(level), at, color=BLACK, **look)
+        colour = colours[float(np.sign(level))]
+        x, y = line["time"], line["largest_velocity"]
+        axes.plot(x, y, "o-", color=colour, markersize=2.0, linewidth=0.8)
+        axes.annotate(setting(level), _end_in_panel(line), color=BLACK, fontsize=7.0, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set(xlim=(None, 1.28 * rows["time"].max()), ylim=(LEAST, None))
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
-    axes.text(
-        0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top", fontsize=8.0
-    )
+    look = {"transform": axes.transAxes, "ha": "right", "va": "top", "fontsize": 8.0}
+    axes.text(0.97, 0.96, r"$\tau$ beyond", **look)
+
+
+def _end_in_panel(line: pd.DataFrame) -> tuple[float, float]:
+    """Point at which a line ends or leaves the panel, where velocities fall with time."""
+    visible = line["largest_velocity"] > LEAST
+    time, velocity = line.loc[visible, ["time", "largest_velocity"]].iloc[-1]
+    if visible.all():
+        return time, velocity
+    below = line[~visible].iloc[0]
+    velocities = np.log([below["largest_velocity"], velocity])
+    return float(np.interp(np.log(LEAST), velocities, [below["time"], time])), 1.15 * LEAST

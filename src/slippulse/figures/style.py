@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from string import ascii_lowercase
+from typing import Any, NamedTuple, TypeAlias
 
 import matplotlib
 import matplotlib.rcsetup
@@ -24,35 +25,46 @@ from PIL.PngImagePlugin import PngInfo
 
 from ..data.files import configuration, write_whole
 
-# How a thing is drawn: keywords of Matplotlib.
+# Keywords of Matplotlib that say how a thing is drawn.
 Look: TypeAlias = dict[str, Any]
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
 PAGE = 7.05
 
 # Okabe and Ito's colours, which readers with any colour vision can tell apart.
-BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-SKY, YELLOW, BLACK, GREY = "#56B4E9", "#E69F00", "#000000", "#7f7f7f"
+BLUE, ORANGE = "#0072B2", "#D55E00"
+GREEN, PURPLE = "#009E73", "#CC79A7"
+SKY, YELLOW = "#56B4E9", "#E69F00"
+BLACK, GREY = "#000000", "#7f7f7f"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
-# Of each order of the localised scheme; the textbook scheme is black.
+# Each order of the localised scheme has a colour; the textbook scheme is black.
 _orders = {order: matplotlib.colormaps["plasma"](0.14 * (order - 3)) for order in range(3, 9)}
 ORDER_COLOURS = {order: to_hex(colour) for order, colour in _orders.items()}
 VELOCITY_MAP = "viridis"
-# Of letters on what is drawn.
+# The outline of letters that stand on a drawing.
 HALO = [withStroke(linewidth=2.2, foreground="white")]
-# A quantity has the same colour for the same value in every figure: map, its part that is used, as far as it can be
-# seen on white, ends, and the scale; that of tau_l is stretched towards 0, where most levels are.
-SCALES: dict[
-    str, tuple[str, tuple[float, float], tuple[float, float], Callable[..., Normalize]]
-] = {
-    "tau_0": ("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
-    "tau_l": ("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
-    "gamma": ("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
-    "damping_ratio": ("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
-    "width": ("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
+
+
+class Scale(NamedTuple):
+    """Colours of a quantity: a map, the part of it that is seen on white, ends and their norm."""
+
+    map: str
+    part: tuple[float, float]
+    ends: tuple[float, float]
+    norm: Callable[..., Normalize]
+
+
+# A quantity has the same colour for the same value in every figure. The scale of tau_l is stretched
+# towards 0, where most levels are.
+SCALES = {
+    "tau_0": Scale("plasma", (0.0, 0.73), (0.0, 1.0), Normalize),
+    "tau_l": Scale("YlGnBu_r", (0.0, 0.47), (-2.0, 0.0), partial(PowerNorm, 2.0)),
+    "gamma": Scale("cividis", (0.0, 0.66), (1e-3, 1.0), LogNorm),
+    "damping_ratio": Scale("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
+    "width": Scale("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
 
-# A Times, as the journal has, which Matplotlib brings along; the report has the same.
+# The Times that Matplotlib brings along, for the journal's; the report has it too.
 FAMILY = "STIXGeneral"
 RC: dict[Any, Any] = {
     "font.size": 9.0,
@@ -70,12 +82,12 @@ RC: dict[Any, Any] = {
     "font.family": [FAMILY, "DejaVu Sans"],
     "mathtext.fontset": "stix",
     "axes.prop_cycle": matplotlib.rcsetup.cycler(color=CYCLE),
-    # Where a title is given; to look for what it might cover takes a tenth of the time.
+    # A fixed height of titles; a search for what they might cover takes a tenth of the time.
     "axes.titley": 1.0,
     # The layout is found at the resolution of the PNG, so that the formulas are set once.
     "figure.dpi": 300,
     "savefig.dpi": "figure",
-    # Smaller files in half of the time that TrueType takes.
+    # Type 3 fonts give smaller files in half of the time that TrueType takes.
     "pdf.fonttype": 3,
     # Names of objects in a PDF would otherwise be random.
     "svg.hashsalt": "slippulse",
@@ -84,70 +96,72 @@ matplotlib.rcParams.update(RC)
 
 
 def as_given(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
-    """The table of a figure that draws one study as it is."""
+    """Return the only table given; the `table` of a figure that draws one study as it is."""
     (table,) = tables.values()
     return table
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure in the house style, ``width`` by ``height`` inches."""
+    """Make an empty figure in the house style, ``width`` by ``height`` inches."""
     return Figure(figsize=(width, height), layout="constrained")
 
 
 def new_panels(
     width: float, height: float, rows: int, columns: int, **options: Any
 ) -> tuple[Figure, list[Axes]]:
-    """An empty figure with lettered panels in the order of reading."""
+    """Make an empty figure with lettered panels in the order of reading, and return both."""
     figure = new_figure(width, height)
     panels = list(figure.subplots(rows, columns, squeeze=False, **options).flat)
-    for axes, letter in zip(panels, "abcdef", strict=False):
+    for axes, letter in zip(panels, ascii_lowercase, strict=False):
         panel_letter(axes, letter)
     return figure, panels
 
 
 def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
-    """These ticks alone with numbers, on a logarithmic axis too."""
+    """Set the only ticks with numbers, on a logarithmic axis too."""
     axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
     axis.set_minor_formatter(NullFormatter())
 
 
 def colour_scale(quantity: str) -> ScalarMappable:
-    """The colours of a quantity of SCALES; ``to_rgba`` gives that of a value, a colour bar shows all."""
-    name, part, ends, norm = SCALES[quantity]
-    colours = matplotlib.colormaps[name](np.linspace(*part, 256))
-    return ScalarMappable(norm(*ends, clip=True), ListedColormap(colours))
+    """Colours of a quantity of SCALES; ``to_rgba`` gives that of a value, a colour bar all."""
+    scale = SCALES[quantity]
+    colours = matplotlib.colormaps[scale.map](np.linspace(*scale.part, 256))
+    return ScalarMappable(scale.norm(*scale.ends, clip=True), ListedColormap(colours))
 
 
 def panel_letter(axes: Axes, letter: str) -> None:
-    """Mark a panel (a), (b), ... above its upper left corner."""
+    """Mark a panel by (a), (b), ... above its upper left corner."""
     axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9.0)
 
 
 def entry(label: str, **look: Any) -> Line2D:
-    """An entry of a legend: a line, or a marker without a line."""
-    return Line2D([], [], label=label, **({"linestyle": "none"} if "marker" in look else {}) | look)
+    """Make an entry of a legend: a line, or a marker without a line."""
+    if "marker" in look:
+        look = {"linestyle": "none"} | look
+    return Line2D([], [], label=label, **look)
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
-    """One legend for all panels, above them, of what is labelled in one."""
+    """Place one legend above all panels, with the labels of one of them."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=len(labels), **look)
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
-    """One legend for all panels, below them."""
+    """Place one legend below all panels."""
     look: dict[str, Any] = {"columnspacing": 1.0, "handlelength": 1.6, "handletextpad": 0.6}
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
 
 
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
-    """Write PNG and PDF with no clock in them. The layout is found once, with the formulas of the PNG."""
-    # A spine ends where its axes do, which are asked themselves.
+    """Write PNG and PDF with no clock in them; the layout is found once, for the PNG."""
+    # A spine ends where its axes do, and the layout asks the axes.
     for axes in figure.axes:
         axes.spines[:].set_in_layout(False)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    # With an engine the PDF would be drawn twice.
+    # With a layout engine the PDF would be drawn twice.
     figure.set_layout_engine(None)
     made_by = f"configuration {configuration()}" if configuration() else None
     vectors = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": made_by}
@@ -156,11 +170,11 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
 
 
 def _save_png(canvas: FigureCanvasAgg, path: Path, made_by: str | None) -> None:
-    """In 256 colours, within half a level of 255 of what is drawn in the mean, and a third of the bytes."""
+    """Write a PNG of 256 colours: a third of the bytes, and a mean error below half a level."""
     text, dpi = PngInfo(), canvas.figure.dpi
     if made_by:
         text.add_text("Comment", made_by)
-    # One number a pixel. Most are white: colour 0, which need not be looked for.
+    # A pixel is one number. Most are white, which is colour 0 without a search.
     pixels = np.asarray(canvas.buffer_rgba()).view(np.uint32)[..., 0]
     ink = pixels != 0xFFFFFFFF
     drawn = Image.fromarray(pixels[ink].view(np.uint8).reshape(1, -1, 4)).convert("RGB")

@@ -1,7 +1,7 @@
-"""Pulses in their own frame, simulated and exact: rows of a figure's table, and how they are drawn."""
+"""Pulses in the frame that moves with them, simulated and exact: their table, and the drawing."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -14,9 +14,9 @@ from ...data.points import point
 from ...measurement.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
 from ..style import BLACK, PAGE, Look, colour_scale, entry, legend_below, new_panels
-from .scaling import chosen
+from .selection import spread_values
 
-# Their labels in the units of each boundary.
+# Labels of the fields in the units of each boundary condition.
 FIELDS = {
     "slip": {"displacement": r"slip $u\,\gamma/2\tau_0$", "stress": r"slip $u/u_\text{max}$"},
     "slip_velocity": {
@@ -29,91 +29,119 @@ FIELDS = {
     },
 }
 DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
-# The quantity of the colours, the column of the line styles, and their symbols; and how many levels are drawn.
-LOOKS = {
-    "displacement": ("tau_0", "damping_ratio", r"\tau_0", "b"),
-    "stress": ("tau_l", "width", r"\tau_{0,l}", "W"),
+
+
+class Key(NamedTuple):
+    """Meaning of colours and line styles: the level has the colour, another column the style."""
+
+    colours: str  # quantity of `style.SCALES`
+    level_symbol: str
+    styled: str  # column of the table of runs
+    styled_symbol: str
+
+
+KEYS = {
+    "displacement": Key("tau_0", r"\tau_0", "damping_ratio", "b"),
+    "stress": Key("tau_l", r"\tau_{0,l}", "width", "W"),
 }
-LEVELS = {"displacement": 2, "stress": 3}
 STYLES = ("-", "--", ":", "-.")
-# Points of a simulated curve, digits that can be seen, and what is drawn ahead of a pulse and behind it, in widths.
-POINTS, DIGITS, AHEAD, BEHIND = 300, 4, 0.08, 0.25
+# The number of levels drawn.
+LEVELS = {"displacement": 2, "stress": 3}
+# Points of a simulated curve, and decimals of its values that can be seen.
+POINTS, DECIMALS = 300, 4
+# A simulated pulse is drawn this far ahead of its front and behind its tail, in pulse widths.
+AHEAD, BEHIND = 0.08, 0.25
 PALE: Look = {"linewidth": 2.6, "alpha": 0.3}
-# The paper's scales of FIELDS, as its predictions name them.
-SCALES = ("slip", "peak_velocity", "acceleration")
 # Left and lower end, width and height, as fractions of a panel.
 Box = tuple[float, float, float, float]
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
 def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Simulated pulses of each sweep at some of its levels, and the exact one of each run; panel is the boundary.
+    """Simulated pulses of each sweep at some of its levels, and the exact one of each run.
 
-    Role "run" has the parameters, roles "simulation" and "exact" are over x, both in units of the scales: width, slip,
-    velocity and acceleration of the paper's pulse under a displacement boundary; under a stress boundary the width of
-    the Gaussian, largest slip and velocity of the exact pulse far from nucleation, and that velocity over that width,
-    since its acceleration has no bound.
+    Role run has the parameters; roles simulation and exact have the fields over x, the distance
+    from the largest velocity; panel is the boundary. Units under a displacement boundary are width,
+    slip, velocity and acceleration of the paper's pulse; under a stress boundary the width of the
+    Gaussian, the largest slip and velocity of the exact pulse far from the nucleation, and that
+    velocity over that width, since the exact acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
     profiles = tables["pulse_profiles"].groupby("simulation")
     parts = [
-        _rows(sweep, tables[name], profiles.get_group(name), window) for name, sweep in data.items()
+        _sweep_rows(sweep, tables[name], profiles.get_group(name), window)
+        for name, sweep in data.items()
     ]
     return pd.concat(parts, ignore_index=True)
 
 
-def _rows(
+def _sweep_rows(
     sweep: xr.Dataset, runs: pd.DataFrame, profiles: pd.DataFrame, window: float
 ) -> pd.DataFrame:
-    runs = runs[runs["left"].isin(chosen(runs["left"], LEVELS[runs["boundary"].iloc[0]]))]
+    boundary = runs["boundary"].iloc[0]
+    runs = runs[runs["left"].isin(spread_values(runs["left"], LEVELS[boundary]))]
     parts = [runs[PARAMETERS].assign(role="run", run=runs.index)]
     for index, numbers in runs.iterrows():
         exact = profiles[profiles["run"] == index].assign(role="exact")
-        if numbers["boundary"] == "displacement":
-            scale = dict(
-                zip(FIELDS, numbers[[f"paper_pulse_{kind}" for kind in SCALES]], strict=True)
-            )
-            scale["x"], span, reach = (
-                numbers["paper_pulse_width"],
-                numbers["exact_pulse_width"],
-                1.0 + BEHIND,
-            )
-        else:
-            peak, width = numbers["exact_largest_velocity"], numbers["width"]
-            scale = {
-                "slip": exact["slip"].max(),
-                "slip_velocity": peak,
-                "slip_acceleration": peak / width,
-            }
-            scale["x"], span, reach = width, float(np.ptp(exact["x"])), 1.0
-        run = point(sweep, int(index))
-        pulse = leading_pulse(run, window)
-        found = pd.DataFrame(comoving(run, pulse)).assign(role="simulation")
-        inside = found[found["xi"].between(-reach * span, AHEAD * span)]
-        thinned = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
-        found = pd.concat(
-            [thinned.assign(x=thinned["xi"] - (pulse.peak_distance - pulse.front)), exact]
-        )
-        curves = {key: (found[key] / scale[key]).round(DIGITS) for key in ("x", *FIELDS)}
-        parts.append(pd.DataFrame({"role": found["role"], "run": index, **curves}))
-    return pd.concat(parts, ignore_index=True).assign(panel=runs["boundary"].iloc[0])
+        simulated = _simulated_pulse(point(sweep, int(index)), window, _extent(numbers, exact))
+        both = pd.concat([simulated.assign(role="simulation"), exact])
+        units = _units(numbers, exact)
+        curves = {name: (both[name] / unit).round(DECIMALS) for name, unit in units.items()}
+        parts.append(pd.DataFrame({"role": both["role"], "run": index, **curves}))
+    return pd.concat(parts, ignore_index=True).assign(panel=boundary)
 
 
-def looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
-    """Colour and line style of each run of one boundary."""
-    quantity, other, *_ = LOOKS[table["panel"].iloc[0]]
+def _simulated_pulse(run: xr.Dataset, window: float, extent: tuple[float, float]) -> pd.DataFrame:
+    """Fields of the leading pulse of a run over x, thinned to POINTS."""
+    pulse = leading_pulse(run, window)
+    profile = pd.DataFrame(comoving(run, pulse))
+    inside = profile[profile["xi"].between(*extent)]
+    thinned = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
+    return thinned.assign(x=thinned["xi"] - (pulse.peak_distance - pulse.front))
+
+
+def _extent(numbers: pd.Series, exact: pd.DataFrame) -> tuple[float, float]:
+    """First and last distance from the front at which a simulated pulse is drawn."""
+    if numbers["boundary"] == "displacement":
+        length = numbers["exact_pulse_width"]
+        return -(1.0 + BEHIND) * length, AHEAD * length
+    length = float(np.ptp(exact["x"]))
+    return -length, AHEAD * length
+
+
+def _units(numbers: pd.Series, exact: pd.DataFrame) -> dict[str, float]:
+    """Units of x and of the fields of a run, as `pulse_table` explains them."""
+    names = ("x", *FIELDS)
+    if numbers["boundary"] == "displacement":
+        kinds = ("width", "slip", "peak_velocity", "acceleration")
+        units = [numbers[f"paper_pulse_{kind}"] for kind in kinds]
+        return dict(zip(names, units, strict=True))
+    width, peak = numbers["width"], numbers["exact_largest_velocity"]
+    units = [width, exact["slip"].max(), peak, peak / width]
+    return dict(zip(names, units, strict=True))
+
+
+class RunLook(NamedTuple):
+    """Colour and line style of a run."""
+
+    colour: Any
+    style: str
+
+
+def run_looks(table: pd.DataFrame) -> dict[int, RunLook]:
+    """Looks of the runs of one boundary, by the number of the run."""
+    key = KEYS[table["panel"].iloc[0]]
     runs = table[table["role"] == "run"].set_index("run")
-    style, scale = (
-        dict(zip(np.sort(runs[other].unique()), STYLES, strict=False)),
-        colour_scale(quantity),
-    )
-    return {run: (scale.to_rgba(row["left"]), style[row[other]]) for run, row in runs.iterrows()}
+    styles = dict(zip(np.sort(runs[key.styled].unique()), STYLES, strict=False))
+    scale = colour_scale(key.colours)
+    pairs = zip(scale.to_rgba(runs["left"].to_numpy()), runs[key.styled].map(styles), strict=True)
+    return {run: RunLook(*pair) for run, pair in zip(runs.index, pairs, strict=True)}
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
-    """Pulses of one boundary in units of their scales: simulated ones pale, exact ones thin."""
+    """Draw a field of the pulses of one boundary: simulated ones pale, exact ones thin."""
     flagged = set(table.loc[table["run_flags"].notna(), "run"])
-    for run, (colour, style) in looks(table).items():
+    for run, (colour, style) in run_looks(table).items():
         rows = table[table["run"] == run]
         simulated, exact = (rows[rows["role"] == role] for role in ("simulation", "exact"))
         shade = "0.7" if run in flagged else colour
@@ -124,7 +152,7 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
 
 
 def plot_fields(table: pd.DataFrame) -> Figure:
-    """Figures 8 and 9: slip, slip velocity and acceleration of the pulses of one boundary."""
+    """Draw figures 8 and 9: the three fields of the pulses of one boundary."""
     figure, panels = new_panels(PAGE, 2.8, 1, 3)
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
@@ -133,7 +161,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         # The undamped lattice rings beyond the theory at the front.
         panels[2].set_ylim(-1.3, 1.3)
     else:
-        # Where slip and velocity are small.
+        # The inset stands where slip and velocity are small.
         draw_prestress(panels[1], table, (0.09, 0.66, 0.33, 0.22), 5.0)
         # The exact acceleration has no bound at the front.
         panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
@@ -142,28 +170,27 @@ def plot_fields(table: pd.DataFrame) -> Figure:
 
 
 def draw_prestress(axes: Axes, table: pd.DataFrame, box: Box, widths: float) -> None:
-    """The pre-stress of the runs in an inset, over some widths of the widest Gaussian."""
-    runs, look = (
-        table[table["role"] == "run"].drop_duplicates(["left", "right", "width"]),
-        looks(table),
-    )
-    prestress_inset(axes, box, runs, [look[run][0] for run in runs["run"]], widths)
+    """Draw the pre-stress of the runs of one boundary with `prestress_inset`."""
+    runs = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"])
+    looks = run_looks(table)
+    prestress_inset(axes, box, runs, [looks[run].colour for run in runs["run"]], widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
-    """Legend of one boundary: what the colours and the line styles of the exact pulses are, and what is pale."""
-    runs, look = table[table["role"] == "run"].set_index("run"), looks(table)
-    _, other, symbol, other_symbol = LOOKS[table["panel"].iloc[0]]
-    levels, others = (runs[column].drop_duplicates().sort_values() for column in ("left", other))
-    found = [entry(rf"${symbol} = {level:g}$", color=look[run][0]) for run, level in levels.items()]
-    for run, value in others.items():
-        name, line = rf"exact, ${other_symbol} = {value:g}$", look[run][1]
-        found.append(entry(name, color=BLACK, linewidth=0.8, linestyle=line))
-    return [*found, entry("simulation", color=BLACK, **PALE)]
+    """Legend entries of one boundary: the colours, the line styles and the simulation."""
+    runs, looks = table[table["role"] == "run"].set_index("run"), run_looks(table)
+    key = KEYS[table["panel"].iloc[0]]
+    entries = []
+    for run, level in runs["left"].drop_duplicates().sort_values().items():
+        entries.append(entry(rf"${key.level_symbol} = {level:g}$", color=looks[run].colour))
+    for run, value in runs[key.styled].drop_duplicates().sort_values().items():
+        name, style = rf"exact, ${key.styled_symbol} = {value:g}$", looks[run].style
+        entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=style))
+    return [*entries, entry("simulation", color=BLACK, **PALE)]
 
 
 def conditions(table: pd.DataFrame) -> str:
-    """The boundary of the runs, and gamma or b, which their looks do not tell."""
+    """Title that names the boundary of the runs, and gamma or b, which their looks do not tell."""
     held = table["panel"].iloc[0] == "displacement"
     column, symbol = ("gamma", r"\gamma") if held else ("damping_ratio", "b")
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
@@ -173,7 +200,7 @@ def conditions(table: pd.DataFrame) -> str:
 def prestress_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float
 ) -> None:
-    """Profiles of pre-stress of some runs in a box of a panel, over some widths of the widest Gaussian."""
+    """Draw the pre-stress of runs in a box of a panel, to some widths of the widest Gaussian."""
     inset = axes.inset_axes(box)
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
     for run, colour in zip(runs.itertuples(), colours, strict=True):

@@ -1,4 +1,4 @@
-"""Slip velocity over time and position, with the fronts and where blocks stick: tables and drawing."""
+"""A run over time and position: slip velocity, front and trailing edge; their table and drawing."""
 
 from itertools import pairwise
 
@@ -10,10 +10,11 @@ from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
 from ..style import BLACK, GREY, VELOCITY_MAP, Look
+from .selection import spaced_indices
 
 # Samples kept along each axis of a map, and blocks along each front.
 MAP_SAMPLES, FRONT_POINTS = 121, 400
-# What is drawn beyond the slipped part on each side, as a fraction of it: room for an arrow.
+# The panel is wider than the slipped part by this fraction of it on each side, for an arrow.
 MARGIN = 0.12
 STUCK = "#cfcfcf"
 # Width of a label on the axis of the narrow pre-stress panel, as a fraction of the axis.
@@ -22,8 +23,10 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
 def run_rows(run: xr.Dataset) -> pd.DataFrame:
-    """Role, series, time, position and value of all that a map shows: parameter (series: its name), flag (series: the
-    flags), and the roles of the parts below.
+    """Rows (role, series, time, position, value) of all that `draw_profile` and `draw_map` show.
+
+    Roles are parameter (series: its name), flag (series: the flags), and those of `velocity_map`,
+    `prestress_profile` and `edges`.
     """
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     if run.attrs["run_flags"]:
@@ -31,12 +34,16 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(rows), velocity_map(run), prestress_profile(run), *edges(run)])
 
 
+def rows_by_role(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """Split a table by its column role; the functions that draw take the result as ``roles``."""
+    return {str(role): rows for role, rows in table.groupby("role")}
+
+
 def description(roles: dict[str, pd.DataFrame]) -> str:
-    """Boundary, pre-stress and damping of a run, and its flags."""
+    """Boundary, pre-stress and damping of a run, and its flags, as a title."""
     value = roles["parameter"].set_index("series")["value"]
-    parts = [
-        rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$" if value["gamma"] > 0.0 else r"$\Gamma = 0$"
-    ]
+    held = rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$"
+    parts = [held if value["gamma"] > 0.0 else r"$\Gamma = 0$"]
     if value["left"] == value["right"]:
         parts.append(rf"$\tau_0 = {value['left']:g}$")
     else:
@@ -48,7 +55,7 @@ def description(roles: dict[str, pd.DataFrame]) -> str:
 
 
 def limits(run: xr.Dataset) -> tuple[float, float]:
-    """Positions that are drawn: what slips and a margin, or as far as samples go where slip goes farther."""
+    """Lowest and highest position drawn: the slipped part and a margin, within the samples."""
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
     slipped = slipped if slipped.size else run["x"].values
     margin = max(MARGIN * (slipped[-1] - slipped[0]), run.attrs["dx"])
@@ -61,23 +68,19 @@ def limits(run: xr.Dataset) -> tuple[float, float]:
     return float(lower), float(upper)
 
 
-def thin(size: int, most: int) -> np.ndarray:
-    """Regularly spaced indices, at most ``most`` of them."""
-    return np.arange(0, size, max(1, int(np.ceil(size / most))))
-
-
 def velocity_map(run: xr.Dataset) -> pd.DataFrame:
-    """Sampled slip velocity where it is not 0, role "map", and the largest sample, role "largest"."""
+    """Sampled slip velocity where it is not 0 (role map), and its largest value (role largest)."""
     lower, upper = limits(run)
     x, times, velocity = (
         run[name].values for name in ("sample_position", "sample_time", "sample_velocity")
     )
     inside = np.flatnonzero((x >= lower) & (x <= upper))
-    columns, rows = inside[thin(inside.size, MAP_SAMPLES)], thin(times.size, MAP_SAMPLES)
+    columns = inside[spaced_indices(inside.size, MAP_SAMPLES)]
+    rows = spaced_indices(times.size, MAP_SAMPLES)
     time, position = np.meshgrid(times[rows], x[columns], indexing="ij")
     # Four digits of the largest velocity are more than a colour shows, and keep the table small.
     kept = velocity[np.ix_(rows, columns)].round(4 - int(np.floor(np.log10(np.nanmax(velocity)))))
-    # What is left out is 0; the first of each row and column says where it is.
+    # A sample that is left out is 0; the first of each row and column keeps the grid complete.
     written = kept != 0.0
     written[0], written[:, 0] = True, True
     grid = {"time": time[written], "position": position[written], "value": kept[written]}
@@ -86,11 +89,11 @@ def velocity_map(run: xr.Dataset) -> pd.DataFrame:
 
 
 def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
-    """Pre-stress over the positions that are drawn, role "prestress"."""
+    """Pre-stress over the positions that are drawn (role prestress)."""
     lower, upper = limits(run)
     x, tau = run["x"].values, run["prestress"].values
     inside = np.flatnonzero((x >= lower) & (x <= upper))
-    kept = np.union1d(inside[thin(inside.size, FRONT_POINTS)], np.argmax(tau))
+    kept = np.union1d(inside[spaced_indices(inside.size, FRONT_POINTS)], np.argmax(tau))
     # The levels go on beyond the lattice, which ends where the fronts do.
     x = np.concatenate([[lower], x[kept], [upper]])
     tau = np.concatenate([[tau[kept[0]]], tau[kept], [tau[kept[-1]]]])
@@ -98,10 +101,10 @@ def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
 
 
 def edges(run: xr.Dataset) -> list[pd.DataFrame]:
-    """Times of first release (role "front") and last stick (role "trailing", NaN where none) over position."""
+    """Times of first release (role front) and of last stick (role trailing; NaN where none)."""
     x = run["x"].values
     slipped = np.flatnonzero(np.isfinite(run["release_time"].values))
-    kept = np.union1d(slipped[thin(slipped.size, FRONT_POINTS)], slipped[-1:])
+    kept = np.union1d(slipped[spaced_indices(slipped.size, FRONT_POINTS)], slipped[-1:])
     return [
         pd.DataFrame({"role": role, "position": x[kept], "time": run[edge].values[kept]})
         for role, edge in (("front", "release_time"), ("trailing", "stick_time"))
@@ -109,67 +112,62 @@ def edges(run: xr.Dataset) -> list[pd.DataFrame]:
 
 
 def draw_profile(axes: Axes, rows: pd.DataFrame) -> None:
-    """Pre-stress to the right, position upwards."""
+    """Draw the pre-stress to the right and the position upwards."""
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
     lower, upper = min(0.0, rows["value"].min()), rows["value"].max()
-    # The peak and the levels far away, the right one only where its label has room.
+    # Ticks stand at 0, at the peak and at both levels; the right one only where it has room.
     left, right = rows["value"].iloc[[0, -1]]
-    shown = [upper, left] if abs(right - left) < LABEL * (upper - lower) else [upper, left, right]
-    ticks = sorted({round(float(value), 2) for value in (*shown, 0.0)})
+    room = LABEL * (upper - lower)
+    shown = [0.0, upper, left] if abs(right - left) < room else [0.0, upper, left, right]
+    ticks = sorted({round(float(value), 2) for value in shown})
     axes.set_xticks(ticks, [setting(value) for value in ticks])
-    # Two that are near each other have their labels on their outer sides.
-    near = [abs(one - other) < LABEL * (upper - lower) for one, other in pairwise(ticks)]
-    for label, after, before in zip(
-        axes.get_xticklabels(), [*near, False], [False, *near], strict=True
-    ):
-        label.set_horizontalalignment("center" if after == before else "right" if after else "left")
+    # Two ticks that are near each other have their labels on their outer sides.
+    near = [higher - lower < room for lower, higher in pairwise(ticks)]
+    labels = axes.get_xticklabels()
+    for label, near_next, near_last in zip(labels, [*near, False], [False, *near], strict=True):
+        if near_next != near_last:
+            label.set_horizontalalignment("right" if near_next else "left")
     axes.set(xlabel=r"$\tau$", xlim=(lower - 0.15, upper + 0.15))
     axes.set(ylabel=r"position $x$", ylim=(rows["position"].min(), rows["position"].max()))
 
 
 def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
-    """Slip velocity in colour, cut along the front and the trailing edge. Returns the image."""
+    """Draw the slip velocity in colour, cut along both edges, and return the image."""
     grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
     times, positions = grid.columns.to_numpy(), grid.index.to_numpy()
     dt, dx = np.diff(times)[0], np.diff(positions)[0]
     extent = (times[0] - dt / 2, times[-1] + dt / 2, positions[0] - dx / 2, positions[-1] + dx / 2)
-    look: Look = {
-        "origin": "lower",
-        "extent": extent,
-        "interpolation": "bilinear",
-        "aspect": "auto",
-    }
-    image = axes.imshow(
-        grid, VELOCITY_MAP, vmin=0.0, vmax=roles["largest"]["value"].iloc[0], **look
-    )
+    look: Look = {"origin": "lower", "interpolation": "bilinear", "aspect": "auto"}
+    look |= {"extent": extent, "vmin": 0.0, "vmax": roles["largest"]["value"].iloc[0]}
+    image = axes.imshow(grid, VELOCITY_MAP, **look)
     draw_edges(axes, roles, times[-1])
     return image
 
 
 def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
-    """The front and the trailing edge, known to a block and a fraction of a step; what is stuck is hidden."""
-    beyond = 0.01 * end
-    front, trailing = (
-        roles["front"].sort_values("position"),
-        roles["trailing"].sort_values("position"),
-    )
+    """Draw front and trailing edge, and hide the map before the release and after the stick.
+
+    The edges are known to a block and a fraction of a step, better than the samples of the map.
+    """
+    front = roles["front"].sort_values("position")
+    trailing = roles["trailing"].sort_values("position")
     x, release = front["position"].to_numpy(), front["time"].to_numpy()
     axes.set(xlim=(0.0, end), xlabel=r"time $t$")
     axes.tick_params(labelleft=False)
     if not x.size:
         return
-    around = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
-    around = np.clip(
-        around, roles["prestress"]["position"].min(), roles["prestress"]["position"].max()
-    )
+    drawn = roles["prestress"]["position"]
+    positions = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
+    positions = np.clip(positions, drawn.min(), drawn.max())
     before = np.concatenate([[end, end], release, [end, end]])
-    axes.fill_betweenx(around, -beyond, before, color="white", linewidth=0.0, zorder=1.5)
+    # The areas reach over the borders of the panel.
+    overhang = 0.01 * end
+    axes.fill_betweenx(positions, -overhang, before, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(release, x, color=BLACK, linewidth=0.8, zorder=2.0, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
-        axes.fill_betweenx(x, stick, end + beyond, color=STUCK, linewidth=0.0, zorder=1.4)
-        axes.plot(
-            stick, x, color=BLACK, linewidth=0.8, linestyle=(0, (3, 1.5)), label="trailing edge"
-        )
+        axes.fill_betweenx(x, stick, end + overhang, color=STUCK, linewidth=0.0, zorder=1.4)
+        look: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": (0, (3, 1.5))}
+        axes.plot(stick, x, label="trailing edge", **look)
