@@ -1,4 +1,4 @@
-"""Tolerances of all tests, each with its reason; a failing test is reported, not given a wider one."""
+"""Tolerances of all tests, each with its reason; a failing test never gets a wider one."""
 
 # One pass of a stencil: a handful of additions of numbers near 1, in another order than numpy's.
 STENCIL = 1e-13

@@ -145,14 +145,12 @@ def settings_for(
 
 def promised(simulation: Mapping) -> Mapping[str, Any]:
     """Add the spacing of each run where an accuracy is promised, or raise ConfigError."""
-    promise = promise_of(simulation)
+    promise, scheme = promise_of(simulation), simulation["scheme"]
     if promise is None:
         return simulation
-    if simulation["scheme"] != "localised":
+    if scheme != "localised":
         # A grid study does not see the error of another scheme's step.
-        raise ConfigError(
-            f"scheme: {simulation['scheme']!r}; allowed: 'localised' where accuracy is given"
-        )
+        raise ConfigError(f"scheme: {scheme!r}; allowed: 'localised' where accuracy is given")
     if math.isnan(promise):
         return simulation
     strengthening = simulation.get("rate_strengthening", [])

@@ -26,15 +26,12 @@ class Run(NamedTuple):
 
 
 def promise_of(simulation: Mapping) -> float | None:
-    """The relative error that a resolved simulation promises.
-
-    It is None if no accuracy is asked for, and NaN if the simulation sets its spacing itself.
-    """
+    """Relative error that is promised; None if none is, NaN if a simulation sets its spacing."""
     promise = simulation["accuracy"].get("promise")
-    sets_spacing = (
-        "dx" in simulation or "fixed" in simulation["spacing"] or any(simulation.get("beta", []))
-    )
-    return math.nan if promise is not None and sets_spacing else promise
+    chosen = "dx" in simulation or "fixed" in simulation["spacing"]
+    if promise is not None and (chosen or any(simulation.get("beta", []))):
+        return math.nan
+    return promise
 
 
 def expand(simulation: Mapping) -> tuple[list[Scene], list[Samples | None]]:
@@ -114,14 +111,8 @@ def _spacing(simulation: Mapping, run: Run, index: int) -> float:
 def _max_step(simulation: Mapping, run: Run, dx: float, beta: float) -> float:
     """The simulation's own step, or the preset's, cut to a safe fraction of the stability bound."""
     accuracy = simulation["accuracy"]
-    bound = largest_step(
-        simulation["scheme"],
-        accuracy["order"],
-        beta / dx,
-        run.gamma * dx**2,
-        run.alpha * dx,
-        enough=accuracy["max_step"] / MARGIN,
-    )
+    ratios, enough = (beta / dx, run.gamma * dx**2, run.alpha * dx), accuracy["max_step"] / MARGIN
+    bound = largest_step(simulation["scheme"], accuracy["order"], *ratios, enough=enough)
     step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
     if "promise" in accuracy:
         step = min(step, accuracy["max_step"])
@@ -139,10 +130,8 @@ def _duration(rule: Mapping, profile: Prestress, gamma: float) -> float:
             value *= abs(prestress_balance_position(profile))
         except ValueError as error:
             # The configuration names levels or profiles, and not `prestress`.
-            reason = str(error).removeprefix("prestress.")
-            raise ValueError(
-                f"duration.balance_distances: {value} times |x_minus|, but {reason}"
-            ) from None
+            reason = f"{value} times |x_minus|, but {str(error).removeprefix('prestress.')}"
+            raise ValueError(f"duration.balance_distances: {reason}") from None
     return float(value)
 
 

@@ -149,9 +149,8 @@ class Physics(Block):
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
         else:
-            reason = "which has no leaf springs (gamma: null removes it)"
-            allowed = f"left out under boundary 'stress', {reason}"
-            require(gamma is None, f"gamma: {gamma!r}", allowed)
+            allowed = "left out under boundary 'stress', which has no leaf springs"
+            require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
         self.alone("beta", "damping_ratio")
         return self
 
@@ -226,9 +225,7 @@ class Preset(Block):
 
 class Model(Block):
     damping_ratio: NonNegative = key("beta/dx (paper: beta = 1e-3; figure: dx = 0.01)")
-    release: Release = key(
-        "`total`: the damping force counts at release (figure); `elastic`: not (printed)"
-    )
+    release: Release = key("`total`: damping counts at release (figure); `elastic`: not (printed)")
     scheme: Scheme = key(
         "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
         " `continuum`: the exact continuum limit, which has neither `max_step` nor `order`"
@@ -307,10 +304,10 @@ class Configuration(Block):
     @model_validator(mode="after")
     def _names(self) -> Self:
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
-        scheme = self.model.scheme
-        allowed = "'localised' where accuracy is given"
-        exact = self.accuracy is None or scheme == "localised"
-        require(exact, f"model.scheme: {scheme!r}", allowed)
+        if self.accuracy is not None:
+            scheme = self.model.scheme
+            allowed = "'localised' where accuracy is given"
+            require(scheme == "localised", f"model.scheme: {scheme!r}", allowed)
         for name in self.scenes:
             self._check_scene_name(name)
         for name, reading in self.published.items():

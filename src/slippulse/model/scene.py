@@ -138,7 +138,7 @@ class Scene:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
             raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
         check_number("rate_strengthening", self.rate_strengthening)
-        check_number("max_step", self.max_step, above=0.0)
+        check_number("max_step", self.max_step)
 
     def _check_resolution(self) -> None:
         width = self.prestress.width
@@ -156,6 +156,8 @@ class Scene:
         if not (math.isfinite(stiffness) and math.isfinite(self.damping_ratio) and bound > 0.0):
             allowed = "numbers for which a stable step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
+        # An overflow above makes the step of a preset 0, and is then what must be named.
+        check_number("max_step", self.max_step, above=0.0)
         if self.scheme != "continuum":
             check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
         if self.max_step > bound:

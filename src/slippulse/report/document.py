@@ -84,11 +84,8 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
 
 
 def _pandoc(text: str, manuscript: Path, template: Path, options: Sequence[str]) -> str:
-    common = [
-        "--from=markdown",
-        "--standalone",
-        "--number-sections",
-        "--citeproc",
+    common = ["--from=markdown", "--standalone", "--number-sections", "--citeproc"]
+    common += [
         f"--template={template}",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",

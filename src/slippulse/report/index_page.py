@@ -41,7 +41,7 @@ WIDE = 600
 def index_page(
     results: str | Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]
 ) -> str:
-    """The page, by paths of texts, figures by heading and titles of scenes; only files get links."""
+    """The page, by paths of texts, figures by heading and titles of scenes; links only to files."""
     results = Path(results)
     facts = _json(results / "provenance.json")
     ledger = Ledger(_json(results / "claims.json"), _json(results / "findings.json"))

@@ -84,11 +84,8 @@ def verdicts(lines: Iterable[Line]) -> str:
 def failures(ledger: Ledger) -> str:
     """Every claim that is not simply reproduced, worst first, each with one sentence of why."""
     order = sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict))
-    rows = [
-        (f"{claim.statement} `{claim.id}`", claim.verdict, claim.why)
-        for claim in order
-        if claim.verdict != WORST_FIRST[-1]
-    ]
+    failed = [claim for claim in order if claim.verdict != WORST_FIRST[-1]]
+    rows = [(f"{claim.statement} `{claim.id}`", claim.verdict, claim.why) for claim in failed]
     return table("claim l34 | verdict l13 | why l53", rows)
 
 
