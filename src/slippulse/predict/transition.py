@@ -68,7 +68,7 @@ def _half_width(crack: ArrestingCrack) -> float:
     """Width of the far pulse at half of its peak: du/dt is half the integral of tau from the entry point on, on each
     side of its zero (`ArrestingCrack`).
     """
-    far = 4.0 * crack.far
+    far = crack.end
 
     def above_half(x: float) -> float:
         return crack.prestress.integral(x, far) - crack.peak_velocity

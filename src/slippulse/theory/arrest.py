@@ -11,20 +11,30 @@ from .fronts import Fronts
 class ArrestingCrack:
     """The crack whose left front slows for ever, without leaf springs.
 
-    du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const, both from 0 where a
-    front outruns the waves. Where tau < 0 the left front is slower than the waves and, with no fracture energy, slip,
-    slip velocity and strain vanish there. So a characteristic that entered at e ends on the left front at X with
+    du/dt - du/dx grows by tau along x - t = const and du/dt + du/dx by tau along x + t = const,
+    both from 0 where a front outruns the waves. Where tau < 0 the left front is slower than the
+    waves and, with no fracture energy, slip, slip velocity and strain vanish there. So a
+    characteristic that entered at e ends on the left front at X with
 
         Int_X^e tau dx = 0,   t = e + T(e) - X,
 
-    and X -> x_minus only as e -> infinity: the left front never arrives, and the arrest time is infinite.
+    and X -> x_minus only as e -> infinity: the left front never arrives, and the arrest time is
+    infinite. Source: equation (11) and section III C of the paper for x_minus; the rest follows.
 
     Parameters
     ----------
-    prestress : a profile, tau(0) = 1, level 0 far to the right and negative far to the left
+    prestress : Prestress, tau(0) = 1, level 0 far to the right and negative far to the left
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
 
-    Raises ValueError: outside these ranges; of every method, outside those that it states.
+    Raises
+    ------
+    ValueError : outside these ranges; of every method, outside those that it states
+
+    Examples
+    --------
+    >>> crack = ArrestingCrack(Prestress(-0.75, 0.0, width=5.0))
+    >>> crack.time_at_fraction(0.9) > abs(crack.balance_position)
+    True
     """
 
     def __init__(
@@ -33,65 +43,110 @@ class ArrestingCrack:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
         # Beyond this the profile is 0 to rounding and the right front runs at the wave speed.
-        self.far = 12.0 * prestress.width
-        self.fronts = Fronts(prestress, damping_ratio, release, 4.0 * self.far)
+        self.reach = 12.0 * prestress.width
+        self.end = 4.0 * self.reach
+        self.fronts = Fronts(prestress, damping_ratio, release, self.end)
         self.zero = -float(self.fronts.ends[-1.0])
 
     def entry_for(self, position: float) -> float:
-        """Entry point e of the characteristic that ends on the slow left front at a position between x_minus and x*."""
+        """Entry point of the characteristic that ends on the slow left front at a position.
+
+        Parameters
+        ----------
+        position : float, between x_minus and the zero x* of the pre-stress
+
+        Returns
+        -------
+        float : e, to the right of x*
+        """
         check_number("position", position, above=self.balance_position, at_most=self.zero)
-        last = 4.0 * self.far - 1e-9
+        last = self.end - 1e-9
         if self.prestress.integral(position, last) <= 0.0:
             raise ValueError(
-                f"position: {position!r}; allowed: farther from x_minus = {self.balance_position:.10g}, where"
-                f" characteristics that entered before {last:g} end"
+                f"position: {position!r}; allowed: farther from x_minus ="
+                f" {self.balance_position:.10g}, where characteristics that entered before"
+                f" {last:g} end"
             )
-        return root_between(
-            lambda e: self.prestress.integral(position, e), self.zero, last, xtol=1e-13
-        )
+
+        def balance(entry: float) -> float:
+            return self.prestress.integral(position, entry)
+
+        return root_between(balance, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
-        """When the left front reaches a position in (x_minus, 0]."""
+        """Time when the left front reaches a position.
+
+        Parameters
+        ----------
+        position : float, in (x_minus, 0]
+
+        Returns
+        -------
+        float
+        """
         check_number("position", position, above=self.balance_position, at_most=0.0)
         if position >= self.zero:
             return float(self.fronts.arrival(position))
         entry = self.entry_for(position)
         return entry + float(self.fronts.arrival(entry)) - position
 
-    def time_at_fraction(self, share: float) -> float:
-        """When the left front has covered a share of |x_minus|, in (0, 1)."""
-        check_number("share", share, above=0.0, below=1.0)
-        return self.time_at(share * self.balance_position)
+    def time_at_fraction(self, fraction: float) -> float:
+        """Time when the left front has covered a fraction of |x_minus|.
 
-    def length_at_fraction(self, share: float) -> float:
-        """Distance between the fronts then."""
-        time = self.time_at_fraction(share)
-        last, last_time = (
-            float(self.fronts.curve.edges[-1]),
-            float(self.fronts.curve.edge_times[-1]),
-        )
+        Parameters
+        ----------
+        fraction : float, in (0, 1)
+
+        Returns
+        -------
+        float
+        """
+        check_number("fraction", fraction, above=0.0, below=1.0)
+        return self.time_at(fraction * self.balance_position)
+
+    def length_at_fraction(self, fraction: float) -> float:
+        """Distance between the fronts at `time_at_fraction`.
+
+        Parameters
+        ----------
+        fraction : float, in (0, 1)
+
+        Returns
+        -------
+        float
+        """
+        time = self.time_at_fraction(fraction)
+        last = float(self.fronts.curve.edges[-1])
+        last_time = float(self.fronts.curve.edge_times[-1])
         right = last + time - last_time if time >= last_time else self.fronts.reached(time, 1.0)
-        return right - share * self.balance_position
+        return right - fraction * self.balance_position
 
     @property
     def peak_velocity(self) -> float:
-        """Largest slip velocity of the far-field pulse: half the integral of tau to the right of its zero x*."""
-        return 0.5 * self.prestress.integral(self.zero, 4.0 * self.far)
+        """Largest slip velocity far away: half the integral of tau to the right of its zero x*."""
+        return 0.5 * self.prestress.integral(self.zero, self.end)
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
-        """x - t of characteristics far to the right and du/dt on them, ``count`` (2 to 10000) of each third."""
+        """The pulse that runs far to the right, by its characteristics.
+
+        Parameters
+        ----------
+        count : int, points of each third, 2 to 10000
+
+        Returns
+        -------
+        tuple of arrays : x - t of the characteristics, and du/dt on them
+        """
         check_number("count", count, integer=True, at_least=2, at_most=10_000)
-        right, left = (
-            np.linspace(2.0 * self.far, 0.0, count),
-            np.linspace(0.0, self.zero, count)[1:],
-        )
+        right = np.linspace(2.0 * self.reach, 0.0, count)
+        left = np.linspace(0.0, self.zero, count)[1:]
         entries = np.concatenate([right, left])
         delay = entries - self.fronts.arrival(entries)
-        # Denser towards x_minus, which takes for ever.
-        share = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
-        slow = self.zero + (self.balance_position - self.zero) * share
+        # Denser towards x_minus, which is never reached.
+        fraction = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]
+        slow = self.zero + (self.balance_position - self.zero) * fraction
         entered = np.array([self.entry_for(x) for x in slow])
         slow_delay = 2.0 * slow - entered - self.fronts.arrival(entered)
         positions = np.concatenate([entries, slow])
-        velocity = [0.5 * self.prestress.integral(x, 4.0 * self.far) for x in positions]
+        velocity = [0.5 * self.prestress.integral(x, self.end) for x in positions]
         return np.concatenate([delay, slow_delay]), np.array(velocity)

@@ -8,24 +8,31 @@ import numpy as np
 from ..model.checks import check_choice, check_number
 from .domains import broadcast_numbers, check_domains
 
-# So that no product overflows.
+# No product of numbers up to this overflows.
 LARGEST = 1e100
 POSITIVE: dict[str, Any] = {"at_least": 1.0 / LARGEST, "at_most": LARGEST}
 
 
 @dataclass(frozen=True)
 class Layer:
-    """An elastic layer on a rigid substrate.
+    """An elastic layer on a rigid substrate: sections II and IV A and appendix B of the paper.
 
     Parameters
     ----------
-    thickness, density : H (m), > 0, and rho (kg/m^3), > 0
-    lame, shear_modulus : first Lame parameter lambda (Pa), > -2G/3, and G (Pa), > 0
-    static_friction, kinetic_friction : mu_s > mu_k >= 0
-    normal_stress : sigma_n (Pa), > 0
+    thickness, density : floats, H (m), > 0, and rho (kg/m^3), > 0
+    lame, shear_modulus : floats, first Lame parameter lambda (Pa), > -2G/3, and G (Pa), > 0
+    static_friction, kinetic_friction : floats, mu_s > mu_k >= 0
+    normal_stress : float, sigma_n (Pa), > 0
 
-    Raises ValueError: outside these ranges; its methods, for a speed outside 1e-100 to 1e100 too.
-    Source: sections II and IV A and appendix B of the paper.
+    Raises
+    ------
+    ValueError : outside these ranges; of a method, for a speed outside 1e-100 to 1e100 too
+
+    Examples
+    --------
+    >>> rock = Layer(100.0, 2700.0, 3e10, 3e10, 0.6, 0.5, 5e7)
+    >>> round(rock.gamma, 6), round(rock.wave_speed)
+    (0.666667, 5774)
     """
 
     thickness: float
@@ -69,59 +76,121 @@ class Layer:
         return (self.static_friction - self.kinetic_friction) * self.normal_stress
 
     def slip_scale(self, boundary: str) -> float:
-        """U (m): 2 H (mu_s - mu_k) sigma_n/(lambda + 2G) under "displacement", half of it under "stress"."""
+        """Unit U of slip (m): 2 H (mu_s - mu_k) sigma_n/(lambda + 2G), or half of it.
+
+        Parameters
+        ----------
+        boundary : "displacement", or "stress", for which it is half
+
+        Returns
+        -------
+        float
+        """
         check_choice("boundary", boundary, ("displacement", "stress"))
         factor = 2.0 if boundary == "displacement" else 1.0
         return factor * self.thickness * self.friction_drop / self.modulus
 
     def prestress(self, shear_stress: float) -> float:
-        """Non-dimensional pre-stress (tau/sigma_n - mu_k)/(mu_s - mu_k) of a shear stress (Pa)."""
+        """Non-dimensional pre-stress (tau/sigma_n - mu_k)/(mu_s - mu_k).
+
+        Parameters
+        ----------
+        shear_stress : float, tau (Pa)
+
+        Returns
+        -------
+        float
+        """
         check_number("shear_stress", shear_stress)
-        above = shear_stress / self.normal_stress - self.kinetic_friction
-        return above / (self.static_friction - self.kinetic_friction)
+        excess = shear_stress / self.normal_stress - self.kinetic_friction
+        return excess / (self.static_friction - self.kinetic_friction)
 
     def peak_velocity(self) -> float:
-        """Peak slip velocity (m/s) of the paper's pulse, from its own scales: 2 (mu_s - mu_k) sigma_n / sqrt(2 G rho).
+        """Peak slip velocity of the paper's pulse, derived from the scales of the layer.
 
-        The paper prints half of this (section IV A).
+        Returns
+        -------
+        float : 2 (mu_s - mu_k) sigma_n/sqrt(2 G rho) (m/s), twice `printed_peak_velocity`
         """
         return self.slip_scale("displacement") / self.time_scale / float(np.sqrt(self.gamma))
 
     def printed_peak_velocity(self) -> float:
-        """Peak slip velocity (m/s) as printed in section IV A of the paper."""
+        """Peak slip velocity as printed in section IV A of the paper.
+
+        Returns
+        -------
+        float : (mu_s - mu_k) sigma_n/sqrt(2 G rho) (m/s)
+        """
         return self.friction_drop / float(np.sqrt(2.0 * self.shear_modulus * self.density))
 
     def transition_length(self, front_speed: float) -> float:
-        """L_trans (m) for a front speed in wave speeds: 2 pi H sqrt((lambda + 2G)/2G) v_c/v_s (section IV A)."""
+        """Transition length L_trans (section IV A of the paper).
+
+        Parameters
+        ----------
+        front_speed : float, v_c/v_s (wave speeds)
+
+        Returns
+        -------
+        float : 2 pi H sqrt((lambda + 2G)/2G) v_c/v_s (m)
+        """
         check_number("front_speed", front_speed, **POSITIVE)
         return 2.0 * np.pi * self.thickness / float(np.sqrt(self.gamma)) * front_speed
 
     def pulse_width(self, tau0: float, front_speed: float) -> float:
-        """Width (m) of the paper's pulse: pi tau_0 H sqrt((lambda + 2G)/2G) v_c/v_s (section IV A)."""
+        """Width of the paper's pulse (section IV A of the paper).
+
+        Parameters
+        ----------
+        tau0, front_speed : floats, pre-stress, in (0, 1), and v_c/v_s (wave speeds)
+
+        Returns
+        -------
+        float : pi tau_0 H sqrt((lambda + 2G)/2G) v_c/v_s (m)
+        """
         check_domains(tau0=tau0)
         check_number("front_speed", front_speed, **POSITIVE)
         return np.pi * tau0 * self.thickness / float(np.sqrt(self.gamma)) * front_speed
 
 
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
-    """Static stress drop of a fault with a compliant damage zone, sheared by a far imposed displacement.
+    """Static stress drop of a fault with a compliant damage zone: section IV C 2 of the paper.
+
+    A displacement is imposed far away, on the rock beyond the zone.
 
     Parameters
     ----------
-    slip : delta (m), a number or an array, as the others, which are 1e-100 at least, and all 1e100 at most
-    shear_modulus, rock_shear_modulus : G of the damage zone, and G_r of the host rock (Pa), infinite for a rigid one
-    thickness, rock_thickness : H of the damage zone, and H_r of the rock beyond it, to the displacement (m), 0 too
+    slip : float or array, delta (m), -1e100 to 1e100
+    shear_modulus, rock_shear_modulus : floats or arrays, G of the zone and G_r of the rock (Pa),
+        1e-100 to 1e100, G_r infinite too, for a rigid one
+    thickness, rock_thickness : floats or arrays, H of the zone and H_r of the rock, to the imposed
+        displacement (m), 1e-100 to 1e100, H_r 0 too
 
-    Returns G delta / (H + (G/G_r) H_r) in Pa, a float or an array.
-    Raises ValueError: outside these ranges.
-    Source: section IV C 2 of the paper.
+    Returns
+    -------
+    float or array : G delta/(H + (G/G_r) H_r) (Pa)
+
+    Raises
+    ------
+    ValueError : outside these ranges
+
+    Examples
+    --------
+    >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6
+    5.0
     """
     if isinstance(rock_shear_modulus, float | np.ndarray):
-        # To rounding the same.
+        # A rigid rock is one of the largest modulus, to rounding.
         rock_shear_modulus = np.where(rock_shear_modulus == np.inf, LARGEST, rock_shear_modulus)
-    least = {"slip": -LARGEST, "rock_thickness": 0.0}
-    given = {"slip": slip, "shear_modulus": shear_modulus, "rock_shear_modulus": rock_shear_modulus}
-    given |= {"thickness": thickness, "rock_thickness": rock_thickness}
-    domains = {key: POSITIVE | ({"at_least": least[key]} if key in least else {}) for key in given}
-    slip, zone, rock, thickness, beyond = broadcast_numbers(domains, **given)
-    return zone * slip / (thickness + zone / rock * beyond)
+    given = {
+        "slip": slip,
+        "shear_modulus": shear_modulus,
+        "rock_shear_modulus": rock_shear_modulus,
+        "thickness": thickness,
+        "rock_thickness": rock_thickness,
+    }
+    domains = dict.fromkeys(given, POSITIVE)
+    domains["slip"] = {"at_least": -LARGEST, "at_most": LARGEST}
+    domains["rock_thickness"] = {"at_least": 0.0, "at_most": LARGEST}
+    slip, zone, rock, thickness, rock_thickness = broadcast_numbers(domains, **given)
+    return zone * slip / (thickness + zone / rock * rock_thickness)

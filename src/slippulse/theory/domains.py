@@ -1,4 +1,4 @@
-"""What arguments of formulas may be."""
+"""Domains of the arguments of formulas."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,7 +7,8 @@ import numpy as np
 
 from ..model.checks import as_numbers, check_number
 
-# Beyond this damping ratio, with tau_0 as near 1 as floating point comes, products of speed and damping would overflow.
+# Beyond this damping ratio, with tau_0 as near 1 as floating point comes, products of speed and
+# damping would overflow.
 DOMAINS: dict[str, dict[str, Any]] = {
     "tau0": {"above": 0.0, "below": 1.0},
     "gamma": {"above": 0.0},
@@ -18,7 +19,7 @@ DOMAINS: dict[str, dict[str, Any]] = {
 
 
 def check_domains(**values: Any) -> None:
-    """Refuse arguments of formulas, by name, that are outside DOMAINS."""
+    """Refuse arguments of formulas that are outside of DOMAINS."""
     for key, value in values.items():
         check_number(key, value, **DOMAINS[key])
 
@@ -26,7 +27,7 @@ def check_domains(**values: Any) -> None:
 def broadcast_numbers(
     domains: Mapping[str, dict] = DOMAINS, **values: Any
 ) -> tuple[np.ndarray, ...]:
-    """Arrays of the values, broadcast to each other; refused outside their domains."""
+    """Arrays of values, broadcast to each other; values outside of their domains are refused."""
     arrays = {key: as_numbers(key, value, **domains.get(key, {})) for key, value in values.items()}
     try:
         return np.broadcast_arrays(*arrays.values())

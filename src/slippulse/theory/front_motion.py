@@ -1,9 +1,10 @@
-"""The steady front block by block: an independent evaluation of the front law, and whether the front is admissible.
+"""The steady front block by block: independent numbers of front speeds, and admissible fronts.
 
-Let blocks be released one after another, 1/v apart, whatever their stress. In the frame of the front the state a
-period later is an affine function of the state, so the steady state solves one linear system; the stress on a block at
-its release, per unit pre-stress, is then 1/tau_0. A front is admissible when the stress ahead of it stays below 1
-until the release, and no block behind it comes to rest before the next is released.
+Let blocks be released one after another, 1/v apart, whatever their stress. In the frame of the
+front the state a period later is an affine function of the state, so the steady state solves one
+linear system; the stress on a block at its release, per unit pre-stress, is then 1/tau_0. A front
+is admissible when the stress ahead of it stays below 1 until the release, and no block behind it
+comes to rest before the next one is released.
 """
 
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ import numpy as np
 from ..model.checks import as_numbers, check_choice, check_number
 from ..model.scene import RELEASES
 
-# Substeps of a period at which velocity and stress are looked at.
+# Velocity and stress are known at this number of substeps of a period.
 SUBSTEPS = 16
 
 
@@ -22,8 +23,12 @@ SUBSTEPS = 16
 class SteadyFront:
     """A front at one speed, in lattice units: lengths in dx, slip in dx^2, velocity in dx.
 
-    It runs into tau_0 = prestress, with slip and velocity at distances behind it; ahead is the stress on the first
-    stuck block at SUBSTEPS + 1 times from the last release to its own, where it is 1.
+    Parameters
+    ----------
+    prestress : float, tau_0 into which the front runs
+    distance, slip, velocity : arrays, distance behind the front, slip and slip velocity there
+    ahead : array, stress on the first stuck block at SUBSTEPS + 1 times from the last release to
+        the release of this block, where it is 1
     """
 
     prestress: float
@@ -34,13 +39,13 @@ class SteadyFront:
 
     @property
     def first_rest(self) -> float:
-        """Distance behind the front, in blocks, where slip velocity first returns to 0; infinite if it does not."""
+        """Distance in blocks behind the front where the velocity first returns to 0, or inf."""
         rest = np.flatnonzero(self.velocity[1:] <= 0.0)
         return float(self.distance[rest[0] + 1]) if rest.size else np.inf
 
     @property
     def admissible(self) -> bool:
-        """Whether stress ahead rises to 1 at the release only, and no block rests before the next is released."""
+        """True if the stress ahead is below 1 until the release, when the last block still slides."""
         return bool(np.all(self.ahead[:-1] < 1.0) and self.first_rest > 1.0)
 
 
@@ -51,27 +56,40 @@ def steady_front(
     release: str = "total",
     blocks: int = 100,
 ) -> SteadyFront:
-    """The steady front at a given speed, without sticking behind it.
+    """The steady front at a given speed, without sticking behind it. Source: module docstring.
 
     Parameters
     ----------
-    speed : in wave speeds, > 1 and <= 1e100
-    damping_ratio, springs : beta/dx and gamma dx^2, 0 to 100
+    speed : float, wave speeds, > 1 and <= 1e100
+    damping_ratio, springs : floats, beta/dx and gamma dx^2, 0 to 100
     release : "total" or "elastic"
-    blocks : kept behind the front, 10 to 500; many more than b v/(v^2 - 1), the layer through which damping looks ahead
+    blocks : int, blocks behind the front, 10 to 500, and many more than the b v/(v^2 - 1) of the
+        layer of damped waves at the front
 
-    Raises ValueError: outside these ranges.
+    Returns
+    -------
+    SteadyFront
+
+    Raises
+    ------
+    ValueError : outside these ranges
+
+    Examples
+    --------
+    >>> round(steady_front(2.5, 1.0).prestress, 6)
+    0.6
     """
     check_number("speed", speed, above=1.0, at_most=1e100)
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=100.0)
     check_number("springs", springs, at_least=0.0, at_most=100.0)
     check_choice("release", release, RELEASES)
     check_number("blocks", blocks, integer=True, at_least=10, at_most=500)
-    # Slow to load, and needed here only.
+    # scipy.linalg is slow to load, and needed here only.
     from scipy.linalg import expm
 
     count = int(blocks)
-    # Block 0 has just been released; the one ahead of it is stuck, and behind the last slip has no curvature.
+    # Block 0 has just been released; the block ahead of it is stuck, and slip has no curvature at
+    # the last block.
     bend = -2.0 * np.eye(count) + np.eye(count, k=1) + np.eye(count, k=-1)
     bend[-1, -3:] = bend[-2, -3:]
     size = 2 * count
@@ -82,7 +100,7 @@ def steady_front(
     system[count:size, -1] = 1.0
     step = expm(system / (speed * SUBSTEPS))
     period = np.linalg.matrix_power(step, SUBSTEPS)
-    # A period later each block is one farther behind, and a block at rest leads.
+    # A period later each block is one place farther behind, and a block at rest leads.
     shift = np.kron(np.eye(2), np.eye(count, k=-1))
     state = np.linalg.solve(
         np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size]
@@ -106,12 +124,31 @@ def steady_front(
 
 
 def admissibility_table(speeds, ratios, springs, release: str = "total") -> list[dict]:
-    """One row for each of speeds, ratios and springs, arrays of arguments of `steady_front`: the pre-stress, the
-    largest stress ahead before the release, the first rest behind the front in blocks, and whether it is admissible.
+    """Admissibility of the `steady_front` at each speed, damping ratio and strength of leaf springs.
+
+    Parameters
+    ----------
+    speeds, ratios, springs : floats or arrays, as speed, damping_ratio, springs of `steady_front`
+    release : "total" or "elastic"
+
+    Returns
+    -------
+    list of dicts : of each front its arguments, the pre-stress, the largest stress_ahead before the
+        release, the first rest behind the front (blocks), and whether it is admissible
+
+    Raises
+    ------
+    ValueError : outside the ranges of `steady_front`
+
+    Examples
+    --------
+    >>> [row["admissible"] for row in admissibility_table(1.5, [0.0, 0.1], 0.01)]
+    [True, True]
     """
-    given = {"springs": springs, "ratios": ratios, "speeds": speeds}
+    axes = {"springs": springs, "ratios": ratios, "speeds": speeds}
+    numbers = [as_numbers(name, values).flat for name, values in axes.items()]
     rows = []
-    for g, b, v in product(*(as_numbers(*each).flat for each in given.items())):
+    for g, b, v in product(*numbers):
         front = steady_front(v, b, g, release)
         row = {
             "speed": v,
@@ -119,7 +156,9 @@ def admissibility_table(speeds, ratios, springs, release: str = "total") -> list
             "springs": g,
             "release": release,
             "prestress": front.prestress,
+            "stress_ahead": float(front.ahead[:-1].max()),
+            "rest": front.first_rest,
+            "admissible": front.admissible,
         }
-        row |= {"stress_ahead": float(front.ahead[:-1].max()), "rest": front.first_rest}
-        rows.append(row | {"admissible": front.admissible})
+        rows.append(row)
     return rows

@@ -1,4 +1,4 @@
-"""The steady slip pulse, with damping, and the paper's estimates of where and when a crack becomes a pulse."""
+"""The steady slip pulse, with damping, and the paper's estimates of the transition to a pulse."""
 
 import math
 from dataclasses import dataclass
@@ -11,20 +11,41 @@ from .domains import check_domains
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2), of tau_0 in [0, 1) or an array of them.
+    """Front speed without damping, 1/sqrt(1 - tau_0^2). Source: section III A of the paper.
 
-    Raises ValueError: outside the domain.
-    Source: section III A of the paper.
+    Parameters
+    ----------
+    tau0 : float or array in [0, 1), pre-stress ahead of the front
+
+    Returns
+    -------
+    float or array : front speed (wave speeds)
+
+    Raises
+    ------
+    ValueError : outside the domain
+
+    Examples
+    --------
+    >>> round(float(front_speed_undamped(0.6)), 6)
+    1.25
     """
     return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 @dataclass(frozen=True)
 class SteadyPulse:
-    """A steady pulse; lengths in units of H, xi = x - v t <= 0 behind the front at xi = 0.
+    """A steady pulse in units of H, with xi = x - v t <= 0 behind the front at xi = 0.
 
-    Width is the distance from the front to where the velocity returns to 0, slip what is left behind, stress_drop gamma
-    times that; growth and wavenumber are p and q of the complex pair p +- i q.
+    `steady_pulse`, `pulse_behind_front` and `paper_pulse` make one.
+
+    Parameters
+    ----------
+    tau0, gamma, beta, speed, rate_strengthening : floats, as in `steady_pulse`
+    width : float, distance from the front to where the slip velocity returns to 0
+    slip, stress_drop : floats, slip that is left behind, and gamma times that
+    peak_velocity : float, largest slip velocity
+    growth, wavenumber : floats, p and q of the complex pair of roots p +- i q
     """
 
     tau0: float
@@ -41,16 +62,28 @@ class SteadyPulse:
 
     @property
     def peak_position(self) -> float:
-        """xi of the largest slip velocity."""
+        """Position xi of the largest slip velocity."""
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slip, slip velocity and slip acceleration at xi: at rest ahead of the front, stuck behind the pulse.
+        """Slip, slip velocity and slip acceleration: at rest ahead of the front and behind.
 
-        Raises ValueError: if xi is not a finite number or an array of them.
+        Parameters
+        ----------
+        xi : float or array, positions relative to the front (units of H)
+
+        Returns
+        -------
+        tuple of arrays of the shape of xi
+
+        Raises
+        ------
+        ValueError : if xi is not a finite number or an array of them
         """
         xi = as_numbers("xi", xi)
-        p, q, v = self.growth, self.wavenumber, self.speed
+        p = self.growth
+        q = self.wavenumber
+        v = self.speed
         inside = (xi <= 0.0) & (xi >= -self.width)
         y = np.where(inside, xi, 0.0)
         size = v * self.tau0 * (p**2 + q**2) / (self.gamma * q)
@@ -67,46 +100,43 @@ class SteadyPulse:
 def pulse_behind_front(
     tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
 ) -> SteadyPulse:
-    """Steady pulse in uniform pre-stress behind a front of given speed.
+    """Steady pulse in uniform pre-stress behind a front of a given speed.
 
-    tau0, gamma : pre-stress, in (0, 1), and elasticity ratio, > 0
-    beta, speed : damping, >= 0 (0 is the limit dx -> 0 at any damping ratio), and front speed, > 1
-    rate_strengthening : alpha, of a term -alpha du/dt, at most `critical_rate_strengthening` in size
-
-    Raises ValueError: outside the domain.
-    Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the complex pair of
-    roots; the real root, -(v^2 - 1)/(beta v) nearly, grows away from the front and is dropped. alpha = beta = 0 gives
-    appendix C of the paper before its last step, with any speed.
+    Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the
+    complex pair of roots. The real root, about -(v^2 - 1)/(beta v), grows away from the front and
+    is dropped. alpha = beta = 0 gives appendix C of the paper before its last step, at any speed.
+    Arguments and errors are those of `front_speeds.steady_pulse`.
     """
     check_domains(tau0=tau0, gamma=gamma)
     check_number("beta", beta, at_least=0.0)
     check_number("speed", speed, above=1.0)
     check_number("rate_strengthening", rate_strengthening)
-    given, alpha = (float(tau0), float(gamma), float(beta), float(speed)), float(rate_strengthening)
+    given = (float(tau0), float(gamma), float(beta), float(speed))
+    alpha = float(rate_strengthening)
     try:
-        pulse = SteadyPulse(*given, *_shape(*given, alpha), alpha)
+        pulse = _solution(*given, alpha)
     except (ArithmeticError, ValueError):
-        pulse = None
-    # Floats of Python overflow without a word.
-    if not pulse or not all(
-        0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)
-    ):
-        critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
-        if abs(alpha) > 0.5 * critical:
-            at = f"at gamma = {gamma:.4g}, speed = {speed:.6g} without beta, or no pulse is steady"
-            raise ValueError(
-                f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size {at}"
-            )
-        point = f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
-        raise ValueError(f"{point}; allowed: numbers whose pulse can be computed")
+        raise _no_pulse(*given, alpha) from None
+    # Floats of Python overflow without an error.
+    if not all(0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)):
+        raise _no_pulse(*given, alpha)
     return pulse
 
 
+def _no_pulse(tau0: float, gamma: float, beta: float, speed: float, alpha: float) -> ValueError:
+    """The refusal of arguments that have no steady pulse in floating point."""
+    critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
+    if abs(alpha) > 0.5 * critical:
+        return ValueError(
+            f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size at"
+            f" gamma = {gamma:.4g}, speed = {speed:.6g} without beta, or no pulse is steady"
+        )
+    point = f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
+    return ValueError(f"{point}; allowed: numbers whose pulse can be computed")
+
+
 @np.errstate(over="raise", invalid="raise", divide="raise")
-def _shape(
-    tau0: float, gamma: float, beta: float, speed: float, alpha: float
-) -> tuple[float, float, float, float, float, float]:
-    """Width, slip, peak velocity, stress drop, growth and wavenumber."""
+def _solution(tau0: float, gamma: float, beta: float, speed: float, alpha: float) -> SteadyPulse:
     stiffness = (speed - 1.0) * (speed + 1.0)
     if beta == 0.0:
         p = 0.5 * alpha * speed / stiffness
@@ -119,14 +149,32 @@ def _shape(
     slip = tau0 / gamma * (1.0 + np.exp(-p * width))
     modulus = np.hypot(p, q)
     peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
-    return float(width), float(slip), float(peak), float(gamma * slip), p, q
+    sizes = float(width), float(slip), float(peak), float(gamma * slip)
+    return SteadyPulse(tau0, gamma, beta, speed, *sizes, p, q, alpha)
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:
-    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2), gamma > 0, speed v > 1: no pulse is steady beyond +- alpha_c.
+    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): no pulse is steady beyond +- alpha_c.
 
-    Raises ValueError: outside the domain.
-    Source: where the wavenumber q of the steady pulse is 0 (beta -> 0); 2 tau_0 sqrt(gamma) without damping.
+    Source: the wavenumber q of the steady pulse is 0 there (beta -> 0). Without damping of the
+    front alpha_c is 2 tau_0 sqrt(gamma).
+
+    Parameters
+    ----------
+    gamma, speed : floats, elasticity ratio, > 0, and front speed v (wave speeds), > 1
+
+    Returns
+    -------
+    float : alpha_c
+
+    Raises
+    ------
+    ValueError : outside the domain
+
+    Examples
+    --------
+    >>> critical_rate_strengthening(0.25, 1.25)
+    0.6
     """
     check_domains(gamma=gamma)
     check_number("speed", speed, above=1.0)
@@ -134,18 +182,50 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """The paper's undamped pulse, tau0 in (0, 1), gamma > 0: v = 1/sqrt(1 - tau_0^2), peak velocity 1/sqrt(gamma).
+    """The paper's undamped pulse. Source: section III A and appendix C of the paper.
 
-    Source: section III A and appendix C of the paper.
+    Parameters
+    ----------
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+
+    Returns
+    -------
+    SteadyPulse : of speed 1/sqrt(1 - tau_0^2) and peak velocity 1/sqrt(gamma)
+
+    Raises
+    ------
+    ValueError : outside the domain
+
+    Examples
+    --------
+    >>> round(paper_pulse(0.6, 0.25).peak_velocity, 6)
+    2.0
     """
     check_domains(tau0=tau0)
     return pulse_behind_front(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
-    """T_trans = pi/sqrt(gamma), L_trans = 2 T_trans/sqrt(1 - tau_0^2): displacement boundary, 0 < tau0 < 1, gamma > 0.
+    """The paper's estimate of the transition under a displacement boundary (section III B).
 
-    Source: section III B of the paper. It neglects the elastic coupling and the Gaussian at nucleation.
+    It neglects the elastic coupling and the Gaussian at nucleation.
+
+    Parameters
+    ----------
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+
+    Returns
+    -------
+    tuple of floats : T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2)
+
+    Raises
+    ------
+    ValueError : outside the domain
+
+    Examples
+    --------
+    >>> [round(number, 4) for number in paper_transition_displacement(0.6, 0.25)]
+    [6.2832, 15.708]
     """
     check_domains(tau0=tau0, gamma=gamma)
     time = np.pi / np.sqrt(float(gamma))
@@ -153,6 +233,21 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 
 
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
-    """The paper's T_trans = |x_minus| and L_trans = 2 |x_minus|, stress boundary, front speeds taken as 1 (III C)."""
+    """The paper's estimate of the transition under a stress boundary (section III C).
+
+    Front speeds are taken as 1.
+
+    Parameters
+    ----------
+    prestress : Prestress, as `prestress_balance_position` takes it
+
+    Returns
+    -------
+    tuple of floats : T_trans = |x_minus| and L_trans = 2 |x_minus|
+
+    Raises
+    ------
+    ValueError, ArithmeticError : as `prestress_balance_position`
+    """
     distance = abs(prestress_balance_position(prestress))
     return distance, 2.0 * distance

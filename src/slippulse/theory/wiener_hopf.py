@@ -1,43 +1,58 @@
 """The Wiener-Hopf factor of a front on the lattice, leaf springs and damping included.
 
-In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the front has the symbol
+In lattice units (w = v k, S(k) = 4 sin^2(k/2), b = beta/dx, g = gamma dx^2, a = alpha dx) the front
+has the symbol
 
-    M(k) = 1 - [S(k) (1 + i b w) + g + i a w] / w^2 = M_+(k) M_-(k),   M_+ analytic and free of zeros for Im k > 0.
+    M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
-The symbol is an exact product of an algebraic function and two factors that decay on opposite sides of the axis,
+with M_+ analytic and free of zeros for Im k > 0. The symbol is an exact product of an algebraic
+function and two factors that decay on opposite sides of the axis,
 
-    M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),
-    r = sqrt(1 + i b w - (w^2 - g - i a w)/4),  q = (i/2) sqrt(w^2 - g - i a w),  rho = (r - q)/(r + q),
+    M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),   rho = (r - q)/(r + q),
+    r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w),
 
-with the branch points of r and q above the contour: those of q, w = +-sqrt(g) at a = 0, and the radiated waves behind
-the front lie there by causality, since damping moves them up. (For a < 0 waves grow behind the front, and the contour
-leaves 0 more steeply, below them.) Then every factor but 1 - rho e^{ik} is analytic and free of zeros
-below the contour C, which passes below all of them, and closing C downwards leaves
+with the branch points of r and q above the contour: those of q, w = +-sqrt(g) at a = 0, and the
+waves that are radiated behind the front lie there by causality, since damping moves them up. (For
+a < 0 waves grow behind the front, and the contour leaves 0 more steeply, below them.) Then every
+factor but 1 - rho e^{ik} is analytic and free of zeros below the contour C, which passes below all
+of them, and closing C downwards leaves
 
     ln M_+(k) = 1/(2 pi i) Int_C ln(1 - rho(z) e^{iz}) dz/(z - k).
 
-C is bent upwards at its ends, where e^{iz} decays and nothing oscillates: no tail is left, whatever b is. At b = 1,
-g = 0 the root is 1 + i w/2 and M_+(k) = (1 + i v k - e^{ik})/(i v k) in closed form, hence M_+(0) = 1 - 1/v; for g = 0
-only the ratio to it is integrated.
+C is bent upwards at its ends, where e^{iz} decays and nothing oscillates: no tail is left, whatever
+b is. At b = 1, g = 0 the root is 1 + i w/2 and M_+(k) = (1 + i v k - e^{ik})/(i v k) in closed
+form, hence M_+(0) = 1 - 1/v; for g = 0 only the ratio to it is integrated.
 """
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 # Gauss-Legendre nodes on each panel.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(14)
-# The contour leaves 0 at this angle below the real axis, which keeps away from branch points and waves above it, ...
+# The contour leaves 0 at this angle below the real axis, away from branch points and waves above
+# it. It goes beyond the farthest of them, |k| <= pi, and stays short of the zeros of M below the
+# axis, Re k > pi.
 ANGLE = 0.5
-# ... as far as beyond the farthest of them, |k| <= pi, and short of the zeros of M below the axis, Re k > pi ...
 REACH = 3.5
-# ... and goes up at 60 degrees to where e^{-Im z} is 1e-14.
+# Then it goes up at 60 degrees to where e^{-Im z} is 1e-14.
 LEG_EDGES = np.array([0.0, 1.2, 3.0, 7.0, 14.0, 24.0, 38.0])
 LEG_DIRECTION = np.exp(1j * np.pi / 3.0)
-# Panels along the ray, in ln |z|.
+# Length of the panels along the ray, in ln |z|.
 PANEL = 0.9
 # Below these sizes differences of nearly equal numbers are taken from their series.
 SMALL = 0.5
+SMALL_ARTANH = 0.1
+
+
+class Nodes(NamedTuple):
+    """Nodes z of the right half of the contour, with weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
+
+    z: np.ndarray
+    weight: np.ndarray
+    bent: np.ndarray
+    curved: np.ndarray
 
 
 def log_prestress(
@@ -49,10 +64,10 @@ def log_prestress(
 ) -> np.ndarray:
     """ln tau_0 of steady fronts at speeds v = 1 + excess.
 
-    excess and ratio are 1-d; excess > 0, or >= 0 with springs g = gamma dx^2, and v >= sqrt(4 + g)/pi. drag is
-    a = alpha dx, with springs only, above -2 sqrt(g (1 - 1/v^2)). The release is
-    "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0; both hold with springs as without: ahead of the
-    front a block has not slipped, so its leaf spring pulls at nothing.
+    excess and ratio are 1-d; excess > 0, or >= 0 with leaf springs g = gamma dx^2, and
+    v >= sqrt(4 + g)/pi. drag is a = alpha dx, with springs only, above -2 sqrt(g (1 - 1/v^2)). The
+    release is "total", M_+(0) = tau_0, or "elastic", M_+(0)/M_+(i/(b v)) = tau_0. Both hold with
+    springs as without: a block ahead of the front has not slipped, so its leaf spring is relaxed.
     """
     # Below this size no zero or branch point comes near 0, where the contour starts.
     nearest = np.minimum(np.sqrt(springs) if springs > 0.0 else excess, 1.0)
@@ -64,15 +79,20 @@ def log_prestress(
         size = -0.5 * drag * (1.0 + slowest) / np.sqrt(springs * slowest * (2.0 + slowest))
         angle = max(ANGLE, 0.5 * (np.arcsin(min(size, 1.0)) + 0.5 * np.pi))
     scale = np.min(nearest / ((1.0 + ratio) * (1.0 + excess)))
-    z, weight, bent, curved = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)), angle)
-    f, origin = log_factor(z, bent, curved, excess[:, None], ratio[:, None], springs, drag)
-    out = (0.5 - angle / np.pi) * origin + (f @ (weight / z)).imag / np.pi
+    contour = nodes(int(np.ceil(np.log(2.0 * REACH / scale) / PANEL)), angle)
+    f = log_factor(contour, excess[:, None], ratio[:, None], springs, drag)
+    out = (f @ (contour.weight / contour.z)).imag / np.pi
+    if springs > 0.0:
+        edge = 0.5 * np.sqrt(springs)
+        origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
+        out = (0.5 - angle / np.pi) * origin + out
     if springs == 0.0:
         out += np.log(excess / (1.0 + excess))
     if release == "elastic" and np.any(ratio > 0.0):
-        # With b = 0 both rules are one: M_+(i infinity) = 1.
+        # With b = 0 both rules are the same: M_+(i infinity) = 1.
         y = 1.0 / np.maximum(ratio * (1.0 + excess), 1e-300)
-        at_pole = np.sum(f * (weight / (z - 1j * y[:, None])), axis=1).imag / np.pi
+        from_pole = contour.z - 1j * y[:, None]
+        at_pole = np.sum(f * (contour.weight / from_pole), axis=1).imag / np.pi
         if springs == 0.0:
             at_pole += np.log((excess * y + _exp_beyond(-y).real) / ((1.0 + excess) * y))
         out -= np.where(ratio > 0.0, at_pole, 0.0)
@@ -80,43 +100,33 @@ def log_prestress(
 
 
 def log_factor(
-    z: np.ndarray, bent: np.ndarray, curved: np.ndarray, excess: np.ndarray, ratio: np.ndarray, springs: float,
-    drag: float,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1, and its value at z = 0.
-
-    bent and curved are e^{iz} - 1 and e^{iz} - 1 - iz at the nodes z, excess and ratio columns.
-    """
+    contour: Nodes, excess: np.ndarray, ratio: np.ndarray, springs: float, drag: float
+) -> np.ndarray:
+    """ln(1 - rho e^{iz}) at the nodes, for g = 0 less that of b = 1; excess, ratio are columns."""
+    z = contour.z
     iw = 1j * z * (1.0 + excess)
     q, r = roots(iw, ratio, springs, drag)
     both = r + q
     rho = (1.0 + ratio * iw) / both**2
-    factor = 2.0 * q / both - rho * bent
+    factor = 2.0 * q / both - rho * contour.bent
     # Near 0 both parts cancel as v -> 1: there it is -expm1(i z + ln rho), ln rho = -2 artanh(q/r).
     slope = q / r
     close = (np.abs(slope) < SMALL) & (np.abs(z) < SMALL) & (excess < 1.0)
     if np.any(close):
         last = int(np.flatnonzero(close.any(axis=0))[-1]) + 1
         part = np.s_[:, :last]
-        h, size = slope[part], -2j * q[part]
-        h = np.where(close[part], h, 0.0)
-        square = h * h
-        beyond = h * square * _ARTANH(square)  # artanh h - h
-        large = np.abs(h) >= 0.1
-        beyond[large] = np.arctanh(h[large]) - h[large]
+        size = -2j * q[part]
+        h = np.where(close[part], slope[part], 0.0)
         shift = (ratio * iw[part] - 0.25 * size**2) / (r[part] + 1.0)
         lag = -excess * z[:last] + size * shift / r[part]
         if springs > 0.0:
             lag = lag + (springs + drag * iw[part]) / (-1j * iw[part] + size)
-        exponent = np.where(close[part], 1j * lag - 2.0 * beyond, 0.0)
+        exponent = np.where(close[part], 1j * lag - 2.0 * _artanh_beyond(h), 0.0)
         factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
     if springs > 0.0:
-        edge = 0.5 * np.sqrt(springs)
-        return log(factor), np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge)) + 0.0 * excess[
-            :, 0
-        ]
-    reference = (1j * excess * z - curved) / (1.0 + iw)
-    return log(factor / reference), 0.0 * excess[:, 0]
+        return log(factor)
+    reference = (1j * excess * z - contour.curved) / (1.0 + iw)
+    return log(factor / reference)
 
 
 def log(z: np.ndarray) -> np.ndarray:
@@ -143,10 +153,8 @@ def roots(
 
 
 @lru_cache(maxsize=32)
-def nodes(
-    panels: int, angle: float = ANGLE
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The right half of the contour, its ray in panels: z, weights dz, e^{iz} - 1 and e^{iz} - 1 - iz."""
+def nodes(panels: int, angle: float = ANGLE) -> Nodes:
+    """Nodes on the contour, with its ray in panels."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
@@ -157,7 +165,7 @@ def nodes(
     weight = np.concatenate(
         [inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION]
     )
-    return z, weight, np.expm1(1j * z), _exp_beyond(1j * z)
+    return Nodes(z, weight, np.expm1(1j * z), _exp_beyond(1j * z))
 
 
 def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -165,9 +173,18 @@ def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return (edges[:-1, None] + half * (1.0 + NODES)).ravel(), (half * WEIGHTS).ravel()
 
 
-# artanh h - h = h^3 P(h^2) for |h| < 0.1, and e^x - 1 - x = x^2 P(x) for |x| < 0.5.
+# artanh h - h = h^3 P(h^2) for small h, and e^x - 1 - x = x^2 P(x) for small x.
 _ARTANH = np.polynomial.Polynomial([1.0 / (2 * n + 3) for n in range(8)])
 _EXP = np.polynomial.Polynomial(1.0 / np.cumprod(np.arange(1.0, 17.0))[1:])
+
+
+def _artanh_beyond(h: np.ndarray) -> np.ndarray:
+    """artanh h - h without cancellation."""
+    square = h * h
+    out = h * square * _ARTANH(square)
+    large = np.abs(h) >= SMALL_ARTANH
+    out[large] = np.arctanh(h[large]) - h[large]
+    return out
 
 
 def _exp_beyond(x: np.ndarray) -> np.ndarray:
