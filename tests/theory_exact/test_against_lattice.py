@@ -29,8 +29,8 @@ def lattice_run(profile, gamma, ratio, duration, dx, samples=None, alpha=0.0):
     return sp.simulate(scene, samples=samples)
 
 
-def at(run, x, *quantities):
-    """Of the blocks nearest to positions, shape (quantities, positions)."""
+def nearest(run, x, *quantities):
+    """Quantities of the blocks nearest to positions, shape (quantities, positions)."""
     blocks = run.sel(x=x, method="nearest")
     return np.array([blocks[quantity].values for quantity in quantities])
 
@@ -44,7 +44,7 @@ def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
     truth = np.array([exact.release_time(x), exact.stick_time(x), exact.final_slip(x)])
     assert np.all(np.isfinite(truth))
     runs = (lattice_run(*scene, dx, alpha=alpha) for dx in (0.02, 0.01, 0.005))
-    errors = [at(run, x, "release_time", "stick_time", "slip") - truth for run in runs]
+    errors = [nearest(run, x, "release_time", "stick_time", "slip") - truth for run in runs]
     coarse, middle, fine = errors
     for quantity in range(3):
         worst = np.argmax(np.abs(fine[quantity]))
@@ -78,7 +78,9 @@ def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma, alpha,
         errors.append(
             [np.max(np.abs(run[sampled].values - fields[name])) for sampled, name in pairs]
         )
-        arrival.append(np.max(np.abs(at(run, slow, "release_time") - exact.release_time(slow))))
+        arrival.append(
+            np.max(np.abs(nearest(run, slow, "release_time") - exact.release_time(slow)))
+        )
     for coarse, fine in zip(*errors, strict=True):
         assert fine < 0.62 * coarse
         assert fine < 0.015

@@ -149,7 +149,7 @@ class Curve:
         return value_and_slope(self.powers.take(self.row(name, panel), axis=-1), s)[order]
 
     def covers(self, x: np.ndarray) -> np.ndarray:
-        """Whether positions lie on the curve."""
+        """Mask of the positions that lie on the curve."""
         slack = SAME * (self.edges[-1] - self.edges[0])
         return (x >= self.edges[0] - slack) & (x <= self.edges[-1] + slack)
 

@@ -68,7 +68,7 @@ def nucleations(prestress: Prestress) -> list[tuple[float, float]]:
 def _changes(
     prestress: Prestress, interval: tuple[float, float, float], value: float
 ) -> tuple[bool, list[float]]:
-    """Whether tau >= value at the left end, and where that changes; twice at a point of contact."""
+    """Tell whether tau >= value at the left end, and where that changes: twice at a contact."""
     left, right, level = interval
     x = _samples(prestress, left, right)
 

@@ -58,7 +58,7 @@ class RestNodes(NamedTuple):
 
     def on(self, panels: slice) -> "RestNodes":
         """The values on some panels, as flat arrays."""
-        return RestNodes(*(values[panels].ravel() for values in self))
+        return RestNodes._make(values[panels].ravel() for values in self)
 
 
 class Rest:

@@ -107,7 +107,7 @@ def advance(
 
 
 def _at_end(s: float, corrections: int) -> bool:
-    """Whether an event is at the end of its chunk, as far as corrections can bring it there."""
+    """Tell whether an event is at the end of its chunk, as far as corrections bring it there."""
     if corrections == 0:
         return False
     return abs(s - 1.0) < (1e-6 if corrections > 5 else 1e-9)
@@ -248,7 +248,7 @@ class SlowFront:
         return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
 
     def stalled(self) -> bool:
-        """Whether the front has just come to rest, at the end of the last panel of entries."""
+        """Tell whether the front has just come to rest, at the end of the last panel of entries."""
         last = np.array([len(self.curve.panels) - 1])
         slope = self.curve.evaluate("x", last, np.array([1.0]), order=1)[0]
         return bool(slope < 1e-3 * (self.curve.edges[-1] - self.curve.edges[-2]))

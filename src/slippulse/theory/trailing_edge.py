@@ -44,7 +44,7 @@ class Knots(NamedTuple):
 
     @property
     def stuck(self) -> np.ndarray:
-        """Which positions have stuck."""
+        """Mask of the positions that have stuck."""
         return np.isfinite(self.stick)
 
     @property
