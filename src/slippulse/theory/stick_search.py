@@ -28,16 +28,16 @@ class Brackets(NamedTuple):
     velocity_at_end: np.ndarray
 
 
-class Samples(NamedTuple):
+class VelocitySamples(NamedTuple):
     """Slip velocities at positions and times: one row a position, one column a time."""
 
     x: np.ndarray
     time: np.ndarray
     velocity: np.ndarray
 
-    def at_rows(self, rows: np.ndarray) -> "Samples":
+    def at_rows(self, rows: np.ndarray) -> "VelocitySamples":
         """The samples of some rows."""
-        return Samples(self.x[rows], self.time[rows], self.velocity[rows])
+        return VelocitySamples(self.x[rows], self.time[rows], self.velocity[rows])
 
     def brackets(self, rows: np.ndarray, columns: np.ndarray) -> Brackets:
         """The intervals of some rows that end at these columns."""
@@ -68,7 +68,7 @@ class StickSearch:
         # The last two samples are kept, since a minimum next to them may lie below 0. The first
         # sample, a velocity of -1, is made up.
         velocity = np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], axis=1)
-        last = Samples(x, np.stack([release, release], axis=1), velocity)
+        last = VelocitySamples(x, np.stack([release, release], axis=1), velocity)
         sliding = np.flatnonzero(release < self.until)
         while sliding.size:
             samples = self._continued(last.at_rows(sliding))
@@ -84,18 +84,20 @@ class StickSearch:
             sliding = sliding[~np.isfinite(stick) & (samples.time[:, -1] < self.until)]
         return out
 
-    def _continued(self, last: Samples) -> Samples:
+    def _continued(self, last: VelocitySamples) -> VelocitySamples:
         """The samples and the next batch."""
         steps = self.step * np.arange(1, BATCH + 1)
         batch = self._sampled(last.x, np.minimum(last.time[:, 1:] + steps, self.until))
         time = np.concatenate([last.time, batch.time], axis=1)
-        return Samples(last.x, time, np.concatenate([last.velocity, batch.velocity], axis=1))
+        return VelocitySamples(
+            last.x, time, np.concatenate([last.velocity, batch.velocity], axis=1)
+        )
 
-    def _sampled(self, x: np.ndarray, time: np.ndarray) -> Samples:
+    def _sampled(self, x: np.ndarray, time: np.ndarray) -> VelocitySamples:
         velocity = self.velocity(np.repeat(x, time.shape[1]), time.ravel())
-        return Samples(x, time, velocity.reshape(time.shape))
+        return VelocitySamples(x, time, velocity.reshape(time.shape))
 
-    def _zeros_next_to_minima(self, samples: Samples, first: np.ndarray) -> np.ndarray:
+    def _zeros_next_to_minima(self, samples: VelocitySamples, first: np.ndarray) -> np.ndarray:
         """Zeros between the samples next to a minimum above 0; NaN where there is none.
 
         The minima come before the first column below 0.
