@@ -7,7 +7,7 @@ machine. The exact solution is sampled at the spacing of the textbook scheme.
 import math
 from functools import cache, partial
 from itertools import product
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -67,15 +67,10 @@ class Setting(NamedTuple):
         # The textbook scheme and the exact solution have no order to choose.
         order = max(self.order, 3)
         bound = MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2)
-        numbers: dict[str, Any] = {
-            "scheme": self.scheme,
-            "max_step": min(self.step, bound),
-            "order": order,
-        }
         boundary = "displacement" if gamma > 0.0 else "stress"
-        return simulate(
-            Scene(boundary, profile, duration, self.dx, gamma, ratio * self.dx, **numbers)
-        )
+        layer = (boundary, profile, duration, self.dx, gamma, ratio * self.dx)
+        step = min(self.step, bound)
+        return simulate(Scene(*layer, scheme=self.scheme, max_step=step, order=order))
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:

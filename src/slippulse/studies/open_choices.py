@@ -25,6 +25,7 @@ FAR = 12.0
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
 
 
+# Columns of the paper's estimates.
 PAPER = ["paper_transition_time", "paper_transition_length"]
 
 
