@@ -43,7 +43,7 @@ def largest_step(
     drag = max(alpha_dx, 0.0)
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
-        # The difference above cancels at large damping; this form of it does not.
+        # sqrt(dt_c^2 + c^2) - c cancels at large damping; this form of it does not.
         damping = damping_ratio + 0.25 * drag
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
     if not (math.isfinite(damping_ratio) and math.isfinite(gamma_dx2) and math.isfinite(drag)):
