@@ -1,4 +1,4 @@
-"""A crack under a stress boundary whose left front runs into negative pre-stress, in closed form."""
+"""A crack under a stress boundary, in closed form: its left front meets negative pre-stress."""
 
 import numpy as np
 

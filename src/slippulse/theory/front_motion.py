@@ -45,7 +45,7 @@ class SteadyFront:
 
     @property
     def admissible(self) -> bool:
-        """True if the stress ahead is below 1 until the release, when the last block still slides."""
+        """True if stress ahead is below 1 until the release, when the last block still slides."""
         return bool(np.all(self.ahead[:-1] < 1.0) and self.first_rest > 1.0)
 
 
@@ -124,7 +124,7 @@ def steady_front(
 
 
 def admissibility_table(speeds, ratios, springs, release: str = "total") -> list[dict]:
-    """Admissibility of the `steady_front` at each speed, damping ratio and strength of leaf springs.
+    """Admissibility of the `steady_front` at each speed, damping ratio and leaf springs.
 
     Parameters
     ----------

@@ -192,7 +192,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     """Front speed as dx -> 0 at fixed beta, under the rule as printed ("elastic").
 
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y
-    below the real axis, beta v Y^3 = (v^2 - 1) Y^2 + gamma, and the rule is Y/(Y + 1/(beta v)) = tau.
+    below the real axis, beta v Y^3 = (v^2 - 1) Y^2 + gamma; the rule is Y/(Y + 1/(beta v)) = tau.
 
     Parameters
     ----------
