@@ -1,0 +1,97 @@
+"""The layer in the plane: energy, plane waves, the resonance of a strip, symmetry, and pulses on three grids."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from slippulse.model.prestress import Prestress
+from slippulse.solver.layer import (
+    Fields,
+    LayerScene,
+    advance_layer,
+    elastic_layer,
+    new_fault,
+    simulate_layer,
+)
+
+GAMMA = 2.0 / 3.0
+PULSE = LayerScene("displacement", GAMMA, Prestress(0.8, 0.8, 1.0, 0.8), 0.4, 12.0, cells=20)
+
+
+@pytest.mark.parametrize("boundary", ["displacement", "stress"])
+@pytest.mark.parametrize("bottom", ["held", "free"])
+@pytest.mark.parametrize("top", ["held", "free"])
+def test_energy_is_conserved_to_rounding(boundary, bottom, top):
+    scene = replace(PULSE, boundary=boundary, bottom=bottom, top=top, cells=10)
+    assert simulate_layer(scene).energy_residual < 1e-12
+
+
+def plane_wave_error(cells: int) -> float:
+    """Largest error of a compressional wave that has gone along the layer by three thicknesses."""
+    scene = LayerScene("stress", GAMMA, Prestress(0.0, 0.0, 1.0, 0.0), 1.0, 3.0, cells=cells)
+    h = 1.0 / cells
+    steps = 6 * cells
+    x = np.arange(10 * cells) * h
+    elastic = elastic_layer(scene, 0.5)
+    rows = (cells + 1, cells, cells + 1, cells + 1, cells)
+    fields = Fields(*(np.zeros((count, x.size)) for count in rows))
+    fault = new_fault(replace(scene, nucleation=20.0), x, h)
+
+    def wave(position):
+        return np.exp(-0.5 * ((position - 3.0) / 0.5) ** 2)
+
+    # Velocities stand half a step before the stresses, which stand half a cell to the right.
+    fields.vx[:] = wave(x + 0.25 * h)
+    fields.sxx[:] = -wave(x + 0.5 * h + 0.5 * h)
+    fields.syy[:] = (1.0 - GAMMA) * fields.sxx
+    fault.sliding[:] = True
+    advance_layer(elastic, fields, fault, 0.5 * h, 0, steps, (x.size // 2, x.size))
+    return float(np.max(np.abs(fields.vx[cells // 2] - wave(x + 0.25 * h - 3.0))))
+
+
+def test_plane_waves_converge_at_second_order():
+    errors = [plane_wave_error(cells) for cells in (10, 20, 40)]
+    assert errors[2] < 3e-3
+    assert errors[0] / errors[1] == pytest.approx(4.0, abs=1.0)
+    assert errors[1] / errors[2] == pytest.approx(4.0, abs=0.5)
+
+
+def test_a_strip_that_slides_as_one_sticks_after_two_shear_travel_times():
+    run = simulate_layer(replace(PULSE, nucleation=20.0, duration=5.0, cells=80))
+    middle = np.argmin(np.abs(run.x))
+    assert run.stick_time[middle] == pytest.approx(2.0 / np.sqrt(GAMMA / 2.0), rel=0.01)
+    assert run.slip[middle] == pytest.approx(2.0 * 0.8 / GAMMA, rel=0.01)
+
+
+def test_half_a_layer_and_a_whole_one_agree():
+    half = simulate_layer(PULSE)
+    whole = simulate_layer(replace(PULSE, coupling=1e-14))
+    right = whole.x >= -1e-9
+    np.testing.assert_allclose(whole.slip[right], half.slip, atol=1e-10)
+    left = whole.slip[whole.x <= 1e-9][::-1]
+    np.testing.assert_allclose(left[: half.slip.size], half.slip[: left.size], atol=1e-10)
+
+
+def test_normal_stress_breaks_the_symmetry():
+    run = simulate_layer(replace(PULSE, coupling=0.3))
+    released = run.x[np.isfinite(run.release_time)]
+    assert abs(released.max() + released.min()) > 0.1
+
+
+def test_pulses_converge_with_the_grid():
+    slips = []
+    for cells in (10, 20, 40):
+        run = simulate_layer(replace(PULSE, duration=16.0, cells=cells))
+        slips.append(float(np.interp(10.0, run.x, run.slip)))
+    assert abs(slips[2] - slips[1]) < 0.7 * abs(slips[1] - slips[0])
+    assert abs(slips[2] - slips[1]) < 0.01 * slips[2]
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("gamma", 1.0), ("weakening", 0.0), ("bottom", "loose"), ("cells", 3), ("coupling", -0.1)],
+)
+def test_a_scene_outside_its_ranges_is_refused(key, value):
+    with pytest.raises(ValueError, match=key):
+        replace(PULSE, **{key: value})
