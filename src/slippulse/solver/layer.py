@@ -25,8 +25,8 @@ from .jit import entry, inner
 
 # Fraction of the largest stable time step, h / sqrt(2).
 COURANT = 0.85
-# Nothing can move ahead of the compressional wave; cells kept beyond it, for the width of its front on the grid.
-MARGIN = 8
+# Nothing moves ahead of the compressional wave but precursors of the grid: cells kept for them beyond it.
+MARGIN = 32
 
 
 @dataclass(frozen=True)
