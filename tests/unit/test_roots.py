@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from slippulse.model.balance import root_to_last_bit
 from slippulse.model.roots import (
     increasing_roots,
     root_between,
-    root_to_last_bit,
     roots_between,
 )
 

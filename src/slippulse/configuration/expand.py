@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data.chunks import runs_of
-from ..model.prestress import Prestress, prestress_balance_position
+from ..model.balance import prestress_balance_position
+from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..model.stability import MARGIN, largest_step

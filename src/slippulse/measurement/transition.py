@@ -3,7 +3,8 @@
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import prestress_balance_position, prestress_from
+from ..model.balance import prestress_balance_position
+from ..model.prestress import prestress_from
 from .fronts import arrival, path, position_at
 
 NAN = float("nan")

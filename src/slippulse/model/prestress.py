@@ -5,15 +5,14 @@ import math
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from itertools import pairwise
 from numbers import Real
 from typing import Any
 
 import numpy as np
 
-from .checks import check_kind, check_number, short_repr
-from .roots import root_to_last_bit
+from .checks import check_number, short_repr
 
 PARTS = {"steps": ("position", "level"), "bumps": ("centre", "amplitude", "width")}
 
@@ -176,39 +175,6 @@ def prestress_from(attributes: Mapping) -> Prestress:
         allowed = "a JSON object of steps and bumps"
         raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
     return Prestress(**numbers, steps=steps, bumps=bumps)
-
-
-def prestress_balance_position(prestress: Prestress) -> float:
-    """Position x_minus < 0 from which the integral of the pre-stress to infinity vanishes.
-
-    Raises ValueError if the level is not 0 far on the right and negative far on the left, and
-    ArithmeticError if no such position can be computed.
-
-    Source: equation (11) of the paper, section III C.
-    """
-    check_kind("prestress", prestress, Prestress)
-    return _balance_position(prestress)
-
-
-@lru_cache(maxsize=1024)
-def _balance_position(prestress: Prestress) -> float:
-    # Beyond this distance the profile is its side levels to rounding.
-    bump_ends = [abs(centre) + 40.0 * width for centre, _, width in prestress.bumps]
-    step_ends = [abs(position) + prestress.width for position, _ in prestress.steps]
-    distance = max([40.0 * prestress.width, *bump_ends, *step_ends])
-    left, right = prestress.level(np.array([-distance, distance])).tolist()
-    if right != 0.0:
-        allowed = "0, or the balance integral is not finite"
-        raise ValueError(f"prestress.right: {right!r}; allowed: {allowed}")
-    if left >= 0.0:
-        allowed = "< 0, or the pre-stress is never balanced"
-        raise ValueError(f"prestress.left: {left!r}; allowed: {allowed}")
-    lower, upper = -distance, 0.0
-    while prestress.integral(lower, distance) > 0.0:
-        lower *= 2.0
-    if not prestress.integral(lower, distance) <= 0.0 <= prestress.integral(upper, distance):
-        raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
-    return root_to_last_bit(lambda x: prestress.integral(x, distance), lower, upper)
 
 
 def _gaussian_area(lower: float, upper: float, centre: float, width: float) -> float:

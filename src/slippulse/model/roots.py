@@ -30,21 +30,6 @@ def root_between(
     return float(brentq(function, lower, upper, xtol=xtol, rtol=rtol))
 
 
-def root_to_last_bit(function: Callable[[float], float], lower: float, upper: float) -> float:
-    """Root by bisection, without scipy: the upper end where no float is left between the two.
-
-    The function is negative at the lower end and not at the upper one.
-    """
-    middle = 0.5 * (lower + upper)
-    while lower < middle < upper:
-        if function(middle) < 0.0:
-            lower = middle
-        else:
-            upper = middle
-        middle = 0.5 * (lower + upper)
-    return upper
-
-
 @np.errstate(divide="ignore", invalid="ignore")
 def roots_between(
     function: Functions,

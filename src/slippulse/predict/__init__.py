@@ -1,1 +1,1 @@
-"""What the paper's formulas and the exact theory predict of a run."""
+"""Predictions of the paper's formulas and of the exact theory for each run."""

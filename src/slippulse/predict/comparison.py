@@ -1,4 +1,4 @@
-"""Every number of every run of a sweep, one row a run, with what takes theory to say of its pulse and transition."""
+"""All numbers of every run of a sweep, with those that need theory: one row a run."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,23 +19,24 @@ from ..theory.pulse import (
     pulse_behind_front,
 )
 
-# A width that differs from that of the steady pulse at the measured speed by more than this, the damped layer and the
-# blocks that the front takes, or slip that still varies by more than this behind it, belongs to a pulse that changes.
+# A pulse is unsteady if its width differs from that of the steady pulse at the measured speed by
+# more than CHANGE of it, the damped layer and WIDTH_BLOCKS blocks (the front is that wide), or if
+# the slip behind it varies by more than CHANGE.
 CHANGE, WIDTH_BLOCKS = 0.05, 3.0
-# The damped layer at the front over the width of the pulse: the front speed is computed without leaf springs, and its
-# error grows as the square, to one per cent here.
+# Largest thickness of the damped layer at the front over the width of the pulse. The front speed is
+# computed without leaf springs; its error grows as the square of this, and is one per cent here.
 THICKEST_LAYER = 0.125
 
 
 def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
-    """`measured_row` of every run of a sweep."""
+    """Table of the `measured_row` of every run of a sweep."""
     return pd.DataFrame([measured_row(run, settings) for run in runs_in(sweep)])
 
 
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
-    """Numbers of `measure_run`, the state of its leading pulse, and the paper's T_trans and L_trans.
+    """Numbers of `measure_run`, the state of the leading pulse, and the paper's T_trans and L_trans.
 
-    The latter (sections III B and III C) are there where the transition is measured.
+    The last two (sections III B and III C) are in the row where the transition is measured.
     """
     row, pulse = measure_run(run, settings)
     if pulse is not None:
@@ -51,11 +52,14 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 
 
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
-    """Whether the leading pulse of a run is the steady one, so that the numbers of steady pulses apply to it.
+    """State of the leading pulse, which says if the numbers of a steady pulse apply to it.
 
-    "steady"; "unsteady" when its width is not the steady one at its speed, the slip behind it varies, or it is slower
-    than the waves; "thick_front" when the damped layer is not thin against it; "none" without a pulse or under a
-    stress boundary. Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
+    steady : the width is that of the steady pulse at the measured speed, and the slip is uniform
+    unsteady : one of them is not so, or the pulse is slower than the waves
+    thick_front : the damped layer is not thin compared with the pulse
+    none : no pulse, or a stress boundary
+
+    Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
     """
     if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
@@ -71,15 +75,16 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     if layer > THICKEST_LAYER * steady.width:
         return "thick_front"
     allowed = CHANGE * steady.width + layer + WIDTH_BLOCKS * dx
-    # A pulse too young to have left slip behind is judged by its width alone.
+    # A young pulse, which has left no slip behind yet, is judged by its width alone.
     changes = abs(pulse.width - steady.width) > allowed or slip_variation(run, pulse) > CHANGE
     return "unsteady" if changes else "steady"
 
 
 def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Largest distance of the right pulse's slip velocity from the paper's cosine, equations (9) and (C10), over its
-    peak, the peaks aligned; NaN where there is none. Two blocks at each end of the cosine are left out, where the
-    lattice rounds its corner.
+    """Largest deviation of the right pulse's slip velocity from the paper's cosine, over its peak.
+
+    The peaks are aligned. Two blocks at each end of the cosine are left out, where the lattice
+    rounds its corner. NaN without such a pulse. Source: equations (9) and (C10) of the paper.
     """
     tau = run.attrs["right"]
     if (
@@ -90,9 +95,9 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
         return float("nan")
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)
-    away = fields["xi"] - (pulse.peak_distance - pulse.front)
-    inside = np.abs(away) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
+    distance = fields["xi"] - (pulse.peak_distance - pulse.front)
+    inside = np.abs(distance) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
     if np.count_nonzero(inside) < 4:
         return float("nan")
-    _, cosine, _ = paper.profile(away[inside] + paper.peak_position)
+    _, cosine, _ = paper.profile(distance[inside] + paper.peak_position)
     return float(np.max(np.abs(fields["slip_velocity"][inside] - cosine)) / paper.peak_velocity)

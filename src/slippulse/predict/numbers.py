@@ -1,27 +1,27 @@
-"""What every prediction starts from, and numbers that theory may not have."""
+"""Numbers from which every prediction starts, and numbers that theory may lack."""
 
 from collections.abc import Callable
 from typing import TypeVar
 
 from ..model.scene import Scene
 
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 NAN = float("nan")
 SIDES = {"left": -1e300, "right": 1e300}
 
 
 def level(scene: Scene, side: str) -> float:
-    """Pre-stress far away on one of SIDES."""
+    """Pre-stress far from the nucleation point on one of SIDES."""
     return float(scene.prestress.level(SIDES[side]))
 
 
 def ratio(scene: Scene) -> float:
-    """beta/dx; equal ones to the last digit, whatever dx."""
+    """beta/dx, rounded so that scenes of one ratio have one number, whatever their dx."""
     return float(f"{scene.damping_ratio:.12g}")
 
 
-def known(find: Callable[[], Found]) -> Found | None:
-    """What theory has; None outside the domain that it states by a ValueError, or where numbers are too large."""
+def known(find: Callable[[], Result]) -> Result | None:
+    """Result of the theory, or None outside of its domain or where its numbers overflow."""
     try:
         return find()
     except (ValueError, ArithmeticError):
@@ -29,6 +29,6 @@ def known(find: Callable[[], Found]) -> Found | None:
 
 
 def or_nan(find: Callable[[], float]) -> float:
-    """A number that theory has; NaN where it says that it has none."""
-    found = known(find)
-    return NAN if found is None else float(found)
+    """Number of the theory, or NaN outside of its domain."""
+    number = known(find)
+    return NAN if number is None else float(number)

@@ -1,4 +1,4 @@
-"""The right pulse of each run under a displacement boundary, by the paper's formulas and with damping."""
+"""Right pulse of each run under a displacement boundary: the paper's, and the exact one."""
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,10 @@ from .numbers import NAN, known, level
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """paper_pulse_SIZE (undamped) and exact_pulse_SIZE: width, slip, peak_velocity, acceleration."""
+    """Columns paper_pulse_SIZE (no damping) and exact_pulse_SIZE.
+
+    SIZE is width, slip, peak_velocity or acceleration.
+    """
     pairs = zip(scenes, exact_speeds(scenes, "right"), strict=True)
     return pd.DataFrame([_pulse(scene, speed) for scene, speed in pairs])
 
@@ -22,16 +25,16 @@ def _pulse(scene: Scene, speed: float) -> dict[str, float]:
         paper = known(lambda: paper_pulse(ahead, scene.gamma))
         if speed > 1.0:
             exact = known(lambda: pulse_behind_front(ahead, scene.gamma, scene.beta, speed))
-    out: dict[str, float] = {}
+    row: dict[str, float] = {}
     for kind, pulse in (("paper", paper), ("exact", exact)):
         for name in ("width", "slip", "peak_velocity"):
-            out[f"{kind}_pulse_{name}"] = getattr(pulse, name, NAN)
-        out[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
-    return out
+            row[f"{kind}_pulse_{name}"] = getattr(pulse, name, NAN)
+        row[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
+    return row
 
 
 def _acceleration(pulse: SteadyPulse) -> float:
-    """Amplitude by projection on the sine, as it is measured (`measure.pulses.acceleration_amplitude`)."""
+    """Amplitude of the projection on the sine, as `measurement.pulses` measures it."""
     nodes, weights = np.polynomial.legendre.leggauss(32)
     xi = -0.5 * pulse.width * (1.0 + nodes)
     shape = np.cos(np.pi * xi / pulse.width)

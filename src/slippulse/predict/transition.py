@@ -1,10 +1,11 @@
-"""When and where the rupture of each run turns into pulses: the first stick, or the arrest of the left front."""
+"""T_trans and L_trans of each run: at the first stick, or at the arrest of the left front."""
 
 from functools import cache, partial
 
 import pandas as pd
 
-from ..model.prestress import Prestress, prestress_balance_position
+from ..model.balance import prestress_balance_position
+from ..model.prestress import Prestress
 from ..model.roots import root_between
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
@@ -13,28 +14,34 @@ from .numbers import NAN, known, level, or_nan, ratio
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """exact_transition_time and _length; of a displacement boundary exact_first_stick_time; of a stress boundary
-    exact_balance_distance, and exact_largest_velocity and exact_half_width of the far pulse. Settings: share, of
-    |x_minus| that the left front has covered at T_trans under a stress boundary. Source: `theory`; but for the balance,
-    for a Gaussian of peak 1 without steps and bumps.
+    """Columns exact_transition_time and exact_transition_length, and those of one boundary.
+
+    Under a displacement boundary: exact_first_stick_time. Under a stress boundary:
+    exact_balance_distance, and exact_largest_velocity and exact_half_width of the far pulse.
+    The setting `share` is the fraction of |x_minus| that the left front has covered at T_trans
+    under a stress boundary. Except for the balance, theory needs a Gaussian of peak 1 without
+    steps and bumps.
     """
-    rows = []
-    for scene in scenes:
-        profile, held = scene.prestress, scene.boundary == "displacement"
-        row = {"exact_transition_time": NAN, "exact_transition_length": NAN}
-        if not held and level(scene, "left") < 0.0 == level(scene, "right"):
-            row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
-        if not profile.steps and not profile.bumps and profile.peak == 1.0:
-            if held and profile.left == profile.right > 0.0:
-                row |= _first_stick(
-                    profile.left, profile.width, scene.gamma, ratio(scene), scene.release
-                )
-            elif not held and profile.left < 0.0 == profile.right:
-                unit = _arrest(profile.left, ratio(scene), scene.release, settings["share"])
-                # All lengths and times go with the width.
-                row |= {name: value * profile.width for name, value in unit.items()}
-        rows.append(row)
-    return pd.DataFrame(rows)
+    return pd.DataFrame([_row(scene, settings["share"]) for scene in scenes])
+
+
+def _row(scene: Scene, fraction: float) -> dict[str, float]:
+    row = {"exact_transition_time": NAN, "exact_transition_length": NAN}
+    profile = scene.prestress
+    gaussian = not profile.steps and not profile.bumps and profile.peak == 1.0
+    if scene.boundary == "displacement":
+        if gaussian and profile.left == profile.right > 0.0:
+            row |= _first_stick(
+                profile.left, profile.width, scene.gamma, ratio(scene), scene.release
+            )
+        return row
+    if level(scene, "left") < 0.0 == level(scene, "right"):
+        row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
+    if gaussian and profile.left < 0.0 == profile.right:
+        unit = _arrest(profile.left, ratio(scene), scene.release, fraction)
+        # All lengths and times are proportional to the width.
+        row |= {name: value * profile.width for name, value in unit.items()}
+    return row
 
 
 @cache
@@ -42,11 +49,14 @@ def _first_stick(
     level: float, width: float, gamma: float, ratio: float, release: str
 ) -> dict[str, float]:
     profile = Prestress(level, level, width)
-    # None with more panels than theory allows, or more damping.
-    if exact := known(lambda: exact_transition_displacement(profile, gamma, ratio, release)):
-        names = ("exact_transition_time", "exact_first_stick_time", "exact_transition_length")
-        return dict(zip(names, (exact.time, exact.time, exact.length), strict=True))
-    return {}
+    exact = known(lambda: exact_transition_displacement(profile, gamma, ratio, release))
+    if exact is None:
+        return {}
+    return {
+        "exact_transition_time": exact.time,
+        "exact_first_stick_time": exact.time,
+        "exact_transition_length": exact.length,
+    }
 
 
 @cache
@@ -55,7 +65,7 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
     crack = known(lambda: ArrestingCrack(Prestress(left, 0.0), ratio, release))
     if crack is None:
         return {}
-    # Very near x_minus the front is held by what theory leaves out.
+    # Very near x_minus the front is held by forces that the theory leaves out.
     return {
         "exact_largest_velocity": crack.peak_velocity,
         "exact_half_width": or_nan(lambda: _half_width(crack)),
@@ -65,14 +75,16 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
 
 
 def _half_width(crack: ArrestingCrack) -> float:
-    """Width of the far pulse at half of its peak: du/dt is half the integral of tau from the entry point on, on each
-    side of its zero (`ArrestingCrack`).
+    """Width of the far pulse at half of its peak.
+
+    du/dt is half the integral of tau from the entry point on (`ArrestingCrack`), so it has half of
+    its peak once on each side of the zero of tau.
     """
-    far = crack.end
+    end = crack.end
 
     def above_half(x: float) -> float:
-        return crack.prestress.integral(x, far) - crack.peak_velocity
+        return crack.prestress.integral(x, end) - crack.peak_velocity
 
-    ahead = root_between(above_half, crack.zero, far, xtol=1e-12)
-    behind = root_between(above_half, crack.balance_position, crack.zero, xtol=1e-12)
-    return float((ahead - float(crack.fronts.arrival(ahead))) - (behind - crack.time_at(behind)))
+    ahead = root_between(above_half, crack.zero, end, xtol=1e-12)
+    rear = root_between(above_half, crack.balance_position, crack.zero, xtol=1e-12)
+    return float((ahead - float(crack.fronts.arrival(ahead))) - (rear - crack.time_at(rear)))

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..model.prestress import Prestress, prestress_balance_position
+from ..model.balance import prestress_balance_position
+from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     # Absolute imports: the steps do not depend on what is not loaded (`steps.reach`).
-    from slippulse.model.prestress import prestress_balance_position
+    from slippulse.model.balance import prestress_balance_position
     from slippulse.theory.arrest import ArrestingCrack
     from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
     from slippulse.theory.dimensional import Layer, damage_zone_stress_drop
@@ -60,7 +60,7 @@ _HOMES = {
     "paper_pulse": ".pulse",
     "paper_transition_displacement": ".pulse",
     "paper_transition_stress": ".pulse",
-    "prestress_balance_position": "..model.prestress",
+    "prestress_balance_position": "..model.balance",
     "prestress_for_speed": ".front_speeds",
     "slip_velocity": ".fronts",
     "steady_front": ".front_motion",

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from ..model.balance import prestress_balance_position
 from ..model.checks import check_number
-from ..model.prestress import Prestress, prestress_balance_position
+from ..model.prestress import Prestress
 from ..model.roots import root_between
 from .fronts import Fronts
 

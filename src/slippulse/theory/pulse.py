@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_number
-from ..model.prestress import Prestress, prestress_balance_position
+from ..model.prestress import Prestress
 from .domains import check_domains
 
 
