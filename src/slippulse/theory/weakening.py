@@ -1,0 +1,296 @@
+"""Steady ruptures under friction that weakens linearly with slip, in the continuum at fixed damping.
+
+Behind a front of speed v, U(xi) with xi = x - v t <= 0 obeys
+
+    beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 - max(0, 1 - U/d_c)
+
+with U = U' = U'' = 0 at the front: damping keeps slip velocity and its slope continuous. Where the
+pulse sticks U' = U'' = 0 too. On either side of U = d_c the equation is linear, and U is a sum of
+three exponentials. One of them grows behind the front; the speed is the one at which the pulse
+sticks, or at which the growing exponential is absent.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.checks import check_number
+from ..model.roots import root_between, root_to_last_bit
+from .domains import check_domains
+
+# Speeds between which that of the rupture is looked for.
+SLOWEST, FASTEST = 0.05, 50.0
+# Trial speeds on the way up from the slowest.
+FASTER = 1.1
+# Samples behind a front: from a fraction of the shortest length of the exponentials to a multiple of
+# the longest, each farther than the last by this factor.
+NEAREST, FARTHEST, FACTOR = 1e-2, 60.0, 1.01
+# Below this fraction of the bounded exponentials the growing one is rounding.
+ABSENT = 1e-6
+
+
+@dataclass(frozen=True)
+class WeakeningPulse:
+    """Steady rupture: speed, width, slip, and whether it sticks.
+
+    Lengths are in units of H, slip in units of U. A rupture that does not stick is a crack with a
+    decaying tail: its width is infinite and its slip is tau_0/gamma.
+    """
+
+    tau0: float
+    gamma: float
+    beta: float
+    weakening: float
+    speed: float
+    width: float
+    slip: float
+    sticks: bool
+
+
+class _Exponentials:
+    """Solution of b U''' + k U'' + stiffness U = load, by its values U, U', U'' at xi = 0."""
+
+    def __init__(self, b: float, k: float, stiffness: float, load: float, start: np.ndarray):
+        self.exponents = np.sort_complex(np.roots([b, k, 0.0, stiffness]))
+        self.rest = load / stiffness
+        powers = np.vander(self.exponents, 3, increasing=True).T
+        self.sizes = np.linalg.solve(powers, start - np.array([self.rest, 0.0, 0.0]))
+
+    def at(self, xi: float | np.ndarray, derivative: int = 0) -> np.ndarray:
+        """U or a derivative of it at xi <= 0."""
+        factors = self.sizes * self.exponents**derivative
+        with np.errstate(over="ignore", invalid="ignore"):
+            terms = factors * np.exp(np.multiply.outer(xi, self.exponents))
+        return terms.sum(axis=-1).real + (self.rest if derivative == 0 else 0.0)
+
+    def samples(self) -> np.ndarray:
+        """Positions behind xi = 0 that resolve the first turns of each exponential."""
+        rates = np.abs(self.exponents)
+        nearest, farthest = NEAREST / rates.max(), FARTHEST / rates.min()
+        return -nearest * FACTOR ** np.arange(math.log(farthest / nearest) / math.log(FACTOR))
+
+
+def _weakening_zone(
+    b: float, k: float, gamma: float, tau0: float, weakening: float
+) -> tuple[_Exponentials, float]:
+    """U in the zone where friction weakens, and its end; -inf where the slip velocity ends first."""
+    zone = _Exponentials(b, k, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
+    xi = zone.samples()
+    weak = zone.at(xi) >= weakening
+    stopped = zone.at(xi, 1) >= 0.0
+    if not weak.any() or stopped[: np.argmax(weak)].any():
+        return zone, -math.inf
+    first = int(np.argmax(weak))
+    before = 0.0 if first == 0 else float(xi[first - 1])
+    return zone, root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
+
+
+@dataclass(frozen=True)
+class _Tail:
+    """U behind the weakening zone, whose end is at ``start``; ``turn`` is where U'' returns to 0."""
+
+    exponentials: _Exponentials
+    start: float
+    turn: float
+    stops: bool  # the slip velocity returns to 0 before the turn
+
+
+def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) -> _Tail | None:
+    """What follows the weakening zone at a trial speed; None where the slip stops within it."""
+    b, k = beta * v, (v - 1.0) * (v + 1.0)
+    zone, end = _weakening_zone(b, k, gamma, tau0, weakening)
+    if end == -math.inf:
+        return None
+    start = np.array([float(zone.at(end, n)) for n in range(3)])
+    tail = _Exponentials(b, k, gamma, tau0, start)
+    xi = tail.samples()
+    velocity, curvature = -tail.at(xi, 1), tail.at(xi, 2)
+    stopped = velocity <= 0.0
+    # The velocity falls behind its peak where U'' < 0, and turns where that ends.
+    turned = (curvature[1:] >= 0.0) & (curvature[:-1] < 0.0)
+    first_stop = int(np.argmax(stopped)) if stopped.any() else xi.size
+    first_turn = int(np.argmax(turned)) if turned.any() else xi.size
+    turn = -math.inf
+    if first_turn < xi.size:
+        ends = float(xi[first_turn + 1]), float(xi[first_turn])
+        turn = root_between(lambda x: float(tail.at(x, 2)), *ends)
+    return _Tail(tail, end, turn, bool(stopped.any()) and first_stop <= first_turn)
+
+
+def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> WeakeningPulse:
+    """Steady rupture in uniform pre-stress, its speed selected by slip weakening and damping.
+
+    Parameters
+    ----------
+    tau0, gamma : float
+        Pre-stress in (0, 1), and elasticity ratio, > 0.
+    beta : float
+        Damping, > 0, in units of H times the wave speed.
+    weakening : float
+        Slip d_c over which friction falls from 1 to 0, in units of U, > 0 and < 1/gamma.
+
+    Returns
+    -------
+    WeakeningPulse
+        The slowest steady rupture; roots of the conditions need not be unique.
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, or where no steady rupture has a speed between 0.05 and 50.
+
+    Notes
+    -----
+    Derived in the supplement, section on friction laws.
+
+    Examples
+    --------
+    >>> round(weakening_pulse(0.8, 2 / 3, 0.05, 0.1).speed, 4)
+    1.1079
+    """
+    check_domains(tau0=tau0, gamma=gamma)
+    check_number("beta", beta, above=0.0)
+    check_number("weakening", weakening, above=0.0, below=1.0 / gamma)
+
+    def too_fast(v: float) -> float:
+        tail = _tail(v, tau0, gamma, beta, weakening)
+        return -1.0 if tail is None or tail.stops else 1.0
+
+    upper = SLOWEST
+    while too_fast(upper) < 0.0:
+        upper *= FASTER
+        if upper > FASTEST:
+            raise ValueError(
+                f"weakening: {weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g},"
+                f" beta = {beta:.4g}; allowed: numbers with a steady rupture"
+            )
+    if upper == SLOWEST:
+        raise ValueError(f"weakening: {weakening:.4g}; allowed: less, for a speed above {SLOWEST}")
+    speed = root_to_last_bit(too_fast, upper / FASTER, upper)
+    tail = _tail(speed, tau0, gamma, beta, weakening)
+    assert tail is not None
+    numbers = (float(tau0), float(gamma), float(beta), float(weakening), speed)
+    if _decays(tail.exponentials):
+        return WeakeningPulse(*numbers, math.inf, tau0 / gamma, False)
+    slip = float(tail.exponentials.at(tail.turn))
+    return WeakeningPulse(*numbers, -(tail.start + tail.turn), slip, True)
+
+
+def _decays(tail: _Exponentials) -> bool:
+    """Whether a tail creeps for ever: no growing exponential, no oscillation, and no overshoot."""
+    _, slow, fast = tail.exponents
+    if slow.imag or fast.imag or abs(tail.sizes[0]) > ABSENT * np.abs(tail.sizes[1:]).max():
+        return False
+    return bool(tail.sizes[1].real < 0.0)
+
+
+def weakening_front_coefficient(tau0: float) -> float:
+    """A of v^2 - 1 = A (beta v)^(2/3) d_c^(-1/3), for a front without leaf springs.
+
+    Parameters
+    ----------
+    tau0 : float
+        Pre-stress in (0, 1).
+
+    Returns
+    -------
+    float
+        A, so that the front outruns the waves by any d_c, the more the smaller d_c is.
+
+    Raises
+    ------
+    ValueError
+        Outside the domain.
+
+    Notes
+    -----
+    In units of (beta v d_c)^(1/3) and d_c the equation is U''' + A U'' - U = tau_0 - 1 up to U = 1;
+    behind that A U'' = tau_0 where the growing exponential is absent.
+
+    Examples
+    --------
+    >>> round(weakening_front_coefficient(0.5), 4)
+    0.4348
+    """
+    check_domains(tau0=tau0)
+
+    def excess(a: float) -> float:
+        zone, end = _weakening_zone(1.0, a, 0.0, tau0, 1.0)
+        return -1.0 if end == -math.inf else a * float(zone.at(end, 2)) - tau0
+
+    return _root_above(excess, 1e-6)
+
+
+def _root_above(function: Callable[[float], float], lower: float) -> float:
+    """Root of a function that is negative at a lower end and positive somewhere above."""
+    upper = 2.0 * lower
+    while function(upper) < 0.0:
+        lower, upper = upper, 2.0 * upper
+    return root_between(function, lower, upper)
+
+
+def weakening_front_speed(tau0: float, beta: float, weakening: float) -> float:
+    """Speed of a front without leaf springs, in wave speeds, selected by slip weakening and damping.
+
+    Parameters
+    ----------
+    tau0, beta, weakening : float
+        As in `weakening_pulse`.
+
+    Returns
+    -------
+    float
+        v > 1, from v^2 - 1 = A (beta v)^(2/3) d_c^(-1/3).
+
+    Raises
+    ------
+    ValueError
+        Outside the domain.
+
+    Notes
+    -----
+    See `weakening_front_coefficient`.
+
+    Examples
+    --------
+    >>> round(weakening_front_speed(0.5, 0.05, 0.1), 4)
+    1.06
+    """
+    check_number("beta", beta, above=0.0)
+    check_number("weakening", weakening, above=0.0)
+    factor = weakening_front_coefficient(tau0) * (beta**2 / weakening) ** (1.0 / 3.0)
+    return _root_above(lambda v: (v - 1.0) * (v + 1.0) - factor * v ** (2.0 / 3.0), 1.0)
+
+
+def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
+    """Final slip of an undamped pulse on a lattice, (tau_0 + sqrt(tau_0^2 - gamma d_c))/gamma.
+
+    Parameters
+    ----------
+    tau0, gamma, weakening : float
+        As in `weakening_pulse`, with gamma d_c <= tau_0^2.
+
+    Returns
+    -------
+    float
+        Slip in units of U.
+
+    Raises
+    ------
+    ValueError
+        Outside the domain, also where the fracture energy d_c/2 is more than the pulse releases.
+
+    Notes
+    -----
+    The energy tau_0 u - gamma u^2/2 that a length of the layer releases is its fracture energy d_c/2.
+
+    Examples
+    --------
+    >>> round(undamped_weakening_slip(0.5, 0.5, 0.32), 4)
+    1.6
+    """
+    check_domains(tau0=tau0, gamma=gamma)
+    check_number("weakening", weakening, at_least=0.0, at_most=tau0**2 / gamma)
+    return float((tau0 + math.sqrt(tau0**2 - gamma * weakening)) / gamma)

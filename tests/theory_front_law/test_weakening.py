@@ -1,0 +1,82 @@
+"""Steady ruptures under slip weakening: numbers found with another method, scaling laws, limits."""
+
+import math
+
+import numpy as np
+import pytest
+
+from slippulse.theory.weakening import (
+    undamped_weakening_slip,
+    weakening_front_coefficient,
+    weakening_front_speed,
+    weakening_pulse,
+)
+
+GAMMA = 2.0 / 3.0
+# tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.
+AT_WAVE_SPEED = {0.2: 11.45, 0.5: 3.687, 0.8: 1.7205, 0.95: 1.169}
+LAST_TO_STICK = {0.2: 3.44, 0.5: 1.52, 0.8: 1.09}
+
+
+def weakening_for(tau0: float, ratio: float) -> float:
+    return tau0**2 / (GAMMA * ratio)
+
+
+@pytest.mark.parametrize(
+    ("tau0", "weakening", "speed", "width", "slip"),
+    [(0.8, 0.1, 1.1079, 2.43, 1.9165), (0.5, 0.2, 0.9304, 2.41, 0.7626)],
+)
+def test_pulses_that_stick(tau0, weakening, speed, width, slip):
+    pulse = weakening_pulse(tau0, GAMMA, 0.05, weakening)
+    assert pulse.sticks
+    assert pulse.speed == pytest.approx(speed, abs=6e-5)
+    assert pulse.width == pytest.approx(width, abs=6e-3)
+    assert pulse.slip == pytest.approx(slip, abs=1.5e-4)
+
+
+def test_a_crack_with_a_decaying_tail():
+    crack = weakening_pulse(0.5, GAMMA, 0.05, 0.3)
+    assert not crack.sticks
+    assert crack.speed == pytest.approx(0.8192, abs=6e-5)
+    assert crack.slip == pytest.approx(0.5 / GAMMA)
+    assert math.isinf(crack.width)
+
+
+@pytest.mark.parametrize(("tau0", "ratio"), AT_WAVE_SPEED.items())
+@pytest.mark.parametrize("beta", [0.02, 0.3])
+def test_speed_is_that_of_the_waves_whatever_the_damping(tau0, ratio, beta):
+    pulse = weakening_pulse(tau0, GAMMA, beta, weakening_for(tau0, ratio))
+    assert pulse.speed == pytest.approx(1.0, abs=1e-4)
+
+
+@pytest.mark.parametrize(("tau0", "ratio"), LAST_TO_STICK.items())
+def test_nothing_sticks_beyond_a_weakening(tau0, ratio):
+    assert weakening_pulse(tau0, GAMMA, 0.05, weakening_for(tau0, 1.03 * ratio)).sticks
+    assert not weakening_pulse(tau0, GAMMA, 0.05, weakening_for(tau0, 0.97 * ratio)).sticks
+
+
+def test_slip_does_not_depend_on_damping():
+    # Lengths scale with (beta v)^(1/3), and so does every term.
+    slips = [weakening_pulse(0.5, GAMMA, beta, 0.2).slip for beta in (0.02, 0.05, 0.3)]
+    np.testing.assert_allclose(slips, slips[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize(("tau0", "a"), [(0.2, 0.15448), (0.5, 0.43475), (0.8, 0.8419)])
+def test_coefficient_without_springs(tau0, a):
+    assert weakening_front_coefficient(tau0) == pytest.approx(a, rel=1e-4)
+
+
+@pytest.mark.parametrize("tau0", [0.3, 0.5, 0.8])
+def test_weak_springs_give_the_front_without_springs(tau0):
+    # Springs matter over the width of a pulse, which is long against the weakening zone.
+    free = weakening_front_speed(tau0, 0.05, 0.05)
+    errors = [weakening_pulse(tau0, gamma, 0.05, 0.05).speed / free - 1.0 for gamma in (1e-2, 1e-3)]
+    assert abs(errors[1]) < 0.5 * abs(errors[0])
+    assert abs(errors[1]) < 1e-2
+
+
+def test_undamped_slip_releases_the_fracture_energy():
+    slip = undamped_weakening_slip(0.5, GAMMA, 0.2)
+    assert 0.5 * slip - 0.5 * GAMMA * slip**2 == pytest.approx(0.1)
+    with pytest.raises(ValueError, match="weakening"):
+        undamped_weakening_slip(0.5, GAMMA, 0.4)
