@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..model.balance import root_to_last_bit
 from ..model.checks import check_number
-from ..model.roots import root_between, root_to_last_bit
+from ..model.roots import root_between
 from .domains import check_domains
 
 # Speeds between which that of the rupture is looked for.
