@@ -99,8 +99,10 @@ FILES = {
     "animations": "results/scenes/{name}.gif",
     "kernels": "results/kernels/{name}.txt",
 }
-# The kernels of each scheme: a job whose modules reach them waits until they are compiled.
+# The kernels of each scheme, and of the layer in the plane. A job whose modules reach them waits
+# until they are compiled.
 KERNELS = {
+    "layer": "src/slippulse/solver/layer.py",
     "localised": "src/slippulse/solver/taylor.py",
     "fixed_step": "src/slippulse/solver/fixed_step.py",
 }

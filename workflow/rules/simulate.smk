@@ -13,7 +13,7 @@ rule compile_kernels:
         kernels="results/kernels/{scheme}.txt",
     priority: 3
     message:
-        "Compiling the kernels of scheme {wildcards.scheme} (once)"
+        "Compiling the kernels: {wildcards.scheme} (once)"
     run:
         run_step(rule, wildcards, input, output, params, threads)
 

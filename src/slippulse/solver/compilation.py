@@ -7,12 +7,19 @@ import numba
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from .fixed_step import LATTICES, solve_by_scheme
+from .layer import LayerScene, simulate_layer
 
 
-def compile_all(schemes: Iterable[str] = LATTICES) -> None:
-    """Compile the kernels of schemes that are not in the cache, unless the compiler is off."""
+def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
+    """Compile kernels that are not in the cache, unless the compiler is off.
+
+    They are those of schemes of the lattice, and "layer", those of the layer in the plane.
+    """
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
+    prestress = Prestress(0.5, 0.5)
     for scheme in schemes:
-        prestress = Prestress(0.5, 0.5)
+        if scheme == "layer":
+            simulate_layer(LayerScene("displacement", 0.5, prestress, 1.0, 1.0, cells=4))
+            continue
         solve_by_scheme(Scene("displacement", prestress, 1.0, 0.5, gamma=0.5, scheme=scheme))

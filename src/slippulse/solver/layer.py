@@ -85,7 +85,7 @@ class LayerRun:
     slip: np.ndarray  # (N,) slip at the end, in units of U
     velocity: np.ndarray  # (cells + 1, N) v_x at the end, from the bottom to the top
     release_time: np.ndarray  # (N,) first release, NaN where never
-    stick_time: np.ndarray  # (N,) last stick, NaN where never
+    stick_time: np.ndarray  # (N,) first stick, NaN where never
     energy_residual: float  # unbalanced energy over the work of the pre-stress
 
 
@@ -206,7 +206,8 @@ def slide(elastic, fields, fault, i, dt, time):
     if later <= 0.0:
         later = 0.0
         fault.sliding[i] = False
-        fault.stick_time[i] = time
+        if np.isnan(fault.stick_time[i]):
+            fault.stick_time[i] = time
     fields.vx[0, i] = later
     fault.slip[i] += dt * later
     moved = 0.5 * dt * (earlier + later)
