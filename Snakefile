@@ -19,6 +19,12 @@ rule all:
         lambda wildcards: [f"results/{name}" for name in PLAN.wanted(["all"])],
 
 
+# Says whether the results are as made by what is here now.
+rule verify:
+    input:
+        environment,
+
+
 include: "workflow/rules/targets.smk"
 
 
@@ -27,4 +33,5 @@ onsuccess:
 
 
 onerror:
-    end()
+    # The last words are the reasons.
+    sys.stderr.write("".join(f"{reason}\n" for reason in FAILED))

@@ -15,7 +15,7 @@ from slippulse.data import tree
 from slippulse.data.alterations import changes
 from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
-from slippulse.data.records import Origin, digest_of, read_record, write_record
+from slippulse.data.records import Origin, digest_of, file_digest, read_record, write_record
 from slippulse.data.tree import Digests, Tree
 from slippulse.steps.origins import Job, jobs_of, origins_of
 from slippulse.steps.targets import Plan
@@ -38,7 +38,8 @@ def run(folder: Path, jobs=JOBS) -> None:
         origin = origins[job.outputs[0].removeprefix("results/")]
         for output in job.outputs:
             write_text(f"{job.step} {origin.configuration}", folder / output)
-        write_record(origin, {"seconds": 1.5}, folder / "results")
+        inputs = {name: file_digest(folder / "results" / name) for name in origin.inputs}
+        write_record(origin, inputs, {"seconds": 1.5}, folder / "results")
 
 
 @pytest.fixture
@@ -58,7 +59,7 @@ def faults(results: Path, jobs=JOBS) -> dict[str, str]:
     return tree.faults(names)
 
 
-def problems(results: Path) -> tuple[list[str], int]:
+def problems(results: Path) -> tuple[list[str], int, list[str]]:
     tree, names = compared(results)
     return tree.problems(names)
 
@@ -66,8 +67,8 @@ def problems(results: Path) -> tuple[list[str], int]:
 def test_a_record_says_what_was_made_by_what_from_what(results):
     record = read_record(results / f"records/{TABLE}.json")
     assert record.step == "measure" and [*record.inputs] == [DATA] and [*record.outputs] == [TABLE]
-    assert faults(results) == {} and problems(results) == ([], len(JOBS))
-    write_record(Origin((PAGE,), "measure", "", "", frozenset()), {"seconds": 0.25}, results)
+    assert faults(results) == {} and problems(results) == ([], len(JOBS), [])
+    write_record(Origin((PAGE,), "measure", "", "", frozenset()), {}, {"seconds": 0.25}, results)
     assert job_times(results) == {"simulate": 1.5, "measure": 1.75, "animate_scene": 1.5}
 
 
@@ -92,14 +93,14 @@ OLDER = {
 
 
 def check_named(results: Path, expected: dict[str, str]) -> None:
-    """Exactly the expected results are faulty and in the way, whatever the times of the files."""
+    """Exactly the expected results are faulty, whatever the times of the files."""
     for path in results.rglob("*"):
         os.utime(path, ns=(0, 0))
     assert faults(results) == expected
     assert problems(results)[0] == [f"{results / name}: {why}" for name, why in expected.items()]
     tree, names = compared(results)
-    in_the_way = {name: reason for name, reason in expected.items() if reason != "missing"}
-    assert tree.to_remove(names) == in_the_way
+    present = {name: reason for name, reason in expected.items() if reason != "missing"}
+    assert tree.to_renew(names) == present
 
 
 @pytest.mark.parametrize(
@@ -153,17 +154,17 @@ def test_a_result_whose_record_cannot_be_read_is_named(results, text):
     check_named(results, {OTHER: "its record cannot be read"})
 
 
-def test_only_what_is_wanted_and_what_that_is_made_from_or_with_is_in_the_way(results):
+def test_only_what_is_wanted_and_what_that_is_made_from_or_with_is_renewed(results):
     for name in (DATA, OTHER):
         (results / name).write_text("changed")
     # The table was made from what the record of the data says.
-    assert Tree(results, origins_of(JOBS)).to_remove([TABLE]) == {DATA: "not what its job wrote"}
+    assert Tree(results, origins_of(JOBS)).to_renew([TABLE]) == {DATA: "not what its job wrote"}
     jobs = [Job("draw_figure", (), ("results/a.png", "results/a.pdf"), {})]
     run(results.parent, jobs)
     (results / "a.pdf").unlink()
     tree = Tree(results, origins_of(jobs))
     assert tree.behind(["a.png"]) == ["a.png", "a.pdf"]
-    assert tree.to_remove(["a.png"]) == {"a.png": "made with a file that is not as made"}
+    assert tree.to_renew(["a.png"]) == {"a.png": "made with a file that is not as made"}
 
 
 @pytest.mark.parametrize(
@@ -221,8 +222,9 @@ def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_
     shutil.copy2(path, tmp_path / "b")
     (tmp_path / "b").replace(path)
     assert Digests(cache).digest(path) == second
-    cache.write_text("[" * 100)
-    assert Digests(cache).digest(path) == second
+    for text in ("[" * 100_000, "5", "[5]", '{"a": 5}', "null"):
+        cache.write_text(text)
+        assert Digests(cache).digest(path) == second
 
 
 @pytest.fixture
@@ -244,14 +246,22 @@ def test_a_target_is_known_or_guessed(plan):
 def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
     (results / TABLE).write_text("changed")
     os.utime(results / DATA, (2e9, 2e9))
-    held = plan.begin(plan.wanted(["all"]), results.parent / "locks")
-    assert not (results / TABLE).exists() and (results / PAGE).exists()
-    assert (results / DATA).stat().st_mtime <= (results / PAGE).stat().st_mtime < 2e9
-    said, reason = capsys.readouterr().err, "not what its job wrote; removed"
+    (results.parent / "src").mkdir()
+    held = plan.begin(plan.wanted(["all"]))
+    # Older than the sources, so that Snakemake finds it outdated.
+    assert (results / TABLE).read_text() == "changed" and (results / TABLE).stat().st_mtime == 1.0
+    times = [path.stat().st_mtime for path in (results.parent / "src", results / DATA)]
+    assert max(times) <= (results / PAGE).stat().st_mtime < 2e9
+    said, reason = capsys.readouterr().err, "not what its job wrote; made anew where needed"
     assert f"1 results are not as made by what is here now, as results/{TABLE}: {reason}" in said
     assert f"1 files have a time in the future, as results/{DATA}" in said
     with pytest.raises(ConfigError, match="Another run is at work"):
-        plan.begin([], results.parent / "locks")
+        plan.begin([])
+    # Whoever only looks then changes nothing.
+    (results / PAGE).write_text("changed")
+    before = (results / PAGE).stat()
+    assert plan.begin(plan.wanted(["all"]), makes=False) is None
+    assert (results / PAGE).stat().st_mtime == before.st_mtime
     held.close()
 
 

@@ -205,7 +205,7 @@ OLD_OVERLAY = "cp other.yaml overlay.yaml; touch -d @0 overlay.yaml"
 )
 def test_a_change_of_a_folder_is_named_and_repaired(folder, changes):
     named = change_and_verify(folder, changes)
-    assert "and made anew where needed" in run(folder, *TARGETS)
+    assert "made anew where needed" in run(folder, *TARGETS)
     assert named and digests(folder, "overlay").items() <= digests(folder).items()
     assert not digests(folder, "overlay").keys() & verify(folder).keys()
 
@@ -229,7 +229,7 @@ PUT_BACK = ("rm -r results; cp -r overlay results",)
 @pytest.mark.parametrize("commands", [HARMLESS, PUT_BACK], ids=["harmless", "a copy put back"])
 def test_nothing_is_made_anew_where_nothing_is_lost(folder, commands):
     assert change_and_verify(folder, {command: {} for command in commands}) == {}
-    assert "and made anew where needed" not in run(folder, *TARGETS)
+    assert "made anew where needed" not in run(folder, *TARGETS)
     assert digests(folder, "overlay").items() <= digests(folder).items()
     result = snakemake(folder, "--dry-run", "--", *TARGETS, overlay="overlay.yaml")
     assert planned(result) == {}
@@ -250,7 +250,7 @@ def test_results_of_another_overlay_are_made_anew(folder, command, reasons, over
     change_and_verify(folder, {command: reasons}, overlay)
     expected, names = digests(folder, made), digests(folder, "paper").keys()
     expected = {name: digest for name, digest in expected.items() if name in names}
-    assert "and made anew where needed" in run(folder, *PART, overlay=overlay)
+    assert "made anew where needed" in run(folder, *PART, overlay=overlay)
     assert expected.items() <= digests(folder).items()
     assert not expected.keys() & verify(folder, overlay).keys()
 
@@ -274,12 +274,31 @@ def test_a_run_of_one_target_says_what_it_leaves_behind_and_touches_nothing_else
     assert (folder / "results/manuscript/replication.pdf").exists()
 
 
-@pytest.mark.parametrize("option", ["--dry-run", "--summary", "--rulegraph"])
-def test_only_a_run_removes_what_was_changed(folder, option):
+OPTIONS = {
+    "a dry run": "--dry-run",
+    "a dry run by its executor": "--executor dryrun",
+    "times alone": "--touch",
+    "times alone by the executor": "--executor touch",
+    "a table": "--summary",
+    "a graph": "--rulegraph",
+    "jobs up to another": "--until compile_kernels",
+    "jobs but for these": "--omit-from simulate",
+}
+
+
+@pytest.mark.parametrize("case", OPTIONS)
+def test_nothing_is_removed_that_is_not_made_anew(folder, case):
     (folder / "results/records/data/one.nc.json").unlink()
-    result = snakemake(folder, option, "--", "results/measurements/one.csv", overlay="overlay.yaml")
-    assert "as results/data/one.nc: no record; would be removed, and made anew" in result.stderr
-    assert (folder / "results/data/one.nc").exists()
+    before, table = digests(folder), "results/measurements/one.csv"
+    result = snakemake(folder, *OPTIONS[case].split(), "--", table, overlay="overlay.yaml")
+    assert result.returncode == 0, result.stderr
+    assert "as results/data/one.nc: no record; made anew" in result.stderr
+    assert digests(folder) == before
+    # What was not made anew is so by the next run, which Snakemake announces.
+    jobs = planned(snakemake(folder, "--dry-run", "--", table, overlay="overlay.yaml"))
+    assert jobs["simulate"] == jobs["measure"] == 1
+    run(folder, table)
+    assert "data/one.nc" not in verify(folder)
 
 
 def test_short_names_are_targets(folder):
@@ -301,7 +320,7 @@ def test_a_draft_is_verified_as_a_draft(folder):
 
 
 def test_a_run_is_not_begun_beside_another(folder):
-    held = take(folder / ".snakemake/run.lock")
+    held = take(folder / "results/.run.lock")
     (folder / "results/kernels/localised.txt").write_text("mine")
     result = snakemake(folder, "--", "everything", overlay="overlay.yaml")
     assert result.returncode == 1 and "Another run is at work in this folder" in result.stderr

@@ -2,11 +2,10 @@
 
 import os
 import re
+import shlex
 import sys
 from functools import cache
 from pathlib import Path
-
-from snakemake.cli import get_argument_parser
 
 from slippulse.claims.reading import read_entries
 from slippulse.configuration.accuracy import promised
@@ -16,23 +15,13 @@ from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import read_config, read_overlay
 from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
 from slippulse.steps.origins import below
-from slippulse.steps.processes import Jobs, end_with
+from slippulse.steps.processes import JobFailed, Jobs, end_with
 from slippulse.steps.reach import declared, needs_of, sources
-from slippulse.steps.targets import selected
+from slippulse.steps.targets import SOURCES, selected
 
-CALLED = get_argument_parser().parse_known_args(sys.argv[1:])[0]
-# With these Snakemake only looks.
-LOOKING = (
-    "archive cleanup_metadata containerize dag d3dag detailed_summary dryrun export_cwl filegraph"
-    " generate_unit_tests lint list_changes list_input_changes list_params_changes list_rules"
-    " list_target_rules list_untracked print_compilation report rulegraph summary touch unlock"
-)
-LOOKS = "verify" in CALLED.targets or any(getattr(CALLED, option) for option in LOOKING.split())
-JOBS = Jobs()
+JOBS, FAILED = Jobs(), []
 if workflow.is_main_process and "SLIPPULSE_LEASH" in os.environ:
     end_with(int(os.environ.pop("SLIPPULSE_LEASH")))
-if workflow.is_main_process and not LOOKS:
-    JOBS.begin()
 
 # Inputs of each figure and study, as its module says: names by kind of file, and keys.
 NEEDS, STUDY_NEEDS = needs_of("figures"), needs_of("studies")
@@ -63,12 +52,24 @@ OWN_SIMULATIONS = [name for name in CONFIG.simulations if name not in SHIPPED["s
 OWN_SCENES = [name for name in SCENES if name not in SHIPPED.get("scenes", {})]
 
 
-def run_step(rule, wildcards, input, output, params, threads):
+def environment(wildcards):
+    """Folder that all jobs depend on. Snakemake asks for it when it has read its options."""
+    if workflow.dag_settings is None:
+        return []
+    if workflow.is_main_process:
+        begin()
+    return [SOURCES]
+
+
+def run_step(rule, wildcards, input, output, params, threads, log):
     """Run the step of a rule in another process, which need not load Snakemake."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    log = f"results/logs/{'/'.join([rule, *wildcards])}.log"
-    origin, name = PLAN.origins[below(output[0])], " ".join([rule, *wildcards])
-    JOBS.run(origin, name, plain(input), plain(output), settings, log)
+    planned, name = PLAN.planned(output[0], shlex.join(OPTIONS)), " ".join([rule, *wildcards])
+    try:
+        JOBS.run(planned, name, plain(input), plain(output), settings, str(log))
+    except JobFailed as reason:
+        FAILED.append(str(reason))
+        raise
 
 
 def plain(named):

@@ -9,6 +9,7 @@ for study, needs in STUDY_NEEDS.items():
         name:
             f"study_of_{study}"
         input:
+            environment,
             **inputs_of(needs),
             kernels=made("kernels", reached),
         output:
@@ -20,10 +21,12 @@ for study, needs in STUDY_NEEDS.items():
             step="run_study",
             study=study,
             values=selected(config, needs.get("settings", ()), {"sweeps": swept}),
+        log:
+            f"results/logs/study_of_{study}.log",
         message:
             f"Studying {study}"
         run:
-            run_step(rule, wildcards, input, output, params, threads)
+            run_step(rule, wildcards, input, output, params, threads, log)
 
 
 # One rule a figure: it writes a table (CSV), and draws the figure from that table alone.
@@ -34,6 +37,7 @@ for figure, needs in (NEEDS | SWEEPS).items():
         name:
             figure
         input:
+            environment,
             **inputs_of(needs),
         output:
             png=report(
@@ -47,14 +51,17 @@ for figure, needs in (NEEDS | SWEEPS).items():
             step="draw_figure",
             figure=figure if figure in NEEDS else "user_defined_sweep",
             values=selected(config, needs.get("settings", ()), config["figures"].get(figure, {})),
+        log:
+            f"results/logs/{figure}.log",
         message:
             f"Drawing {figure}"
         run:
-            run_step(rule, wildcards, input, output, params, threads)
+            run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule draw_scene:
     input:
+        environment,
         data="results/data/{scene}.nc",
         measured="results/measurements/{scene}.csv",
         predicted="results/predictions/{scene}.csv",
@@ -67,20 +74,25 @@ rule draw_scene:
         html="results/scenes/{scene}.html",
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
+    log:
+        "results/logs/draw_scene/{scene}.log",
     message:
         "Drawing scene {wildcards.scene}"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule animate_scene:
     input:
+        environment,
         data="results/data/{scene}.nc",
     output:
         gif="results/scenes/{scene}.gif",
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
+    log:
+        "results/logs/animate_scene/{scene}.log",
     message:
         "Animating scene {wildcards.scene}"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)

@@ -31,6 +31,7 @@ TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statem
 
 rule write_claims:
     input:
+        environment,
         # The front speeds are those of one level, without a grid study.
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
@@ -48,26 +49,32 @@ rule write_claims:
         **{key: config[key] for key in ("claims", "published", "measure")},
         damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
+    log:
+        "results/logs/write_claims.log",
     message:
         "Judging the claims"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_explorer:
     input:
+        environment,
         law="results/studies/explorer_law.csv",
         measured=made("measured", declared("steps.write_explorer", "SIMULATIONS")),
     output:
         html="results/explorer.html",
+    log:
+        "results/logs/write_explorer.log",
     message:
         "Writing results/explorer.html"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_report:
     input:
+        environment,
         "manuscript/references.bib",
         expand("manuscript/{text}.yaml", text=TEXTS),
         expand("results/figures/{name}.png", name=NEEDS),
@@ -86,27 +93,33 @@ rule write_report:
     params:
         figures=list(NEEDS),
         config=config,
+    log:
+        "results/logs/write_report.log",
     message:
         "Writing the replication report"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_scenes_page:
     input:
+        environment,
         expand("results/scenes/{scene}.png", scene=SCENES),
     output:
         html="results/scenes/index.html",
     params:
         scenes=TITLES,
+    log:
+        "results/logs/write_scenes_page.log",
     message:
         "Writing the list of scenes"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_provenance:
     input:
+        environment,
         [path.as_posix() for path in source_files(".")],
         results=RESULTS,
         captions="manuscript/captions.yaml",
@@ -117,14 +130,17 @@ rule write_provenance:
     params:
         config=config,
         shipped=SHIPPED,
+    log:
+        "results/logs/write_provenance.log",
     message:
         "Noting what the results were made from"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule write_index:
     input:
+        environment,
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
         # The provenance is made from all other files that the page shows or leads to.
@@ -134,10 +150,12 @@ rule write_index:
     params:
         figures=[*NEEDS, *SWEEPS],
         scenes=TITLES,
+    log:
+        "results/logs/write_index.log",
     message:
         "Writing results/index.html, the page to open"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 # Names for several files.

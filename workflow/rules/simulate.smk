@@ -9,17 +9,22 @@ BOUNDS = {
 
 
 rule compile_kernels:
+    input:
+        environment,
     output:
         kernels="results/kernels/{scheme}.txt",
     priority: 3
+    log:
+        "results/logs/compile_kernels/{scheme}.log",
     message:
         "Compiling the kernels: {wildcards.scheme} (once)"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule simulate:
     input:
+        environment,
         kernels=setting("kernels"),
     output:
         data="results/data/{simulation}.nc",
@@ -31,27 +36,34 @@ rule simulate:
     params:
         step=setting("simulate"),
         sweep=setting("sweep"),
+    log:
+        "results/logs/simulate/{simulation}.log",
     message:
         "Simulating {wildcards.simulation}"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule measure:
     input:
+        environment,
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
     priority: 2
     params:
         measure=setting("measure"),
+    log:
+        "results/logs/measure/{simulation}.log",
     message:
         "Measuring {wildcards.simulation}"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule predict:
+    input:
+        environment,
     output:
         predicted="results/predictions/{simulation}.csv",
     priority: 2
@@ -60,14 +72,17 @@ rule predict:
         topics=setting("topics"),
         share=lambda wildcards: setting("measure")(wildcards)["share"],
         still=config["measure"]["still"],
+    log:
+        "results/logs/predict/{simulation}.log",
     message:
         "Predicting {wildcards.simulation}"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule study_grid:
     input:
+        environment,
         kernels=setting("kernels"),
         finest="results/measurements/{simulation}.csv",
     output:
@@ -80,14 +95,17 @@ rule study_grid:
         step=setting("study_grid"),
         sweeps=setting("sweeps"),
         measure=setting("measure"),
+    log:
+        "results/logs/study_grid/{simulation}.log",
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)
 
 
 rule join:
     input:
+        environment,
         chunks=joined(lambda kind, name: made(kind, CHUNKS[name])),
         finest=joined(
             lambda kind, name: made("measured", [name] if kind == "uncertainties" else [])
@@ -103,7 +121,9 @@ rule join:
     params:
         kind=joined(lambda kind, name: kind),
         record=joined(lambda kind, name: SIMULATIONS[name].record),
+    log:
+        "results/logs/join/{joined}.log",
     message:
         "Putting {wildcards.joined} together"
     run:
-        run_step(rule, wildcards, input, output, params, threads)
+        run_step(rule, wildcards, input, output, params, threads, log)

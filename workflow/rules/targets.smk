@@ -1,17 +1,20 @@
-# Included last: checks the targets and their cost, and removes results that are faulty.
+# Included last: checks the targets and their cost, and tells Snakemake which results are faulty.
 
-import shlex
-import threading
+import logging
+
+from snakemake.logging import logger
 
 from slippulse.configuration.refusals import format_problems
 from slippulse.data.files import write_json
 from slippulse.data.tree import Tree
 from slippulse.steps.origins import jobs_of
-from slippulse.steps.targets import Plan, write_faulty
+from slippulse.steps.targets import Plan, check_environment, write_faulty
 
-OPTIONS = ["--config", *CALLED.config] if CALLED.config else []
+GIVEN = workflow.config_settings.config_args
+OPTIONS = ["--config", *GIVEN] if GIVEN else []
 if OVERLAYS:
     OPTIONS = ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles), *OPTIONS]
+
 RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
 # Targets by name: rules without wildcards; `verify` looks at what a run makes by default.
 NAMED = {
@@ -26,10 +29,23 @@ MAKING = [
 PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
 
 
+
+
+@cache
 def begin():
-    """Refuse the run, or remove what it is to make anew, before Snakemake plans it."""
-    targets = sorted(CALLED.targets) or ["all"]
+    """Refuse what is asked for, or have faulty results found old. Returns the lock of the run."""
+    try:
+        return begin_with(sorted(workflow.dag_settings.targets) or ["all"])
+    except ConfigError as error:
+        sys.exit(str(error))
+    except OSError as error:
+        sys.exit(f"{error.filename}: {error.strerror}")
+
+
+def begin_with(targets):
+    """Check the targets and what they cost, and compare the results that they need."""
     wanted = PLAN.wanted(targets)
+    check_environment()
     if "verify" in targets:
         sys.exit(PLAN.verify(wanted))
     PLAN.check_places(".snakemake", "results/logs")
@@ -39,42 +55,48 @@ def begin():
     costs = [line for name in sorted(simulated) for line in settings_of(name)["cost"]()]
     if costs and not CONFIG.allow_large:
         raise ConfigError(format_problems(costs))
-    if LOOKS:
-        return look(PLAN.tree.to_remove(wanted))
-    held = PLAN.begin(wanted, Path(".snakemake"))
-    # `make verify` and the last line of a run read how the run was called.
-    called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
-    write_json(called, "results/records/.call")
+    # Without an executor Snakemake only looks, as for a graph.
+    makes = workflow.executor_plugin and not (workflow.dryrun or workflow.touch)
+    held = PLAN.begin(wanted, makes)
+    if makes:
+        if workflow.local_exec:
+            # Each job would start a timer, for which Snakemake waits at its end.
+            workflow.scheduling_settings.max_jobs_per_timespan = None
+        JOBS.begin()
+        # `make verify` and the last line of a run read how the run was called.
+        called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
+        write_json(called, "results/records/.call")
     return held
 
 
-def look(faulty):
-    """Write what a run would remove; a dry run starts again with these files forced."""
-    if "SLIPPULSE_PLANNED" not in os.environ:
-        write_faulty(faulty, "; would be removed, and made anew where needed.")
-        if faulty and CALLED.dryrun:
-            end = sys.argv.index("--") if "--" in sys.argv else len(sys.argv)
-            forced = ["--forcerun", *(f"results/{name}" for name in faulty)]
-            called = [sys.executable, "-m", "snakemake", *sys.argv[1:end], *forced, *sys.argv[end:]]
-            os.execve(sys.executable, called, os.environ | {"SLIPPULSE_PLANNED": "yes"})
+# What Snakemake says after the reasons of jobs that failed.
+AFTERWARDS = ("Complete log", "Elapsed time", "At least one job did not complete")
+
+
+def explain(record):
+    """Say which target was meant; and leave the last word to a job that failed."""
+    if FAILED and any(words in record.getMessage() for words in AFTERWARDS):
+        return False
+    if record.levelno >= logging.ERROR and workflow.dag_settings:
+        try:
+            PLAN.wanted(sorted(workflow.dag_settings.targets))
+        except ConfigError as error:
+            record.msg, record.args = str(error), ()
+    return True
 
 
 def end():
     """Write one line on results that this run leaves outdated, with the command to renew them."""
     names = [name for name in ("PRESET", "OVERLAY", "ALLOW_LARGE") if os.getenv(name)]
     given = [f"{name}={os.environ[name]}" for name in names]
-    how = ["--profile", *CALLED.profile] if CALLED.profile else ["--cores", str(CALLED.cores or 1)]
+    how = ["--cores", str(workflow.cores)]
+    if not workflow.local_exec:
+        how = ["--executor", workflow.executor_plugin.name, "--jobs", str(workflow.nodes)]
     renewal = ["snakemake", *how, *OPTIONS, "--", "everything"]
     if "MAKELEVEL" in os.environ:
         renewal = ["make", "replicate", *given, "TARGET=everything"]
     write_faulty(Tree("results", PLAN.origins).outdated(), f". Renew them: {shlex.join(renewal)}")
-    # Snakemake's timers, which look for jobs, would keep its process until each is due.
-    for thread in threading.enumerate():
-        if isinstance(thread, threading.Timer):
-            thread.cancel()
 
 
-try:
-    LOCK = begin() if workflow.is_main_process else None
-except (ConfigError, OSError) as error:
-    sys.exit(f"{error.filename}: {error.strerror}" if isinstance(error, OSError) else str(error))
+if workflow.is_main_process:
+    logger.addFilter(explain)

@@ -65,7 +65,7 @@ def job_times(results: str | Path) -> dict[str, float]:
     seconds: dict[str, float] = {}
     for path in sorted(Path(results, FOLDER).rglob("*.json")):
         # A record that cannot be read is replaced by the next run.
-        with suppress(OSError, ValueError):
+        with suppress(OSError, ValueError, KeyError, TypeError):
             record = read_record(path)
             seconds[record.step] = round(seconds.get(record.step, 0.0) + record.used["seconds"], 2)
     return seconds

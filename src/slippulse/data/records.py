@@ -21,6 +21,14 @@ class Origin(NamedTuple):
     inputs: frozenset[str]
 
 
+class Planned(NamedTuple):
+    """A job to be run: SHA-256 of the files that it may read, and the options of the run."""
+
+    origin: Origin
+    digests: Mapping[str, str]
+    options: str
+
+
 class Record(NamedTuple):
     """A job as run: the same, with the SHA-256 of each output and input, and what it used."""
 
@@ -49,10 +57,12 @@ def record_path(origin: Origin) -> str:
     return f"{FOLDER}/{origin.outputs[0]}.json"
 
 
-def write_record(origin: Origin, used: Mapping, results: str | Path = "results") -> None:
-    """Write the record of a job that has ended."""
+def write_record(
+    origin: Origin, inputs: Mapping, used: Mapping, results: str | Path = "results"
+) -> None:
+    """Write the record of a job that has ended; inputs are the digests of what it has read."""
     outputs = {name: file_digest(Path(results, name)) for name in origin.outputs}
-    inputs = {name: file_digest(Path(results, name)) for name in sorted(origin.inputs)}
+    inputs = {name: inputs[name] for name in sorted(origin.inputs)}
     record = Record(origin.step, origin.configuration, origin.sources, outputs, inputs, dict(used))
     write_json(record._asdict(), Path(results, record_path(origin)))
 

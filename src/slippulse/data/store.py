@@ -48,7 +48,8 @@ def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
 def load_dataset(path: str | Path) -> xr.Dataset:
     """Read a Dataset into memory. Raises UnreadableFile with the path and the remedy."""
     try:
-        with h5py.File(path) as file:
+        # Python opens the file, so that the process sees what is read.
+        with open(path, "rb") as source, h5py.File(source) as file:
             items = {name: h5py.h5d.open(file.id, name.encode()) for name in file}
             attributes = {name: _attributes(item) for name, item in items.items()}
             # A scale lists the variables and axes that it belongs to; without a list it is its own.

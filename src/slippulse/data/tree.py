@@ -51,16 +51,16 @@ class Tree:
             visit(name)
         return [*ordered]
 
-    def faults(self, names: Iterable[str]) -> dict[str, str]:
+    def faults(self, names: Iterable[str], remembered: bool = True) -> dict[str, str]:
         """Find which of some results are not as a run would make them, each with the reason."""
-        reasons = {}
+        reasons, digest = {}, self._digests.digest if remembered else file_digest
         for name in names:
             path, compared = self.results / name, self._compared(name)
             if not path.is_file():
                 reasons[name] = "missing"
             elif compared.reason:
                 reasons[name] = compared.reason
-            elif self._digests.digest(path) != compared.digest:
+            elif digest(path) != compared.digest:
                 reasons[name] = "not what its job wrote"
         self._digests.save()
         return reasons
@@ -71,20 +71,24 @@ class Tree:
         reasons = {name: self._compared(name).reason for name in present}
         return {name: reason for name, reason in reasons.items() if reason}
 
-    def to_remove(self, names: Iterable[str]) -> dict[str, str]:
-        """Find files that would keep Snakemake from making some results anew, with the reason."""
+    def to_renew(self, names: Iterable[str]) -> dict[str, str]:
+        """Find files that a run for some results would make anew, with the reason."""
         faults = self.faults(self.behind(names))
         reasons = {}
         # A missing file is made anew only where the other files of its job are missing too.
         for name in faults:
             for output in self.origins[name].outputs:
                 reasons[output] = faults.get(output, "made with a file that is not as made")
-        # A link to nowhere, or to something else than a file, is in the way too.
+        # A link to nowhere, or to something else than a file, counts too.
         present = [name for name in reasons if os.path.lexists(self.results / name)]
         return {name: reasons[name] for name in present if not (self.results / name).is_dir()}
 
-    def problems(self, complete: Iterable[str]) -> tuple[list[str], int]:
-        """Compare all files that are there or ``complete``: one line a fault, and their number."""
+    def problems(self, complete: Iterable[str]) -> tuple[list[str], int, list[str]]:
+        """Compare all files that are there or ``complete``, whose contents are read.
+
+        Returns one line a fault, the number of files, and one line for each that another overlay
+        has made.
+        """
         files = [path for path in self.results.rglob("*") if path.is_file() and path.name[0] != "."]
         paths = [path.relative_to(self.results) for path in files]
         present = {path.as_posix() for path in paths if path.parts[0] not in BESIDE}
@@ -92,9 +96,24 @@ class Tree:
         compared = [name for name in self.origins if name in wanted]
         records = {record_path(origin) for origin in self.origins.values()}
         unknown = sorted(present - self.origins.keys() - records)
-        reasons = self.faults(compared) | dict.fromkeys(unknown, "not known; no rule makes it")
+        others = self._made_by_others(unknown)
+        reasons = self.faults(compared, remembered=False)
+        reasons |= {name: "not known; no rule makes it" for name in unknown if name not in others}
         lines = [f"{self.results / name}: {reason}" for name, reason in reasons.items()]
-        return lines, len(compared)
+        return lines, len(compared), [f"{self.results / name}: {others[name]}" for name in others]
+
+    def _made_by_others(self, unknown: Iterable[str]) -> dict[str, str]:
+        """Find files that are as records of their own say, each with the options of its run."""
+        made = {}
+        for name in unknown:
+            # What is no record says nothing.
+            with suppress(OSError, ValueError, KeyError, TypeError):
+                record = read_record(self.results / name)
+                digests = {output: file_digest(self.results / output) for output in record.outputs}
+                if digests == record.outputs and name in (f"{FOLDER}/{key}.json" for key in digests):
+                    options = record.used["options"] or "the shipped configuration"
+                    made |= dict.fromkeys([*digests, name], f"made with {options}: harmless")
+        return {name: made[name] for name in unknown if name in made}
 
     def _compare(self, name: str) -> Comparison:
         """Compare the record of a result with its origin, and so with those of its inputs."""
@@ -123,7 +142,7 @@ class Digests:
 
     def __init__(self, path: Path) -> None:
         self._path, self._known = path, {}
-        with suppress(OSError, ValueError):
+        with suppress(OSError, ValueError, TypeError, RecursionError):
             self._known = dict(json.loads(path.read_text(encoding="utf-8")))
         self._saved = self._known.copy()
 

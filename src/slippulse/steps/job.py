@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import TextIO
 
 from ..data.files import CONFIGURATION
-from ..data.records import Origin, write_record
+from ..data.records import Planned, write_record
+from . import reading
 
 # Seconds between two lines of progress.
 BETWEEN = 2.0
@@ -22,24 +23,29 @@ MEGABYTE = 20 if sys.platform == "darwin" else 10
 
 
 def run_job(
-    origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
+    planned: Planned, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
 ) -> None:
     """Run the step of a job; files and outputs are paths, or lists of them, by name."""
     began, processor_began = time.monotonic(), time.process_time()
     # Without this, the record would have the most memory of all jobs of this process.
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+    origin = planned.origin
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log) as progress:
+        reading.watch({*planned.digests, *(f"results/{name}" for name in origin.inputs)})
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
+        reading.check(planned.digests)
+        inputs = {name: reading.digest(f"results/{name}") for name in origin.inputs}
         seconds = time.monotonic() - began
         used = {
             "seconds": round(seconds, 2),
             "processor_seconds": round(time.process_time() - processor_began, 2),
             "memory_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> MEGABYTE,
+            "options": planned.options,
         }
-        write_record(origin, used)
+        write_record(origin, inputs, used)
     if not sys.stderr.isatty():
         sys.stderr.write(f"{Path(log).read_text(encoding='utf-8')}  {name}: {seconds:.1f} s\n")
 
@@ -62,7 +68,10 @@ def progress_of(name: str, stream: TextIO) -> Callable[[float, int], None]:
 
 @contextmanager
 def logged(path: str | Path) -> Iterator[TextIO]:
-    """Log what a job writes; show a failure in one line. Yields the stream for its progress."""
+    """Log what a job writes; a failure ends in SystemExit with one line.
+
+    Yields the stream for its progress.
+    """
     # Snakemake prints the log: the traceback has a file of its own.
     terminal, details = sys.stderr, Path(path).with_suffix(".traceback")
     try:
@@ -70,21 +79,19 @@ def logged(path: str | Path) -> Iterator[TextIO]:
         details.unlink(missing_ok=True)
         log = open(path, "w", encoding="utf-8")  # noqa: SIM115
     except OSError as error:
-        terminal.write(f"{path}: {error.strerror}; allowed: a results folder that can be written\n")
-        raise SystemExit(1) from None
+        allowed = "a results folder that can be written"
+        raise SystemExit(f"{path}: {error.strerror}; allowed: {allowed}") from None
     sys.stderr = log
     try:
         # A terminal shows a progress bar, which other lines would tear.
         yield log if terminal.isatty() else terminal
     except KeyboardInterrupt:
-        terminal.write("stopped\n")
-        raise SystemExit(130) from None
+        raise SystemExit("stopped") from None
     except Exception as error:
         # A full disk has no room for the traceback either.
         with suppress(OSError):
             details.write_text(traceback.format_exc(), encoding="utf-8")
-        terminal.write(f"{_reason(error)} (details: {details})\n")
-        raise SystemExit(1) from None
+        raise SystemExit(f"{_reason(error)} (details: {details})") from None
     finally:
         sys.stderr = terminal
         with suppress(OSError):

@@ -4,8 +4,13 @@
 import gc
 import os
 
+from . import reading
+
+reading.begin()
 # Jobs run side by side: the linear algebra of each keeps to one core.
 os.environ["OMP_NUM_THREADS"] = "1"
+# Figures are files, whatever display the user has chosen.
+os.environ["MPLBACKEND"] = "agg"
 
 import h5py
 import matplotlib.backends.backend_pdf

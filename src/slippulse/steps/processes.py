@@ -11,11 +11,12 @@ from multiprocessing.process import BaseProcess
 from threading import Lock, Thread
 from typing import Any
 
+from . import reading
 from .job import run_job
 
 
 class JobFailed(Exception):
-    """A job that has said why."""
+    """A job that failed, with the reason in one line."""
 
 
 class Jobs:
@@ -48,13 +49,16 @@ class Jobs:
         """Run a job, given by the arguments of `run_job`. Raises JobFailed."""
         with self._turn:
             process, jobs = self._idle.pop() if self._idle else self._start()
+        reason = None
         try:
             jobs.send(job)
-            jobs.recv()
+            reason = jobs.recv()
         except (EOFError, OSError):
             with self._turn:
                 process.join()
-            raise JobFailed(f"exit code {process.exitcode}") from None
+            reason = f"{job[1]}: its process ended with code {process.exitcode}"
+        if reason:
+            raise JobFailed(reason)
         self._idle.append((process, jobs))
 
     def _start(self) -> tuple[BaseProcess, Connection]:
@@ -71,10 +75,16 @@ class Jobs:
 
 def _run_jobs(jobs: Connection) -> None:
     """Run the jobs that come through a pipe, until one fails or the pipe is closed."""
+    reading.begin()
     with suppress(EOFError, OSError, KeyboardInterrupt):
         while True:
-            run_job(*jobs.recv())
-            jobs.send(None)
+            job = jobs.recv()
+            try:
+                run_job(*job)
+                jobs.send(None)
+            except SystemExit as reason:
+                jobs.send(str(reason))
+                return
 
 
 def end_with(descriptor: int) -> None:

@@ -45,13 +45,14 @@ def digest_of_files(paths: Iterable[str | Path]) -> str:
     """Short digest of names and contents of files of the project, whatever their order."""
     digest = hashlib.sha256()
     for path in sorted({str(path) for path in paths}):
-        digest.update(path.encode() + b"\0" + _content_digest(ROOT / path) + b"\0")
+        digest.update(f"{path}\0{content_digest(path)}\0".encode())
     return digest.hexdigest()[:16]
 
 
 @cache
-def _content_digest(path: Path) -> bytes:
-    return hashlib.sha256(path.read_bytes()).digest()
+def content_digest(path: str | Path) -> str:
+    """SHA-256 of a file of the project, as it is read here first."""
+    return hashlib.sha256((ROOT / path).read_bytes()).hexdigest()
 
 
 @cache

@@ -6,16 +6,21 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from copy import deepcopy
-from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
 from ..configuration.problems import ConfigError, nearest
 from ..data.lock import take
-from ..data.records import record_path
+from ..data.records import Planned, read_record, record_path
 from ..data.tree import Tree
+from ..data.versions import unlike
 from ..model.checks import short_repr
-from .origins import RESULTS, Job, below, is_result, origins_of
+from .origins import LOCK, RESULTS, Job, below, digests_of, is_result, origins_of
+
+# What a job depends on whose files no rule names: the folder is newer than all faulty results.
+SOURCES = "src"
+# The time of these. Snakemake takes 0 for none.
+OLD = 1.0
 
 
 def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
@@ -35,6 +40,7 @@ class Plan:
 
     def __init__(self, jobs: Sequence[Job], named: Mapping[str, Iterable[str]]) -> None:
         self.jobs, self.named = jobs, named
+        self.jobs_by_output = {output: job for job in jobs for output in job.outputs}
         self.origins = origins_of(jobs)
         self.tree = Tree(RESULTS, self.origins)
 
@@ -64,8 +70,10 @@ class Plan:
 
     def verify(self, complete: Iterable[str]) -> int:
         """Print what is not as a complete run would make it; returns the exit code."""
-        problems, count = self.tree.problems(complete)
+        problems, count, others = self.tree.problems(complete)
         print("\n".join(problems) or f"{count} files are as made by what is here now")
+        if others:
+            print(f"Not looked at: {len(others)} files of another configuration, as {others[0]}")
         others = [name for name in self.wanted(["everything"]) if name not in complete]
         missing = [name for name in others if not (RESULTS / name).exists()]
         if missing:
@@ -73,24 +81,43 @@ class Plan:
             print(f"Not looked at: {len(missing)} {also}")
         return int(bool(problems))
 
-    def begin(self, wanted: Iterable[str], locks: Path) -> TextIO:
-        """Lock the folder until the returned file is closed, and remove its faulty results."""
-        held = take(locks / "run.lock")
-        if held is None:
+    def planned(self, output: str, options: str) -> Planned:
+        """Say what a job that makes a file may read, as its sources were planned and made."""
+        origin = self.origins[below(output)]
+        digests = digests_of(self.jobs_by_output[output])
+        for name in origin.inputs:
+            # On a shared disk, a record may arrive later than its file.
+            with suppress(OSError, ValueError, KeyError):
+                record = read_record(RESULTS / record_path(self.origins[name]))
+                digests[f"{RESULTS}/{name}"] = record.outputs[name]
+        return Planned(origin, digests, options)
+
+    def begin(self, wanted: Iterable[str], makes: bool = True) -> TextIO | None:
+        """Lock the folder until the returned file is closed, and set the times of its results.
+
+        Faulty ones are made old, so that Snakemake decides which are made anew. Where it ``makes``
+        none, the folder of another run is left as it is.
+        """
+        if not (makes or RESULTS.is_dir()):
+            return None
+        held = take(RESULTS / ".run.lock")
+        if held is None and makes:
             raise ConfigError("Another run is at work in this folder: wait for it, or stop it.")
-        _remove_unfinished(locks)
-        faulty = self.tree.to_remove(wanted)
-        write_faulty(faulty, "; removed, and made anew where needed.")
-        for name in faulty:
-            (RESULTS / name).unlink()
-        self._settle_times({*wanted})
+        if makes:
+            _remove_unfinished()
+        faulty = self.tree.to_renew(wanted)
+        write_faulty(faulty, "; made anew where needed.")
+        if held:
+            self._set_times({*wanted}, {f"{RESULTS}/{name}" for name in faulty})
         return held
 
-    def _settle_times(self, wanted: set[str]) -> None:
-        """Set times such that Snakemake makes no result anew for the times alone."""
+    def _set_times(self, wanted: set[str], faulty: set[str]) -> None:
+        """Set times such that Snakemake finds faulty results outdated, and no others."""
+        for path in faulty:
+            os.utime(path, (OLD, OLD), follow_symlinks=False)
         jobs = [job for job in self.jobs if below(job.outputs[0]) in wanted]
-        paths = set(chain.from_iterable(job.inputs + job.outputs for job in jobs))
-        times = {path: os.path.getmtime(path) for path in filter(os.path.isfile, paths)}
+        paths = {SOURCES}.union(*(job.inputs + job.outputs for job in jobs)) - faulty
+        times = {path: os.path.getmtime(path) for path in filter(os.path.exists, paths)}
         now = time.time()
         late = sorted(path for path, changed in times.items() if changed > now)
         if late:
@@ -104,14 +131,20 @@ class Plan:
 
 def _made_before_inputs(job: Job, times: Mapping[str, float]) -> bool:
     """Tell whether an output of a job is older than one of its inputs, of those that are there."""
-    read = [times[path] for path in job.inputs if path in times]
-    made = [times[path] for path in job.outputs if path in times]
-    return bool(read and made) and max(read) > min(made)
+    read = [times[path] for path in (SOURCES, *job.inputs) if path in times]
+    made = [os.lstat(path).st_mtime for path in job.outputs if path in times]
+    return bool(made) and max(read) > min(made)
 
 
-def _remove_unfinished(locks: Path) -> None:
+def check_environment() -> None:
+    """Refuse an environment that is not that of the lock, which all results name."""
+    if problem := unlike(LOCK):
+        raise ConfigError(problem)
+
+
+def _remove_unfinished() -> None:
     """Remove the locks of Snakemake that a killed run has left, and the files it was writing."""
-    left = [*locks.glob("locks/*.lock")]
+    left = [*Path(".snakemake").glob("locks/*.lock")]
     if left:
         # A file has a hidden name of its own until it is whole.
         for path in [*left, *RESULTS.rglob(".*-????????.*")]:

@@ -1,0 +1,71 @@
+"""A job records what it read when it read it, and fails if that is not what was planned."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pipeline_copy import copy_project, snakemake
+
+FIGURE = "results/figures/fig07_damage_zone.png"
+SOURCES = ("figures/fig07_damage_zone.py", "figures/style.py")
+# A job that reads a file while it is another one, and puts it back.
+PROGRAM = """
+import subprocess
+from pathlib import Path
+from slippulse.data.records import file_digest
+from slippulse.steps import reading
+
+reading.begin()
+path, planned = Path("results/text"), {{}}
+path.write_text("as planned")
+planned["results/text"] = file_digest(path)
+for text in ("as planned", "edited"):
+    reading.watch(planned)
+    path.write_text(text)
+    {read}
+    path.write_text("as planned")
+    try:
+        reading.check(planned)
+        assert reading.digest("results/text") == planned["results/text"]
+        print("read", text)
+    except reading.FileChanged as error:
+        print(error)
+"""
+WAYS = {
+    "text": "path.read_text()",
+    "bytes": "open('results/text', 'rb').read()",
+    "a table": "import pandas; pandas.read_csv(path)",
+    "another program": "subprocess.run(['cat', 'results/text'], stdout=subprocess.DEVNULL)",
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_file_that_was_edited_while_it_was_read_is_told(tmp_path, way):
+    (tmp_path / "results").mkdir()
+    command = [sys.executable, "-c", PROGRAM.format(read=WAYS[way])]
+    said = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    changed = "results/text: changed since this run was planned; run again"
+    assert said.splitlines() == ["read as planned", changed]
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_a_source_that_was_edited_while_a_run_was_at_work_fails_its_job(project, tmp_path, source):
+    """The edit comes after the plan, and is undone once the job has loaded it."""
+    folder = copy_project(project, tmp_path / "copy")
+    path = folder / "src/slippulse" / source
+    text = path.read_text(encoding="utf-8")
+    undo = f"\n__import__('pathlib').Path(__file__).write_text({text!r}, encoding='utf-8')\n"
+    edit = f"\n__import__('pathlib').Path({str(path)!r}).write_text({text + undo!r})\n"
+    libraries = folder / "src/slippulse/steps/libraries.py"
+    started = libraries.read_text(encoding="utf-8")
+    libraries.write_text(started + edit, encoding="utf-8")
+    result = snakemake(folder, "--", FIGURE)
+    said = (result.stdout + result.stderr).strip().splitlines()
+    reason = f"FileChanged: src/slippulse/{source}: changed since this run was planned; run again"
+    assert result.returncode != 0 and said[-1].startswith(reason)
+    assert path.read_text(encoding="utf-8") == text
+    assert not Path(folder, f"results/records/{FIGURE.removeprefix('results/')}.json").exists()
+    # Without the edit all is made.
+    libraries.write_text(started, encoding="utf-8")
+    assert snakemake(folder, "--", FIGURE).returncode == 0
