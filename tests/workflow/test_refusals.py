@@ -1,7 +1,9 @@
 """Refusals of wrong input before any job: one line with the key, the value and what is allowed."""
 
+import random
 import re
 import warnings
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -85,6 +87,7 @@ FILES = {
     "open bracket": (b"preset: [draft\n", "not YAML", "line 2"),
     "tab": (b"simulations:\n\tmine: 1\n", "not YAML", "line 2"),
     "picture": (b"\x89PNG\r\n\x1a\n\xff\xfe", "not text"),
+    "older YAML": (b"# as it was\n%YAML 1.1\n---\nallow_large: yes\n", "'%YAML 1.1'", "YAML 1.2"),
     "python tag": (
         b"preset: !!python/object/apply:os.system [touch written]\n",
         "line 1",
@@ -147,6 +150,47 @@ def test_a_mistake_in_an_overlay_is_refused(shipped, tmp_path, monkeypatch, case
         read_config(shipped, [MISTAKES[case]["overlay"]])
     assert_one_clear_message(str(refusal.value), MISTAKES[case]["refusal"].splitlines())
     assert not [*tmp_path.iterdir()]
+
+
+# Values that are put in place of any other.
+ODD = [None, True, -1, 0, 1, 3.5, 1e308, 10**400, float("nan"), float("inf"), "", "same", "0.1"]
+ODD += ["x" * 2000, "a\nb", "stress", [], [[]], [1, 0.2], [[1, 0.2]], [[1, 0.2, 0.3]], [None], {}]
+ODD += [{"a": 1}, {"time": 1.0}, {"": {}}, [{"left": 1}], ["samples"], {"fixed": 0.1}, [1e-300]]
+
+
+def mutated(value, chance: random.Random) -> object:
+    """A change of a value, of one below it, or of a key, for an overlay."""
+    if chance.random() < 0.2 or not (value and isinstance(value, dict | list)):
+        return chance.choice(ODD)
+    if isinstance(value, list):
+        index = chance.randrange(len(value))
+        other = mutated(value[index], chance)
+        return value[:index] + [other] * chance.randrange(3) + value[index + 1 :]
+    key = chance.choice([*value])
+    if chance.random() < 0.1:
+        return {key + chance.choice("sx_ "): value[key]}
+    return {key: mutated(value[key], chance)}
+
+
+def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
+    chance, counts = random.Random(41), Counter()
+    small = {key: shipped[key] for key in shipped if key not in ("published", "scenes")}
+    small["simulations"] = {name: shipped["simulations"][name] for name in KEPT[:3]}
+    small |= {"published": {}, "scenes": {"one": shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}}}
+    for _ in range(2000):
+        overlay = mutated(small, chance)
+        if not isinstance(overlay, dict):
+            continue
+        try:
+            read_config(small, [overlay])
+            counts["allowed"] += 1
+        except ConfigError as refusal:
+            counts["refused"] += 1
+            for line in str(refusal).splitlines():
+                assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
+                assert len(line) < 400 and "http" not in line, line
+    # Both happen often enough to mean something.
+    assert counts["allowed"] > 100 and counts["refused"] > 1000
 
 
 def bound_and_chunks(config, name: str):

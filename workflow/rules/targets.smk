@@ -31,15 +31,19 @@ PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
 
 
 
+def in_one_line(function):
+    """Call a function; a refusal ends the run with its own words."""
+    try:
+        return function()
+    except (ConfigError, OSError) as error:
+        failed = isinstance(error, OSError)
+        sys.exit(f"{error.filename}: {error.strerror}" if failed else str(error))
+
+
 @cache
 def begin():
     """Refuse what is asked for, or have faulty results found old. Returns the lock of the run."""
-    try:
-        return begin_with(sorted(workflow.dag_settings.targets) or ["all"])
-    except ConfigError as error:
-        sys.exit(str(error))
-    except OSError as error:
-        sys.exit(f"{error.filename}: {error.strerror}")
+    return in_one_line(lambda: begin_with(sorted(workflow.dag_settings.targets) or ["all"]))
 
 
 def begin_with(targets):
@@ -48,7 +52,6 @@ def begin_with(targets):
     check_environment()
     if "verify" in targets:
         sys.exit(PLAN.verify(wanted))
-    PLAN.check_places(".snakemake", "results/logs")
     simulated = {
         Path(name).parts[1].removesuffix(".nc") for name in wanted if name.startswith("data/")
     }
@@ -100,3 +103,4 @@ def end():
 
 if workflow.is_main_process:
     logger.addFilter(explain)
+    in_one_line(lambda: PLAN.check_places(".snakemake", "results/logs"))

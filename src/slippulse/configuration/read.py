@@ -6,6 +6,7 @@ Files are YAML 1.2 without tags, anchors, templates (Snakemake obeys them) or ke
 """
 
 import json
+import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -165,6 +166,9 @@ def _refusal(event: Any, is_key: bool, at_top: bool) -> str:
 
 
 def _load(text: str) -> Any:
+    # An older version reads other values: yes is a switch, and 1:30 is 90.
+    if directive := re.match(r"(?:\s*(?:#.*)?\n)*(%.*)", text):
+        raise ConfigError(f"{short_repr(directive[1])}; allowed: YAML 1.2, without directives")
     yaml = YAML(typ="safe", pure=True)
     yaml.Composer = _PlainComposer
     return yaml.load(text)

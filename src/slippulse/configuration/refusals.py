@@ -39,7 +39,7 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if kind == "value_error":
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
-    if kind == "missing":
+    if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     if path[-1] == "[key]":
         return f"{dotted(path[:-2])}: {short_repr(path[-2])}; allowed: {NAME_WORDS}"
@@ -69,7 +69,8 @@ def _deepest(path: Path, config: Any) -> tuple[Path, dict[str, Any], Any]:
     schema, value = resolved(json_schema()), config
     for depth, part in enumerate(path):
         if isinstance(part, int):
-            inner = schema.get("items")
+            # A row of numbers is named with the list that it is in, which says what a row is.
+            inner = None if "prefixItems" in resolved(schema.get("items", {})) else schema.get("items")
         else:
             patterns = [*schema.get("patternProperties", {}).values()]
             any_name = patterns[0] if patterns else schema.get("additionalProperties")
@@ -102,7 +103,7 @@ def words(schema: dict[str, Any]) -> str:
         return ", or ".join(map(words, _not_null(schema)))
     if "const" in schema or "enum" in schema:
         return ", ".join(map(str, schema.get("enum", [schema.get("const")])))
-    if kind == "array":
+    if kind == "array" and "items" in schema:
         items = re.sub(r"^a (whole number|number|mapping)", r"\1s", words(schema["items"]))
         different = "different " if schema.get("uniqueItems") else ""
         least = ", at least one" if schema.get("minItems") else ""

@@ -75,13 +75,13 @@ Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
 # Rows of numbers, which are lists in YAML.
 Step = Annotated[tuple[float, float], Field(strict=False)]
-Bump = Annotated[tuple[float, float, float], Field(strict=False)]
+Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
 NAME_WORDS = "a name of lower-case letters, digits and underscores that begins with a letter"
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,60}$")]
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f]*[^\s\x00-\x1f\x7f-\x9f][^\x00-\x1f\x7f-\x9f]*$"
 
 TITLE = "one line of at most 120 printable characters, not blank"
-STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width]"
+STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
 UNITS = "one of time, half_periods, balance_distances"

@@ -49,8 +49,9 @@ def jobs_of(
         settings = {}
         for key, param in params.items():
             settings[key] = param(wildcards) if callable(param) else param
-        files = [path.format(**{wildcard: value}) for path in read]
-        made = [path.format(**{wildcard: value}) for path in outputs]
+        # Snakemake's files are text that remembers its rule.
+        files = [str(path).format(**{wildcard: value}) for path in read]
+        made = [str(path).format(**{wildcard: value}) for path in outputs]
         # A rule whose params name no step has the step of its own name.
         yield Job(settings.pop("step", name), tuple(files), tuple(made), settings)
 
