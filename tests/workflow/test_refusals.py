@@ -9,10 +9,11 @@ from pathlib import Path
 import pytest
 
 from slippulse.configuration.expand import expand
-from slippulse.configuration.limits import HOW_TO_GO_ON, bound_of_sweep
+from slippulse.configuration.limits import bound_of_sweep
 from slippulse.configuration.problems import ConfigError
 from slippulse.configuration.read import LARGEST_FILE, main, read_config, read_overlay
 from slippulse.configuration.resolve import accuracy_of, all_simulations, resolve
+from slippulse.model.cost import HOW_TO_GO_ON
 
 # These shipped simulations serve every case, so that a refusal of scenes is quick.
 KEPT = ["steady_displacement", "space_time_displacement", "space_time_stress"]
@@ -176,7 +177,10 @@ def test_any_of_2000_changes_is_allowed_or_refused_in_clear_lines(shipped):
     chance, counts = random.Random(41), Counter()
     small = {key: shipped[key] for key in shipped if key not in ("published", "scenes")}
     small["simulations"] = {name: shipped["simulations"][name] for name in KEPT[:3]}
-    small |= {"published": {}, "scenes": {"one": shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}}}
+    small |= {
+        "published": {},
+        "scenes": {"one": shipped["scenes"]["barrier"] | {"steps": [[3, 0]]}},
+    }
     for _ in range(2000):
         overlay = mutated(small, chance)
         if not isinstance(overlay, dict):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import pytest
 
-from slippulse.configuration.limits import HOW_TO_GO_ON
+from slippulse.model.cost import HOW_TO_GO_ON
 
 STEADY = "simulations: {steady_displacement: "
 

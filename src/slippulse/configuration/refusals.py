@@ -70,7 +70,9 @@ def _deepest(path: Path, config: Any) -> tuple[Path, dict[str, Any], Any]:
     for depth, part in enumerate(path):
         if isinstance(part, int):
             # A row of numbers is named with the list that it is in, which says what a row is.
-            inner = None if "prefixItems" in resolved(schema.get("items", {})) else schema.get("items")
+            inner = (
+                None if "prefixItems" in resolved(schema.get("items", {})) else schema.get("items")
+            )
         else:
             patterns = [*schema.get("patternProperties", {}).values()]
             any_name = patterns[0] if patterns else schema.get("additionalProperties")

@@ -104,13 +104,15 @@ class Tree:
 
     def _made_by_others(self, unknown: Iterable[str]) -> dict[str, str]:
         """Find files that are as records of their own say, each with the options of its run."""
-        made = {}
+        made: dict[str, str] = {}
         for name in unknown:
             # What is no record says nothing.
             with suppress(OSError, ValueError, KeyError, TypeError):
                 record = read_record(self.results / name)
                 digests = {output: file_digest(self.results / output) for output in record.outputs}
-                if digests == record.outputs and name in (f"{FOLDER}/{key}.json" for key in digests):
+                if digests == record.outputs and name in (
+                    f"{FOLDER}/{key}.json" for key in digests
+                ):
                     options = record.used["options"] or "the shipped configuration"
                     made |= dict.fromkeys([*digests, name], f"made with {options}: harmless")
         return {name: made[name] for name in unknown if name in made}

@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..data.variables import described
 from ..model.checks import check_number, short_repr
+from ..model.cost import bound_of
 from ..model.samples import RECORDS, Samples, check_within
 from ..model.scene import Scene
 from ..solver.fixed_step import solve_by_scheme
@@ -47,7 +48,8 @@ def simulate(
     Raises
     ------
     TypeError, ValueError
-        If an argument is of another type, or a sample is after the end.
+        If an argument is of another type, a sample is after the end, or the run may cost more than
+        days or a small machine has; `run_sweep` takes any.
     UnstableRun
         If slip velocity is not finite or beyond anything the pre-stress can drive.
     UnresolvedRun
@@ -64,6 +66,8 @@ def simulate(
     _require(known, "progress", progress, allowed, TypeError)
     _require(isinstance(strict, bool), "strict", strict, "true or false", TypeError)
     check_within(samples, scene.duration)
+    if exceeded := bound_of(scene, samples).exceeded(remedy="or run_sweep, which takes any scene"):
+        raise ValueError(exceeded)
     if isinstance(progress, bool):
         progress = bar() if progress else None
     data = described(recorded(scene, samples, _solve(scene, samples, progress)).dataset())

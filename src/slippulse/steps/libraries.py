@@ -1,6 +1,6 @@
 """Libraries that most steps use, loaded once for all processes of a run."""
 
-# ruff: noqa: F401
+# ruff: noqa: E402, F401
 import gc
 import os
 

@@ -102,7 +102,6 @@ def _note(event: str, arguments: tuple) -> None:
 
 
 def _add(real: str) -> None:
-    with suppress(OSError):
-        # This way to open a file has no mode, and so is not noted.
-        with os.fdopen(os.open(real, os.O_RDONLY), "rb") as file:
-            _read.setdefault(real, set()).add(hashlib.file_digest(file, "sha256").hexdigest())
+    # This way to open a file has no mode, and so is not noted.
+    with suppress(OSError), os.fdopen(os.open(real, os.O_RDONLY), "rb") as file:
+        _read.setdefault(real, set()).add(hashlib.file_digest(file, "sha256").hexdigest())
