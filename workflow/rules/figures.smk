@@ -14,6 +14,8 @@ for study, needs in STUDY_NEEDS.items():
             kernels=made("kernels", reached),
         output:
             table=f"results/studies/{study}.csv",
+        log:
+            f"results/logs/study_of_{study}.log",
         priority: 2
         resources:
             runtime=20,
@@ -21,8 +23,6 @@ for study, needs in STUDY_NEEDS.items():
             step="run_study",
             study=study,
             values=selected(config, needs.get("settings", ()), {"sweeps": swept}),
-        log:
-            f"results/logs/study_of_{study}.log",
         message:
             f"Studying {study}"
         run:
@@ -45,14 +45,14 @@ for figure, needs in (NEEDS | SWEEPS).items():
             ),
             pdf=f"results/figures/{figure}.pdf",
             csv=f"results/figures/{figure}.csv",
+        log:
+            f"results/logs/{figure}.log",
         # The report waits for the figures: they go before scenes and the explorer.
         priority: 1
         params:
             step="draw_figure",
             figure=figure if figure in NEEDS else "user_defined_sweep",
             values=selected(config, needs.get("settings", ()), config["figures"].get(figure, {})),
-        log:
-            f"results/logs/{figure}.log",
         message:
             f"Drawing {figure}"
         run:
@@ -72,10 +72,10 @@ rule draw_scene:
         csv="results/scenes/{scene}.csv",
         numbers="results/scenes/{scene}_numbers.csv",
         html="results/scenes/{scene}.html",
-    params:
-        title=lambda wildcards: TITLES[wildcards.scene],
     log:
         "results/logs/draw_scene/{scene}.log",
+    params:
+        title=lambda wildcards: TITLES[wildcards.scene],
     message:
         "Drawing scene {wildcards.scene}"
     run:
@@ -88,10 +88,10 @@ rule animate_scene:
         data="results/data/{scene}.nc",
     output:
         gif="results/scenes/{scene}.gif",
-    params:
-        title=lambda wildcards: TITLES[wildcards.scene],
     log:
         "results/logs/animate_scene/{scene}.log",
+    params:
+        title=lambda wildcards: TITLES[wildcards.scene],
     message:
         "Animating scene {wildcards.scene}"
     run:

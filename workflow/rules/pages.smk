@@ -44,13 +44,13 @@ rule write_claims:
         json="results/claims.json",
         findings="results/findings.json",
         html=report("results/claims.html", category="Claims", labels={"table": "claims"}),
+    log:
+        "results/logs/write_claims.log",
     priority: 2
     params:
         **{key: config[key] for key in ("claims", "published", "measure")},
         damping_ratio=config["model"]["damping_ratio"],
         altered=changes(SHIPPED, config),
-    log:
-        "results/logs/write_claims.log",
     message:
         "Judging the claims"
     run:
@@ -89,12 +89,12 @@ rule write_report:
         html=expand("results/manuscript/{document}.html", document=DOCUMENTS),
         pdf=expand("results/manuscript/{document}.pdf", document=DOCUMENTS),
         verdicts="results/manuscript/verdicts.yaml",
+    log:
+        "results/logs/write_report.log",
     priority: 1
     params:
         figures=list(NEEDS),
         config=config,
-    log:
-        "results/logs/write_report.log",
     message:
         "Writing the replication report"
     run:
@@ -107,10 +107,10 @@ rule write_scenes_page:
         expand("results/scenes/{scene}.png", scene=SCENES),
     output:
         html="results/scenes/index.html",
-    params:
-        scenes=TITLES,
     log:
         "results/logs/write_scenes_page.log",
+    params:
+        scenes=TITLES,
     message:
         "Writing the list of scenes"
     run:
@@ -127,11 +127,11 @@ rule write_provenance:
         provenance="results/provenance.json",
         checksums="results/checksums.txt",
         manifest="results/codecheck.yml",
+    log:
+        "results/logs/write_provenance.log",
     params:
         config=config,
         shipped=SHIPPED,
-    log:
-        "results/logs/write_provenance.log",
     message:
         "Noting what the results were made from"
     run:
@@ -147,11 +147,11 @@ rule write_index:
         provenance="results/provenance.json",
     output:
         html="results/index.html",
+    log:
+        "results/logs/write_index.log",
     params:
         figures=[*NEEDS, *SWEEPS],
         scenes=TITLES,
-    log:
-        "results/logs/write_index.log",
     message:
         "Writing results/index.html, the page to open"
     run:

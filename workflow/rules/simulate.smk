@@ -13,9 +13,9 @@ rule compile_kernels:
         environment,
     output:
         kernels="results/kernels/{scheme}.txt",
-    priority: 3
     log:
         "results/logs/compile_kernels/{scheme}.log",
+    priority: 3
     message:
         "Compiling the kernels: {wildcards.scheme} (once)"
     run:
@@ -28,6 +28,8 @@ rule simulate:
         kernels=setting("kernels"),
     output:
         data="results/data/{simulation}.nc",
+    log:
+        "results/logs/simulate/{simulation}.log",
     # The report waits for the claims: what these wait for goes before what only draws.
     priority: 2
     threads: lambda wildcards: setting("bound")(wildcards)().threads
@@ -36,8 +38,6 @@ rule simulate:
     params:
         step=setting("simulate"),
         sweep=setting("sweep"),
-    log:
-        "results/logs/simulate/{simulation}.log",
     message:
         "Simulating {wildcards.simulation}"
     run:
@@ -50,11 +50,11 @@ rule measure:
         data="results/data/{simulation}.nc",
     output:
         measured="results/measurements/{simulation}.csv",
+    log:
+        "results/logs/measure/{simulation}.log",
     priority: 2
     params:
         measure=setting("measure"),
-    log:
-        "results/logs/measure/{simulation}.log",
     message:
         "Measuring {wildcards.simulation}"
     run:
@@ -66,14 +66,14 @@ rule predict:
         environment,
     output:
         predicted="results/predictions/{simulation}.csv",
+    log:
+        "results/logs/predict/{simulation}.log",
     priority: 2
     params:
         sweep=setting("sweep"),
         topics=setting("topics"),
         share=lambda wildcards: setting("measure")(wildcards)["share"],
         still=config["measure"]["still"],
-    log:
-        "results/logs/predict/{simulation}.log",
     message:
         "Predicting {wildcards.simulation}"
     run:
@@ -88,6 +88,8 @@ rule study_grid:
     output:
         uncertainties="results/uncertainties/{simulation}.csv",
         coarser="results/uncertainties/coarser/{simulation}.csv",
+    log:
+        "results/logs/study_grid/{simulation}.log",
     priority: 2
     resources:
         **BOUNDS,
@@ -95,8 +97,6 @@ rule study_grid:
         step=setting("study_grid"),
         sweeps=setting("sweeps"),
         measure=setting("measure"),
-    log:
-        "results/logs/study_grid/{simulation}.log",
     message:
         "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
     run:
@@ -112,6 +112,8 @@ rule join:
         ),
     output:
         joined="results/{joined}",
+    log:
+        "results/logs/join/{joined}.log",
     priority: 2
     resources:
         runtime=lambda wildcards, attempt: attempt * 30,
@@ -121,8 +123,6 @@ rule join:
     params:
         kind=joined(lambda kind, name: kind),
         record=joined(lambda kind, name: SIMULATIONS[name].record),
-    log:
-        "results/logs/join/{joined}.log",
     message:
         "Putting {wildcards.joined} together"
     run:

@@ -29,8 +29,6 @@ MAKING = [
 PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
 
 
-
-
 def in_one_line(function):
     """Call a function; a refusal ends the run with its own words."""
     try:
