@@ -32,9 +32,10 @@ def arguments(command: str) -> list[str]:
     if command == "verify":
         if not options:
             # Without options, the results are compared with what the last run was to make.
-            with suppress(OSError, ValueError, KeyError):
+            with suppress(OSError, ValueError, KeyError, TypeError, RecursionError):
                 called = json.loads(CALL.read_text(encoding="utf-8"))
-                options, targets = called["options"], [*{"everything"} & {*called["targets"]}]
+                targets = [*{"everything"} & {*called["targets"]}]
+                options = [str(option) for option in called["options"]]
         look = ("--workflow-profile", "none", "--quiet", "all", "--cores", "1")
         return [*look, *options, "--", "verify", *targets]
     return ["--cores", given.get("CORES", "2"), *options, "--", *targets]

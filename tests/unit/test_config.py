@@ -4,6 +4,7 @@ import math
 import random
 from contextlib import suppress
 
+import numpy as np
 import pytest
 import tolerances as tol
 
@@ -105,6 +106,19 @@ def test_the_bound_is_not_exceeded_by_more_than_a_small_factor(seed):
             assert run.attrs["block_updates"] < SMALL_FACTOR * bound.block_updates, scene
             assert run.nbytes < bound.bytes, scene
     assert tried > 5
+
+
+def test_a_run_that_would_not_end_is_refused_before_it_starts():
+    profile = sp.Prestress(0.6, 0.6)
+    allowed = "allowed: 4e.[0-9]+, or run_sweep, which takes any scene"
+    with pytest.raises(ValueError, match=rf"^cost: up to 8.*e.22 block updates; {allowed}$"):
+        sp.simulate(sp.Scene("stress", profile, 1e9, dx=0.01))
+    samples = sp.Samples(np.linspace(0.0, 1.0, 30_000), np.linspace(-1.0, 1.0, 30_000))
+    with pytest.raises(ValueError, match=f"^cost: up to .* bytes; {allowed}$"):
+        sp.simulate(sp.Scene("stress", profile, 1.0, dx=0.01), samples)
+    # The exact solution has a limit of its own.
+    with pytest.raises(ValueError, match="allowed: fronts that stay within 20000 panels"):
+        sp.theory.Rupture(profile, 0.65, duration=1e6)
 
 
 def test_slipping_again_and_again_is_bounded():

@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import socket
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from slippulse.data.files import write_text
 from slippulse.data.provenance import job_times, machine_class, manifest, provenance, source_files
 from slippulse.data.records import Origin, digest_of, file_digest, read_record, write_record
 from slippulse.data.tree import Digests, Tree
+from slippulse.data.versions import unlike
 from slippulse.steps.origins import Job, jobs_of, origins_of
 from slippulse.steps.targets import Plan
 
@@ -31,7 +33,7 @@ JOBS = [
 ]
 
 
-def run(folder: Path, jobs=JOBS) -> None:
+def run(folder: Path, jobs=JOBS, options: str = "") -> None:
     """Write the results and records of some jobs."""
     origins = origins_of(jobs)
     for job in jobs:
@@ -39,7 +41,8 @@ def run(folder: Path, jobs=JOBS) -> None:
         for output in job.outputs:
             write_text(f"{job.step} {origin.configuration}", folder / output)
         inputs = {name: file_digest(folder / "results" / name) for name in origin.inputs}
-        write_record(origin, inputs, {"seconds": 1.5}, folder / "results")
+        used = {"seconds": 1.5, "options": options}
+        write_record(origin, inputs, used, folder / "results")
 
 
 @pytest.fixture
@@ -225,6 +228,46 @@ def test_a_digest_is_remembered_as_long_as_the_system_says_that_the_file_is_the_
     for text in ("[" * 100_000, "5", "[5]", '{"a": 5}', "null"):
         cache.write_text(text)
         assert Digests(cache).digest(path) == second
+
+
+def test_what_another_overlay_has_made_is_harmless_as_long_as_it_is_as_made(results, capsys):
+    mine = [Job("draw_scene", (), ("results/scenes/mine.png", "results/scenes/mine.pdf"), {})]
+    for options in ("--configfile mine.yaml", ""):
+        run(results.parent, mine, options)
+        lines, count, foreign = problems(results)
+        by = f"made with {options or 'the shipped configuration'}: harmless"
+        names = ("records/scenes/mine.png.json", "scenes/mine.pdf", "scenes/mine.png")
+        assert (lines, count) == ([], len(JOBS))
+        assert foreign == [f"{results / name}: {by}" for name in names]
+    (results / "scenes/mine.pdf").write_text("edited")
+    assert len(problems(results)[0]) == 3 and problems(results)[2] == []
+
+
+def test_verification_reads_what_planning_remembers(results, monkeypatch):
+    monkeypatch.setattr(tree, "SETTLED", -1.0)
+    assert faults(results) == {}
+    path = results / DATA
+    content = path.read_bytes()
+    # What a program writes through a map of memory may change the content and no time.
+    cache = results / "records/.digests"
+    remembered = json.loads(cache.read_text())
+    path.write_bytes(content[:-1] + b"!")
+    status = path.stat()
+    state = [status.st_size, status.st_ino, status.st_mtime_ns, status.st_ctime_ns]
+    remembered[path.as_posix()][:4] = state
+    cache.write_text(json.dumps(remembered))
+    assert faults(results) == {}
+    assert problems(results)[0] == [f"{path}: not what its job wrote"]
+
+
+def test_an_environment_that_is_not_that_of_the_lock_is_named(tmp_path, monkeypatch):
+    lock = tmp_path / "lock"
+    lock.write_text(f"numpy=={version('numpy')} \\\n    --hash=sha256:0\nno-such-package==1.0\n")
+    assert unlike(lock) == ""
+    for other in ("xarray==0.1 ; python_version < '3.12' \\\n", "xarray==0.2 \\\n"):
+        lock.write_text(lock.read_text() + other)
+    installed = f"xarray: {version('xarray')} is installed; allowed: 0.1 or 0.2"
+    assert unlike(lock).startswith(f"{installed}, as in requirements.lock")
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from faults import WAYS, digests, fault_run, prepare, start
 from pipeline_copy import BY_PROFILE, SNAKEMAKE, copy_project, planned, snakemake
 
 from slippulse.data.files import UnreadableFile
-from slippulse.data.records import Origin, Planned
+from slippulse.data.records import Origin
 from slippulse.data.store import save_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.steps.job import logged
@@ -49,7 +49,7 @@ def test_a_run_is_stopped_in_every_way_and_the_next_gives_the_same(tmp_path, tim
 def test_surroundings_do_not_change_a_byte(finished, tmp_path):
     elsewhere = prepare(tmp_path / "elsewhere")
     strange = {"TZ": "Pacific/Kiritimati", "LC_ALL": "C", "LANG": "tr_TR.UTF-8", "DISPLAY": ""}
-    strange |= {"PYTHONHASHSEED": "1", "MPLBACKEND": "TkAgg", "OMP_NUM_THREADS": "3"}
+    strange |= {"PYTHONHASHSEED": "1", "MPLBACKEND": "wrong", "OMP_NUM_THREADS": "3"}
     strange["FONTCONFIG_FILE"] = str(tmp_path / "no fonts")
     how = {"overlay": "overlay.yaml", "environment": strange}
     result = snakemake(elsewhere, "--", SCENE, FIGURE, **how)
@@ -136,17 +136,12 @@ def test_a_log_that_cannot_be_written_fails_in_one_line(tmp_path):
         pass
 
 
-def of_step(step: str, output: str) -> Planned:
-    """A job that reads nothing."""
-    return Planned(Origin((output,), step, "", "", frozenset()), {}, "")
-
-
 def test_a_job_that_fails_says_why(tmp_path, capfd):
-    jobs, planned = Jobs(), of_step("no_such_step", "one")
+    jobs, origin = Jobs(), Origin(("one",), "no_such_step", "", "", frozenset())
     # Its process ends; the next job has another.
     for _ in range(2):
         with pytest.raises(JobFailed, match=r"\A[^\n]+No module named[^\n]+one.traceback\)\Z"):
-            jobs.run(planned, "a job", {}, {}, {}, tmp_path / "logs/one.log")
+            jobs.run(origin, "a job", {}, {}, {}, tmp_path / "logs/one.log")
     assert capfd.readouterr().err == ""
     assert "Traceback" in (tmp_path / "logs/one.traceback").read_text()
     # The logger prints the log.
@@ -155,9 +150,9 @@ def test_a_job_that_fails_says_why(tmp_path, capfd):
 
 def test_jobs_run_one_after_another_in_a_process_until_it_ends(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    jobs, planned = Jobs(), of_step("write_scenes_page", "scenes.html")
+    jobs, origin = Jobs(), Origin(("scenes.html",), "write_scenes_page", "", "", frozenset())
     outputs, settings = {"html": "results/scenes.html"}, {"scenes": {}}
-    job = (planned, "a job", {}, outputs, settings, "results/logs/one.log")
+    job = (origin, "a job", {}, outputs, settings, "results/logs/one.log")
     before = set(multiprocessing.active_children())
     for _ in range(3):
         jobs.run(*job)

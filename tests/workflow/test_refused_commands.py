@@ -172,6 +172,40 @@ def test_a_command_says_in_one_line_how_it_is_used(project, tmp_path, monkeypatc
     assert code in (1, ended.value.code) and named in text and "\n" not in text
 
 
+@pytest.mark.parametrize(
+    "text", ["", "5", "[]", '{"options": 5}', '{"targets": [{}]}', "[" * 99999]
+)
+def test_a_note_on_the_last_run_that_is_not_of_its_form_counts_as_absent(
+    project, tmp_path, monkeypatch, text
+):
+    monkeypatch.chdir(tmp_path)
+    arguments = runpy.run_path(str(project / "workflow/run.py"))["arguments"]
+    (tmp_path / "results/records").mkdir(parents=True)
+    (tmp_path / "results/records/.call").write_text(text)
+    assert arguments("verify")[-3:] == ["1", "--", "verify"]
+
+
+def test_an_environment_that_differs_from_the_lock_is_refused(folder):
+    (folder / "mine.yaml").write_text(DRAFT, encoding="utf-8")
+    other = folder / "elsewhere/xarray-0.0.1.dist-info"
+    other.mkdir(parents=True)
+    (other / "METADATA").write_text("Metadata-Version: 2.1\nName: xarray\nVersion: 0.0.1\n")
+    environment = os.environ | {"PYTHONPATH": str(other.parent)}
+    for target in ("fig07", "verify"):
+        text = said([*SNAKEMAKE, "--quiet", "all", "--", target], folder, 1, environment)
+        assert text.startswith("xarray: 0.0.1 is installed; allowed: ") and text.count("\n") == 1
+    assert not (folder / "results").exists()
+
+
+@pytest.mark.parametrize("where", ["/dev/null", "/proc/none"])
+def test_a_folder_of_caches_that_cannot_be_written_is_one_line(folder, project, where):
+    (folder / "profiles").symlink_to(project / "profiles")
+    environment = os.environ | {"XDG_CACHE_HOME": where}
+    command = [sys.executable, "-m", "snakemake", "--cores", "1", "--", "fig07"]
+    lines = said(command, folder, 1, environment).splitlines()
+    assert len(lines) == 2 and lines[0].startswith("Using ") and where in lines[1]
+
+
 def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
     monkeypatch.chdir(project)
     path = "results/figures/fig07_damage_zone.png"
@@ -181,4 +215,4 @@ def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
         path: path,
         "fig07_x.png": "fig07_x.png",
     }
-    assert [*map(runpy.run_path("workflow/run.py")["meant"], short)] == [*short.values()]
+    assert [*map(runpy.run_path("workflow/run.py")["full_target"], short)] == [*short.values()]

@@ -2,7 +2,6 @@
 
 import os
 import re
-import shlex
 import sys
 from functools import cache
 from pathlib import Path
@@ -64,9 +63,9 @@ def environment(wildcards):
 def run_step(rule, wildcards, input, output, params, threads, log):
     """Run the step of a rule in another process, which need not load Snakemake."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    planned, name = PLAN.planned(output[0], shlex.join(OPTIONS)), " ".join([rule, *wildcards])
+    origin, name = PLAN.planned(output[0]), " ".join([rule, *wildcards])
     try:
-        JOBS.run(planned, name, plain(input), plain(output), settings, str(log))
+        JOBS.run(origin, name, plain(input), plain(output), settings, str(log))
     except JobFailed as reason:
         FAILED.append(str(reason))
         raise

@@ -1,20 +1,22 @@
 # Included last: checks the targets and their cost, and tells Snakemake which results are faulty.
 
 import logging
+import shlex
 
 from snakemake.logging import logger
 
 from slippulse.configuration.refusals import format_problems
 from slippulse.data.files import write_json
 from slippulse.data.tree import Tree
-from slippulse.steps.origins import jobs_of
-from slippulse.steps.targets import Plan, check_environment, write_faulty
+from slippulse.data.versions import unlike
+from slippulse.steps.origins import LOCK, jobs_of
+from slippulse.steps.targets import Plan, write_faulty
 
-GIVEN = workflow.config_settings.config_args
-OPTIONS = ["--config", *GIVEN] if GIVEN else []
-if OVERLAYS:
-    OPTIONS = ["--configfile", *map(os.path.relpath, workflow.overwrite_configfiles), *OPTIONS]
-
+GIVEN = {
+    "--configfile": [*map(os.path.relpath, workflow.overwrite_configfiles)],
+    "--config": workflow.config_settings.config_args,
+}
+OPTIONS = [word for key, values in GIVEN.items() if values for word in (key, *values)]
 RULES = {rule.name: getattr(rules, rule.name) for rule in workflow.rules}
 # Targets by name: rules without wildcards; `verify` looks at what a run makes by default.
 NAMED = {
@@ -26,7 +28,8 @@ NAMED |= dict.fromkeys(("all", "verify"), EVERYTHING if ACCURACY.get("whole", Tr
 MAKING = [
     (name, rule.input, rule.output, rule.params) for name, rule in RULES.items() if rule.output
 ]
-PLAN = Plan([job for rule in MAKING for job in jobs_of(*rule, VALUES)], NAMED)
+MADE_BY = [job for rule in MAKING for job in jobs_of(*rule, VALUES)]
+PLAN = Plan(MADE_BY, NAMED, shlex.join(OPTIONS))
 
 
 def in_one_line(function):
@@ -47,7 +50,8 @@ def begin():
 def begin_with(targets):
     """Check the targets and what they cost, and compare the results that they need."""
     wanted = PLAN.wanted(targets)
-    check_environment()
+    if problem := unlike(LOCK):
+        raise ConfigError(problem)
     if "verify" in targets:
         sys.exit(PLAN.verify(wanted))
     simulated = {

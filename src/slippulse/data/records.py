@@ -12,21 +12,18 @@ FOLDER = "records"
 
 
 class Origin(NamedTuple):
-    """A job as planned: paths below results/, and digests of its configuration and sources."""
+    """A job as planned: paths below results/, and digests of its configuration and sources.
+
+    files : SHA-256 of all that it may read, by path; options : those of the run
+    """
 
     outputs: tuple[str, ...]
     step: str
     configuration: str
     sources: str
     inputs: frozenset[str]
-
-
-class Planned(NamedTuple):
-    """A job to be run: SHA-256 of the files that it may read, and the options of the run."""
-
-    origin: Origin
-    digests: Mapping[str, str]
-    options: str
+    files: Mapping[str, str] = {}
+    options: str = ""
 
 
 class Record(NamedTuple):

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..data.files import CONFIGURATION
-from ..data.records import Planned, write_record
+from ..data.records import Origin, write_record
 from . import reading
 
 # Seconds between two lines of progress.
@@ -23,27 +23,26 @@ MEGABYTE = 20 if sys.platform == "darwin" else 10
 
 
 def run_job(
-    planned: Planned, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
+    origin: Origin, name: str, files: dict, outputs: dict, settings: dict, log: str | Path
 ) -> None:
     """Run the step of a job; files and outputs are paths, or lists of them, by name."""
     began, processor_began = time.monotonic(), time.process_time()
     # Without this, the record would have the most memory of all jobs of this process.
     with suppress(OSError):
         Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
-    origin = planned.origin
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log) as progress:
-        reading.watch({*planned.digests, *(f"results/{name}" for name in origin.inputs)})
+        reading.watch([*origin.files, *(f"results/{name}" for name in origin.inputs)])
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
-        reading.check(planned.digests)
+        reading.check(origin.files)
         inputs = {name: reading.digest(f"results/{name}") for name in origin.inputs}
         seconds = time.monotonic() - began
         used = {
             "seconds": round(seconds, 2),
             "processor_seconds": round(time.process_time() - processor_began, 2),
             "memory_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> MEGABYTE,
-            "options": planned.options,
+            "options": origin.options,
         }
         write_record(origin, inputs, used)
     if not sys.stderr.isatty():

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import NamedTuple
 
 from ..data.records import Origin, digest_of
-from .reach import content_digest, digest_of_files, sources
+from .reach import content_digest, sources
 
 RESULTS = Path("results")
 # All steps load libraries that the lock names.
@@ -56,7 +56,7 @@ def jobs_of(
         yield Job(settings.pop("step", name), tuple(files), tuple(made), settings)
 
 
-def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
+def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
     """Find the origin of each result; its configuration is also that of all it is made from."""
     makers: dict[str, Job] = {}
     for job in jobs:
@@ -67,11 +67,12 @@ def origins_of(jobs: Iterable[Job]) -> dict[str, Origin]:
         if name not in origins:
             job = makers[name]
             inputs = frozenset(below(path) for path in job.inputs if is_result(path))
+            texts = sorted(path for path in job.inputs if not is_result(path))
             earlier = sorted({origin(source).configuration for source in inputs})
             configuration = digest_of([job.settings, *earlier])
-            digest = _source_digest(*_sources_of(job))
-            outputs = tuple(map(below, job.outputs))
-            made = Origin(outputs, job.step, configuration, digest, inputs)
+            files = _digests(tuple(modules_of(job.step, job.settings)), tuple(texts))
+            outputs, digest = tuple(map(below, job.outputs)), digest_of(files)
+            made = Origin(outputs, job.step, configuration, digest, inputs, files, options)
             origins.update(dict.fromkeys(outputs, made))
         return origins[name]
 
@@ -89,23 +90,7 @@ def modules_of(step: str, settings: Mapping) -> list[str]:
     return modules
 
 
-def digests_of(job: Job) -> dict[str, str]:
-    """SHA-256 of all files of the project that a job depends on, by path."""
-    return _digests(*_sources_of(job)).copy()
-
-
-def _sources_of(job: Job) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Modules that a job runs, and the texts that it reads."""
-    texts = sorted(path for path in job.inputs if not is_result(path))
-    return tuple(modules_of(job.step, job.settings)), tuple(texts)
-
-
-@cache
-def _source_digest(modules: tuple[str, ...], texts: tuple[str, ...]) -> str:
-    """Digest of all that some modules reach, of texts that their step reads, and of the lock."""
-    return digest_of_files([*sources(*modules), *texts, LOCK])
-
-
 @cache
 def _digests(modules: tuple[str, ...], texts: tuple[str, ...]) -> dict[str, str]:
+    """SHA-256 of all that some modules reach, of texts that their step reads, and of the lock."""
     return {path: content_digest(path) for path in [*sources(*modules), *texts, LOCK]}

@@ -11,16 +11,14 @@ from typing import TextIO
 
 from ..configuration.problems import ConfigError, nearest
 from ..data.lock import take
-from ..data.records import Planned, read_record, record_path
+from ..data.records import Origin, read_record, record_path
 from ..data.tree import Tree
-from ..data.versions import unlike
 from ..model.checks import short_repr
-from .origins import LOCK, RESULTS, Job, below, digests_of, is_result, origins_of
+from .origins import RESULTS, Job, below, is_result, origins_of
 
-# What a job depends on whose files no rule names: the folder is newer than all faulty results.
-SOURCES = "src"
-# The time of these. Snakemake takes 0 for none.
-OLD = 1.0
+# Folder that every job depends on, and the time of a faulty result, which is older. Snakemake takes
+# 0 for none.
+SOURCES, OLD = "src", 1.0
 
 
 def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
@@ -38,10 +36,11 @@ def selected(config: Mapping, keys: Iterable[str], additions: Mapping) -> dict:
 class Plan:
     """All jobs, the files of rules that may be named as targets, and the folder of results."""
 
-    def __init__(self, jobs: Sequence[Job], named: Mapping[str, Iterable[str]]) -> None:
+    def __init__(
+        self, jobs: Sequence[Job], named: Mapping[str, Iterable[str]], options: str = ""
+    ) -> None:
         self.jobs, self.named = jobs, named
-        self.jobs_by_output = {output: job for job in jobs for output in job.outputs}
-        self.origins = origins_of(jobs)
+        self.origins = origins_of(jobs, options)
         self.tree = Tree(RESULTS, self.origins)
 
     def wanted(self, targets: Iterable[str]) -> list[str]:
@@ -70,10 +69,10 @@ class Plan:
 
     def verify(self, complete: Iterable[str]) -> int:
         """Print what is not as a complete run would make it; returns the exit code."""
-        problems, count, others = self.tree.problems(complete)
+        problems, count, foreign = self.tree.problems(complete)
         print("\n".join(problems) or f"{count} files are as made by what is here now")
-        if others:
-            print(f"Not looked at: {len(others)} files of another configuration, as {others[0]}")
+        for line in foreign[:1]:
+            print(f"Not looked at: {len(foreign)} files of another configuration, as {line}")
         others = [name for name in self.wanted(["everything"]) if name not in complete]
         missing = [name for name in others if not (RESULTS / name).exists()]
         if missing:
@@ -81,16 +80,16 @@ class Plan:
             print(f"Not looked at: {len(missing)} {also}")
         return int(bool(problems))
 
-    def planned(self, output: str, options: str) -> Planned:
-        """Say what a job that makes a file may read, as its sources were planned and made."""
+    def planned(self, output: str) -> Origin:
+        """Take the origin of a file, with the digests of the results that its job is to read."""
         origin = self.origins[below(output)]
-        digests = digests_of(self.jobs_by_output[output])
+        files = dict(origin.files)
         for name in origin.inputs:
             # On a shared disk, a record may arrive later than its file.
             with suppress(OSError, ValueError, KeyError):
                 record = read_record(RESULTS / record_path(self.origins[name]))
-                digests[f"{RESULTS}/{name}"] = record.outputs[name]
-        return Planned(origin, digests, options)
+                files[f"{RESULTS}/{name}"] = record.outputs[name]
+        return origin._replace(files=files)
 
     def begin(self, wanted: Iterable[str], makes: bool = True) -> TextIO | None:
         """Lock the folder until the returned file is closed, and set the times of its results.
@@ -98,7 +97,7 @@ class Plan:
         Faulty ones are made old, so that Snakemake decides which are made anew. Where it ``makes``
         none, the folder of another run is left as it is.
         """
-        if not (makes or RESULTS.is_dir()):
+        if not (makes or os.access(RESULTS, os.W_OK)):
             return None
         held = take(RESULTS / ".run.lock")
         if held is None and makes:
@@ -134,12 +133,6 @@ def _made_before_inputs(job: Job, times: Mapping[str, float]) -> bool:
     read = [times[path] for path in (SOURCES, *job.inputs) if path in times]
     made = [os.lstat(path).st_mtime for path in job.outputs if path in times]
     return bool(made) and max(read) > min(made)
-
-
-def check_environment() -> None:
-    """Refuse an environment that is not that of the lock, which all results name."""
-    if problem := unlike(LOCK):
-        raise ConfigError(problem)
 
 
 def _remove_unfinished() -> None:
