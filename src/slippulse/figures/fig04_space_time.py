@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 from ..data.points import point
 from ..measurement.fronts import position_at
 from .shared import space_time
-from .style import BLACK, COLUMN, HALO, ORANGE, PURPLE, Look, legend_below, new_figure, panel_letter
+from .style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look, legend_below, new_figure, panel_letter
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
@@ -70,13 +70,13 @@ def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Draw the figure; a legend entry that is in one panel alone names the panel."""
-    figure = new_figure(COLUMN, 5.6)
+    figure = new_figure(PAGE, 3.3)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
     panels: dict[str, str] = {}
-    sides = figure.subfigures(2, 1, squeeze=False).flat
+    sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
-        profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.3, 1.0))
+        profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
         roles = space_time.rows_by_role(table[table["panel"] == panel])
         space_time.draw_profile(profile, roles["prestress"])
         image = space_time.draw_map(axes, roles)
@@ -98,7 +98,7 @@ def plot(table: pd.DataFrame) -> Figure:
     panels |= {"not yet slipped": "ab", "stuck again": panels.get("trailing edge", "a")}
     for label, handle in handles.items():
         handle.set_label(label if panels[label] == "ab" else f"{label} ({panels[label]})")
-    legend_below(figure, list(handles.values()), 3)
+    legend_below(figure, list(handles.values()), len(handles))
     return figure
 
 
@@ -118,7 +118,9 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
         # Under a stress boundary the paper's estimate of the time is |x_-|.
         limit = -float(paper["time"].iloc[0])
         axes.axhline(limit, color=BLACK, linewidth=0.6, linestyle="--", zorder=1.9)
-        axes.text(0.02 * axes.get_xlim()[1], limit, "$x_-$", va="bottom", fontsize=8.5, zorder=4.0)
+        # The label stands beside the ticks of the axis.
+        beside: Look = {"xytext": (6, 1), "textcoords": "offset points", "fontsize": 8.5}
+        axes.annotate("$x_-$", (0.0, limit), va="bottom", zorder=4.0, **beside)
         left = roles["last_release"].iloc[:1]
         axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)
 
@@ -128,18 +130,17 @@ def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
     time, length = float(ends["time"].iloc[0]), float(ends["value"].iloc[0])
     left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
     low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.04 * (high - low), high)
+    height = high - low
+    low -= 0.04 * height
+    axes.set_ylim(low - 0.06 * height, high)
     arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
     arrow |= {"mutation_scale": 8.0, "path_effects": HALO}
     axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
-    end = axes.get_xlim()[1]
-    for name, value, height, start, stop in (
-        ("T", time, low, (0.0, low), (time, low)),
-        ("L", length, 0.5 * (left + right), (time, left), (time, right)),
-    ):
+    for start, stop in (((0.0, low), (time, low)), ((time, left), (time, right))):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
-        look: Look = {"x": time + 0.025 * end, "s": rf"${name}_\text{{trans}} = {value:#.3g}$"}
-        if name == "T" and time > 0.45 * end:
-            # The label stands on a long arrow, away from the marks beyond it.
-            look |= {"x": 0.5 * time, "ha": "center", "backgroundcolor": "white"}
-        axes.text(y=height, va="center", fontsize=8.5, path_effects=HALO, zorder=4.0, **look)
+    look: Look = {"textcoords": "offset points", "fontsize": 8.5, "path_effects": HALO}
+    # The label of T_trans stands above its arrow, clear of the ticks of the axis.
+    named = rf"$T_\text{{trans}} = {time:#.3g}$"
+    axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)
+    named = rf"$L_\text{{trans}} = {length:#.3g}$"
+    axes.annotate(named, (time, 0.5 * (left + right)), (4, 0), va="center", zorder=4.0, **look)
