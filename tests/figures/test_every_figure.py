@@ -1,6 +1,6 @@
 """Every figure fits the journal, is labelled and finite; and what the figures of the paper show."""
 
-from itertools import product
+from itertools import combinations, product
 from pathlib import Path
 
 import matplotlib
@@ -8,6 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 import tolerances as tol
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.legend import Legend
 from matplotlib.path import Path as Outline
@@ -15,7 +17,7 @@ from matplotlib.text import Text
 from PIL import Image
 
 from slippulse.figures import fig02_phase_diagram as phases
-from slippulse.figures.style import PAGE, save_figure
+from slippulse.figures.style import PAGE, colour_scale, save_figure
 from slippulse.measurement.regime import REGIMES
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
@@ -26,6 +28,8 @@ DRAWN = [
 ]
 # Points, at the width of the journal.
 SMALLEST = 7.0
+# Inches by which the boxes of two texts may overlap, since letters do not fill them.
+TOUCHING = 0.012
 UNLABELLED = {"fig01_system_sketch", "fig06_burridge_knopoff", "fig07_damage_zone"}
 BOUNDARIES = ("displacement", "stress")
 
@@ -217,16 +221,48 @@ def test_lattices_tend_to_the_exact_transition(draw, name):
     assert (stress["time"] > stress["paper_time"]).all()
 
 
-def test_every_damping_ratio_is_drawn_and_damping_lengthens_the_transition(draw):
+def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_the_transition(draw):
     drawn = [draw(name) for name in ("fig10_damping_displacement", "fig11_damping_stress")]
     for one, boundary in zip(drawn, BOUNDARIES, strict=True):
-        ratios = np.sort(one.measured[f"damping_{boundary}"]["damping_ratio"].unique())
+        runs = one.measured[f"damping_{boundary}"]
+        ratios = np.sort(runs["damping_ratio"].unique())
         assert 0.0 in ratios
-        for axes in one.figure.axes[:2]:
-            assert np.allclose(axes.get_xticks(), ratios)
-            assert np.allclose(np.unique(offsets(axes, "runs")[:, 0]), ratios)
+        for axes, quantity in zip(one.figure.axes[:2], ("length", "time"), strict=True):
+            (group,) = [group for group in axes.collections if group.get_gid() == "runs"]
+            assert len(group.get_offsets()) == runs["run_flags"].isna().sum()
+            colours = [to_rgba(colour) for colour in colour_scale("damping_ratio").to_rgba(ratios)]
+            assert {to_rgba(face) for face in group.get_facecolors()} == set(colours)
+            measured = runs.loc[runs["run_flags"].isna(), f"transition_{quantity}"].dropna()
+            shown = np.sort(np.ma.compressed(group.get_offsets()[:, 1]))
+            assert shown[np.isfinite(shown)] == pytest.approx(np.sort(measured), rel=1e-6)
+            # The inset has the ratio against b, with a line of exact theory for each of a few levels.
+            (inset,) = axes.child_axes
+            assert np.allclose(np.unique(offsets(inset, "runs")[:, 0]), ratios)
+            lines = [line for line in inset.lines if line.get_gid() == "exact"]
+            assert len(lines) >= 2 and all(len(line.get_xdata()) == len(ratios) for line in lines)
     runs = drawn[0].table
     off = (
         (runs["length"] / runs["paper_length"] - 1.0).abs().groupby(runs["damping_ratio"]).median()
     )
     assert off[1.0] > 2.0 * off[0.0]
+
+
+@pytest.mark.parametrize("name", DRAWN)
+def test_no_two_texts_overlap(draw, name):
+    """At the width of the journal; the labels of two axes may meet in their corner."""
+    figure = draw(name).module.plot(draw(name).table)
+    FigureCanvasAgg(figure).draw()
+    ticks, unseen = set(), set()
+    for axis in figure.findobj(Axis):
+        low, high = sorted(axis.get_view_interval())
+        for tick in axis.get_major_ticks() + axis.get_minor_ticks():
+            labels = {tick.label1, tick.label2}
+            ticks |= labels
+            unseen |= set() if low <= tick.get_loc() <= high else labels
+    texts = {text for text in figure.findobj(Text) if text.get_visible() and text.get_text()}
+    boxes = {text: text.get_window_extent() for text in texts - unseen}
+    for (one, first), (other, second) in combinations(boxes.items(), 2):
+        across = min(first.x1, second.x1) - max(first.x0, second.x0)
+        upwards = min(first.y1, second.y1) - max(first.y0, second.y0)
+        apart = min(across, upwards) <= TOUCHING * figure.dpi
+        assert apart or {one, other} <= ticks, (one.get_text(), other.get_text())

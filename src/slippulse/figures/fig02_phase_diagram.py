@@ -1,12 +1,15 @@
-"""Figure 2: the regime in which a rupture ends, by boundary and both levels of the pre-stress."""
+"""Figure 2: the regime in which a rupture ends, by boundary, pre-stress and gamma."""
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Polygon
+from matplotlib.path import Path as Outline
 
 from ..data.numerals import setting
+from ..model.prestress import Prestress
 from . import style
 from .shared.selection import spread_values
 from .style import BLACK, GREY, PAGE, Look, entry, legend_below, new_figure, panel_letter
@@ -39,39 +42,70 @@ DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regim
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Study of the planes, and some runs (role run), those with leaf springs at the largest gamma.
+    """Study of the planes, and runs: of a symmetric pre-stress all (role symmetric), else some.
 
-    The regime is that at the end of the run, exact_regime the final one by exact theory.
+    Those with leaf springs have role run at the largest gamma. The regime is that at the end of the
+    run, exact_regime the final one by exact theory.
     """
     parts = [tables["regime_plane"]]
+    kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
     for name, count in DRAWN.items():
-        runs = tables[name][tables[name]["gamma"] == tables[name]["gamma"].max()]
+        runs = tables[name]
+        parts.append(runs.loc[runs["left"] == runs["right"], kept].assign(role="symmetric"))
+        runs = runs[runs["gamma"] == runs["gamma"].max()]
         left = runs["left"].isin(spread_values(runs["left"], count))
         right = runs["right"].isin(spread_values(runs["right"], count))
-        kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
         parts.append(runs.loc[left & right, kept].assign(role="run"))
     return pd.concat(parts, ignore_index=True)
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Draw a plane for each boundary, and velocity profiles of the ruptures numbered in them."""
-    figure = new_figure(PAGE, 2.75)
-    planes, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.05, 1.0)).flat
+    """Draw the plane of tau_0 and gamma, one for each boundary, and numbered velocity profiles."""
+    figure = new_figure(PAGE, 5.0)
+    left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
+    above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
-    for axes, letter, boundary in zip(planes.subplots(1, 2), "ab", BOUNDARIES, strict=True):
+    draw_symmetric(above, table)
+    for axes, letter, boundary in zip(below.subplots(1, 2), "bc", BOUNDARIES, strict=True):
         rows = table[table["boundary"] == boundary]
         draw_plane(axes, rows[rows["role"].isin(["area", "line"])], labels(profiles, boundary))
-        draw_runs(axes, rows[rows["role"] == "run"])
+        draw_runs(axes, rows[rows["role"] == "run"], "right")
         axes.set_title(BOUNDARIES[boundary], fontsize=9)
         panel_letter(axes, letter)
     draw_profiles(strips, profiles)
     faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
     look = MARK | {"marker": "o"}
     handles = [entry(label, markerfacecolor=face, **look) for label, face in faces.items()]
-    if table.loc[table["role"] == "run", "run_flags"].notna().any():
+    if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
         handles.append(entry("flagged", marker="x", **MARK))
     legend_below(figure, handles, 3)
     return figure
+
+
+def draw_symmetric(figure: SubFigure, table: pd.DataFrame) -> None:
+    """Draw the regimes of equal levels over tau_0 and gamma, and below without leaf springs."""
+    panels = figure.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
+    for axes, (boundary, symbol) in zip(panels, BOUNDARIES.items(), strict=True):
+        rows = table[table["boundary"] == boundary]
+        for level in (-0.5, 0.5):
+            # The regime of equal levels is that of the quadrant of both planes.
+            areas = rows[rows["role"] == "area"].groupby(["series", "regime"])
+            (regime,) = [
+                regime
+                for (_, regime), area in areas
+                if Outline(area[["left", "right"]]).contains_point((level, level))
+            ]
+            colour, text = LOOKS[regime]
+            axes.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
+            look: Look = {"ha": "center", "va": "center", "fontsize": 8.0, "zorder": 4.0}
+            name = text.replace("\n", " ")
+            axes.annotate(name, (level, 0.5), xycoords=("data", "axes fraction"), **look)
+        draw_runs(axes, rows[rows["role"] == "symmetric"], "gamma")
+        axes.set_ylabel(symbol.partition(",")[0] + "$" * (symbol.count("$") > 2))
+    panels[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
+    panels[1].set(ylim=(-1.0, 1.0), yticks=[], xlim=(-1.0, 1.0), ylabel=r"$\Gamma = 0$")
+    panels[1].set_xlabel(r"pre-stress on both sides $\tau_0$")
+    panel_letter(panels[0], "a")
 
 
 def tint(colour: str) -> tuple[float, ...]:
@@ -111,29 +145,37 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, texts: dict[str, str]) -> None:
     axes.set(xlabel=r"pre-stress on the left $\tau_{0,l}$", ylabel=r"on the right $\tau_{0,r}$")
 
 
-def draw_runs(axes: Axes, runs: pd.DataFrame) -> None:
+def draw_runs(axes: Axes, runs: pd.DataFrame, upwards: str) -> None:
     """Mark runs: open if theory has another final regime, crossed out if flagged."""
     for run in runs.itertuples():
         early = run.exact_regime in LOOKS and run.exact_regime != run.regime
         look = MARK | {"markerfacecolor": "white" if early else LOOKS[run.regime][0]}
         marker = "x" if isinstance(run.run_flags, str) else "o"
-        axes.plot(run.left, run.right, marker, gid="run", zorder=3.0, **look)
+        axes.plot(run.left, getattr(run, upwards), marker, gid=run.role, zorder=3.0, **look)
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
-    """Draw slip velocities over position, each over its largest value, one above the other."""
+    """Draw slip velocities over position, each over its largest value, with their pre-stress."""
     strips = figure.subplots(len(profiles), 1, sharex=True)
-    panel_letter(strips[0], "c")
+    panel_letter(strips[0], "d")
     strips[0].set_title(rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$", fontsize=9)
     for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):
         colour = LOOKS[rows["regime"].iloc[0]][0]
-        levels = [setting(rows[side].iloc[0]) for side in ("left", "right")]
+        levels = rows[["left", "right"]].iloc[0]
         shape = rows["slip_velocity"] / rows["slip_velocity"].max()
         axes.fill_between(rows["x"], shape, color=tint(colour), linewidth=0.0)
         axes.plot(rows["x"], shape, color=colour)
         gamma = int(rows["boundary"].iloc[0] == "displacement")
-        label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(levels)}"
+        label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {', '.join(map(setting, levels))}"
         axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top", fontsize=8.0)
-        axes.set(yticks=[], ylim=(0.0, 1.75))
+        axes.set(yticks=[], ylim=(0.0, 2.6))
         axes.spines[["left", "right", "top"]].set_visible(False)
+        inset = axes.inset_axes((0.3, 0.47, 0.4, 0.3))
+        x = np.linspace(rows["x"].min(), rows["x"].max(), 201)
+        inset.axhline(0.0, color=GREY, linewidth=0.6, linestyle=":")
+        inset.plot(x, Prestress(*levels)(x), color=BLACK, linewidth=0.8)
+        inset.set(xticks=[], yticks=[0, 1], ylim=(-0.7, 1.1))
+        inset.tick_params(labelsize=7.0, length=1.5, pad=1.5)
+        inset.set_ylabel(r"$\tau$", fontsize=8.0, rotation=0, labelpad=6.0, va="center")
+        inset.spines[["right", "top", "bottom"]].set_visible(False)
     axes.set_xlabel("position $x$")

@@ -4,7 +4,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from .shared.pulses import conditions, draw_prestress, draw_pulses, handles, pulse_table
-from .style import COLUMN, new_panels
+from .style import PAGE, Look, new_panels
 
 NEEDS = {
     "data": ["steady_displacement", "steady_stress"],
@@ -22,12 +22,13 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def plot(table: pd.DataFrame) -> Figure:
     """Draw the displacement boundary on the left and the stress boundary on the right."""
-    figure, panels = new_panels(COLUMN, 3.2, 1, 2)
+    figure, panels = new_panels(PAGE, 3.3, 1, 2)
     for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):
         rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")
-        draw_prestress(axes, rows, (0.14, 0.7, 0.28, 0.2), widths)
+        draw_prestress(axes, rows, (0.08, 0.6, 0.26, 0.29), widths)
         axes.set_title(conditions(rows), loc="right")
         axes.set_ylim(-0.03, 1.06)
-        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.45, -0.2))
+        look: Look = {"ncols": 3, "columnspacing": 1.0}
+        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.5, -0.17), **look)
     return figure

@@ -27,6 +27,8 @@ from ..data.files import configuration, write_whole
 
 # Keywords of Matplotlib that say how a thing is drawn.
 Look: TypeAlias = dict[str, Any]
+# Left and lower end, width and height of an inset, as fractions of its panel.
+Box: TypeAlias = tuple[float, float, float, float]
 # Widths of one and two columns of the journal, in inches.
 COLUMN = 3.4
 PAGE = 7.05

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from ...data.points import point
 from ...measurement.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
-from ..style import BLACK, PAGE, Look, colour_scale, entry, legend_below, new_panels
+from ..style import BLACK, PAGE, Box, Look, colour_scale, entry, legend_below, new_panels
 from .selection import spread_values
 
 # Labels of the fields in the units of each boundary condition.
@@ -52,8 +52,6 @@ POINTS, DECIMALS = 300, 4
 # A simulated pulse is drawn this far ahead of its front and behind its tail, in pulse widths.
 AHEAD, BEHIND = 0.08, 0.25
 PALE: Look = {"linewidth": 2.6, "alpha": 0.3}
-# Left and lower end, width and height, as fractions of a panel.
-Box = tuple[float, float, float, float]
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
@@ -206,5 +204,8 @@ def prestress_inset(
     for run, colour in zip(runs.itertuples(), colours, strict=True):
         inset.plot(x, Prestress(run.left, run.right, run.width)(x), color=colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
-    inset.set_title(r"$\tau(x)$", fontsize=8.0, pad=2.5)
-    inset.tick_params(labelsize=7.0, length=1.5, pad=1.0)
+    # Room between the peak and the title.
+    inset.margins(y=0.12)
+    inset.set_title(r"pre-stress $\tau(x)$", fontsize=7.0, pad=2.5)
+    inset.set_xlabel("$x$", fontsize=7.0, labelpad=0.0)
+    inset.tick_params(labelsize=7.0, length=1.5, pad=1.5)

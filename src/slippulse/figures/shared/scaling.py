@@ -7,9 +7,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 
+from ...data.numerals import setting
 from .. import style
-from ..style import BLACK, GREY, PAGE, Look, entry, few_ticks
+from ..style import BLACK, GREY, PAGE, Box, Look, entry, few_ticks
 from .selection import spread_values
 
 SYMBOLS = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
@@ -28,64 +30,74 @@ LEVEL = {
     "stress": Coloured("tau_l", r"$\tau_{0,l}$"),
 }
 OTHER = {"displacement": Coloured("gamma", r"$\gamma$"), "stress": Coloured("width", r"$W$")}
-# Figures 10 and 11 draw this many levels, and values of gamma or W, each with a marker.
+# An inset draws lines of this many levels, or values of gamma or W.
 DRAWN = 3
-MARKERS = "os^Dv"
-# Ticks of a ratio that varies little, and of one that varies much.
-NEAR = np.arange(0.5, 1.5, 0.05)
-FAR = np.array([0.5, 0.7, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0])
+# Where an inset stands below the line of equality.
+BELOW: Box = (0.52, 0.12, 0.26, 0.29)
+SMALL = 7.0
+# Ticks of an axis that has less than this ratio of its ends are more than the powers of ten.
+SHORT = 40.0
 
 
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """One row a run: parameters, length and time as measured, by the paper, and exact."""
     runs = pd.concat(tables.values(), ignore_index=True)
-    kept = [
-        "boundary",
-        "left",
-        "right",
-        "width",
-        "gamma",
-        "damping_ratio",
-        "beta",
-        "dx",
-        "run_flags",
-    ]
+    kept = ["boundary", "left", "right", "width", "gamma"]
+    kept += ["damping_ratio", "beta", "dx", "run_flags"]
     for name in SYMBOLS:
         kept += [f"transition_{name}", f"paper_transition_{name}", f"exact_transition_{name}"]
     return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
 
 
 def run_colours(runs: pd.DataFrame, column: str) -> np.ndarray:
-    """The colour of each run by its level (column left), gamma or width."""
+    """The colour of each run by its level (column left), gamma, width or damping ratio."""
     quantity = LEVEL[runs["boundary"].iloc[0]].quantity if column == "left" else column
     return style.colour_scale(quantity).to_rgba(runs[column].to_numpy())
 
 
-def draw_ratio(
-    axes: Axes, runs: pd.DataFrame, quantity: str, across: str, coloured: str, marker: str
-) -> None:
-    """Draw length or time over the paper's formula: exact theory as lines, runs as markers.
-
-    ``across`` is the column of the horizontal axis, ``coloured`` that of the colours.
-    """
-    for _, group in runs.groupby(coloured):
-        group = group.sort_values(across)
-        exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
-        axes.plot(group[across], exact, color=run_colours(group, coloured)[0], linewidth=0.8)
-    ratio = runs[quantity] / runs[f"paper_{quantity}"]
-    colours = {"c": run_colours(runs, coloured)}
-    _scatter(axes, runs, runs[across], ratio, colours, marker=marker)
-
-
-def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
-    """Draw measured against predicted; the face shows the level, the rim gamma or W."""
+def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
+    """Draw measured against predicted; ``colours`` of the runs are c (face) and edgecolors."""
     x, y = runs[f"paper_{quantity}"], runs[quantity]
-    rim = OTHER[runs["boundary"].iloc[0]].quantity
-    colours = {"c": run_colours(runs, "left"), "edgecolors": run_colours(runs, rim)}
-    _scatter(axes, runs, x, y, colours, marker="o", s=15.0, linewidths=1.0)
+    width = 1.0 if len(np.unique(colours["edgecolors"], axis=0)) > 1 else 0.3
+    _scatter(axes, runs, x, y, colours, marker="o", s=15.0, linewidths=width)
     ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
+    symbol = SYMBOLS[quantity]
+    axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
+    subs = (1.0, 2.0, 5.0) if ends[1] < SHORT * ends[0] else (1.0,)
+    for axis in (axes.xaxis, axes.yaxis):
+        ticks: Look = {"major_locator": LogLocator(subs=subs), "major_formatter": "{x:g}"}
+        axis.set(minor_formatter=NullFormatter(), **ticks)
+
+
+def ratio_inset(
+    axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, across: str, line: str
+) -> Axes:
+    """Draw measured over predicted in a box: exact theory as lines, runs as markers.
+
+    ``across`` is the column of the horizontal axis, and there is a line for each value of ``line``,
+    in its colours. Where the damping ratio runs across, it gives the colours of the runs.
+    """
+    inset, boundary = axes.inset_axes(box), runs["boundary"].iloc[0]
+    inset.set_in_layout(False)
+    inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
+    for style_of_line, (value, group) in zip(("-", "--", ":"), runs.groupby(line), strict=False):
+        group = group.sort_values(across)
+        exact = group[f"exact_{quantity}"] / group[f"paper_{quantity}"]
+        look: Look = {"color": run_colours(group, line)[0]}
+        if across == "damping_ratio":
+            look = {"color": BLACK, "linestyle": style_of_line}
+        name = f"{_coloured(boundary, line).symbol} = {setting(value)}"
+        inset.plot(group[across], exact, linewidth=0.8, label=name, gid="exact", **look)
+    ratio = runs[quantity] / runs[f"paper_{quantity}"]
+    coloured = across if across == "damping_ratio" else line
+    _scatter(inset, runs, runs[across], ratio, {"c": run_colours(runs, coloured)}, marker="o")
+    look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3, "borderaxespad": 0.3}
+    inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
+    inset.tick_params(labelsize=SMALL, length=1.5, pad=1.5)
+    inset.set_title("measured / formula", fontsize=SMALL, pad=2.5)
+    return inset
 
 
 def _scatter(
@@ -101,11 +113,16 @@ def _scatter(
     axes.scatter(x[~flagged], y[~flagged], gid="runs", **look | shown)
 
 
+def _coloured(boundary: str, column: str) -> Coloured:
+    """Quantity of a column: the level (left), or else gamma or W."""
+    return LEVEL[boundary] if column == "left" else OTHER[boundary]
+
+
 def colour_bar(
     figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any
 ) -> None:
     """Add the bar of the colours of a column: the level (left), gamma or W."""
-    quantity, symbol = LEVEL[boundary] if column == "left" else OTHER[boundary]
+    quantity, symbol = _coloured(boundary, column)
     # The scale of tau_l is stretched, and ticks at equal distances would overlap.
     ticks = [-2.0, -1.0, -0.5, 0.0] if quantity == "tau_l" else None
     bar = figure.colorbar(style.colour_scale(quantity), ax=list(axes), ticks=ticks, **options)
@@ -113,38 +130,34 @@ def colour_bar(
 
 
 def damping_figure(table: pd.DataFrame) -> Figure:
-    """Draw figures 10 and 11: L_trans and T_trans over the paper's formulas against b."""
+    """Draw figures 10 and 11: the collapse in colours of b, and in insets the ratio against b."""
     boundary = table["boundary"].iloc[0]
     other, symbol = OTHER[boundary]
-    values = spread_values(table[other], DRAWN)
-    runs = table[table["left"].isin(spread_values(table["left"], DRAWN))]
+    middle = spread_values(table[other], DRAWN)[1]
+    few = table[(table[other] == middle) & table["left"].isin(spread_values(table["left"], DRAWN))]
+    runs = table.sort_values("damping_ratio")
+    colours = {"c": run_colours(runs, "damping_ratio"), "edgecolors": np.ones((len(runs), 4))}
     spacing = runs["dx"] / runs["width"]
     spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
-    figure, panels = style.new_panels(PAGE, 2.8, 1, 2)
+    figure, panels = style.new_panels(PAGE, 3.5, 1, 2)
     for axes, quantity in zip(panels, SYMBOLS, strict=True):
-        axes.axhline(1.0, color=BLACK, linewidth=0.8, zorder=0)
-        for marker, value in zip(MARKERS, values, strict=False):
-            draw_ratio(axes, runs[runs[other] == value], quantity, "damping_ratio", "left", marker)
-        _damping_axes(axes, np.sort(table["damping_ratio"].unique()))
-        axes.set(xlabel=r"damping ratio $b$", ylabel=f"${SYMBOLS[quantity]}$ / paper's formula")
+        draw_collapse(axes, runs, quantity, colours)
         axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}")
-    colour_bar(figure, panels, boundary, "left", pad=0.01, aspect=30)
-    handles = [
-        entry(f"simulation, {symbol} = {value:g}", marker=marker, color=GREY)
-        for marker, value in zip(MARKERS, values, strict=False)
-    ]
-    handles.append(entry(r"exact, $\Delta x\to0$", color=GREY, linewidth=0.8))
+        # The runs lie above equality, so that the corner below it is free.
+        inset = ratio_inset(axes, BELOW, few, quantity, "damping_ratio", "left")
+        _damping_axis(inset, np.sort(table["damping_ratio"].unique()))
+    shown = runs.drop_duplicates("damping_ratio")
+    pairs = zip(shown["damping_ratio"], run_colours(shown, "damping_ratio"), strict=True)
+    handles = [entry(f"$b = {ratio:g}$", marker="o", color=colour) for ratio, colour in pairs]
+    name = f"exact, {symbol} = {middle:g} (insets)"
+    handles.append(entry(name, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure
 
 
-def _damping_axes(axes: Axes, ratios: np.ndarray) -> None:
-    """Scale and tick the axes: damping ratios with 0 across, a ratio upwards."""
+def _damping_axis(axes: Axes, ratios: np.ndarray) -> None:
+    """Scale and tick the axis of the damping ratio, which has 0."""
     axes.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
-    few_ticks(axes.xaxis, ratios)
-    axes.set_xlim(-0.3 * ratios[1], 1.5 * ratios[-1])
-    axes.set_yscale("log")
-    low, high = axes.get_ylim()
-    ticks = NEAR if high < 1.45 * low else FAR
-    few_ticks(axes.yaxis, ticks[(low < ticks) & (ticks < high)])
-    axes.minorticks_off()
+    few_ticks(axes.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
+    axes.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
+    axes.set_xlabel("$b$", fontsize=SMALL, labelpad=0.0)
