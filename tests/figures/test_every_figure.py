@@ -119,6 +119,30 @@ def test_runs_are_filled_where_they_end_as_theory_says_and_crossed_out_where_fla
         assert (run.left, run.right, *to_rgba(colour)) in faces
 
 
+def test_equal_levels_end_alike_at_every_gamma_and_otherwise_without_leaf_springs(draw):
+    drawn = draw("fig02_phase_diagram")
+    runs = drawn.table[drawn.table["role"] == "symmetric"]
+    planes = [
+        axes
+        for axes in drawn.figure.axes
+        if any(line.get_gid() == "symmetric" for line in axes.lines)
+    ]
+    for axes, boundary in zip(planes, BOUNDARIES, strict=True):
+        rows = runs[runs["boundary"] == boundary]
+        marks = [line for line in axes.lines if line.get_gid() == "symmetric"]
+        shown = sorted(tuple(np.ravel(mark.get_xydata())) for mark in marks)
+        assert shown == sorted(rows[["left", "gamma"]].itertuples(index=False, name=None))
+        halves = {patch.get_x(): patch.get_gid() for patch in axes.patches}
+        settled = rows[(rows["left"] != 0.0) & (rows["exact_regime"] == rows["regime"])]
+        assert len(settled) >= 8
+        expected = np.where(settled["left"] < 0.0, halves[-1.0], halves[0.0])
+        assert settled["regime"].to_list() == list(expected)
+    held = runs[(runs["boundary"] == "displacement") & (runs["left"] > 0.0)]
+    assert held["gamma"].nunique() >= 4 and held["regime"].nunique() == 1
+    strips = [axes for axes in drawn.figure.axes if axes.child_axes and axes.lines]
+    assert len(strips) == len(phases.NUMBERS), "each velocity has its pre-stress"
+
+
 def test_looks_tell_all_regimes_apart():
     assert set(phases.LOOKS) == set(REGIMES)
     for looks in zip(*phases.LOOKS.values(), strict=True):

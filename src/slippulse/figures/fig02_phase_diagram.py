@@ -85,7 +85,7 @@ def plot(table: pd.DataFrame) -> Figure:
 def draw_symmetric(figure: SubFigure, table: pd.DataFrame) -> None:
     """Draw the regimes of equal levels over tau_0 and gamma, and below without leaf springs."""
     panels = figure.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
-    for axes, (boundary, symbol) in zip(panels, BOUNDARIES.items(), strict=True):
+    for axes, boundary in zip(panels, BOUNDARIES, strict=True):
         rows = table[table["boundary"] == boundary]
         for level in (-0.5, 0.5):
             # The regime of equal levels is that of the quadrant of both planes.
@@ -97,14 +97,14 @@ def draw_symmetric(figure: SubFigure, table: pd.DataFrame) -> None:
             ]
             colour, text = LOOKS[regime]
             axes.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
-            look: Look = {"ha": "center", "va": "center", "fontsize": 8.0, "zorder": 4.0}
+            look: Look = {"ha": "center", "va": "bottom", "fontsize": 8.0}
             name = text.replace("\n", " ")
-            axes.annotate(name, (level, 0.5), xycoords=("data", "axes fraction"), **look)
+            axes.annotate(name, (level, 1.02), xycoords=("data", "axes fraction"), **look)
         draw_runs(axes, rows[rows["role"] == "symmetric"], "gamma")
-        axes.set_ylabel(symbol.partition(",")[0] + "$" * (symbol.count("$") > 2))
     panels[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
-    panels[1].set(ylim=(-1.0, 1.0), yticks=[], xlim=(-1.0, 1.0), ylabel=r"$\Gamma = 0$")
-    panels[1].set_xlabel(r"pre-stress on both sides $\tau_0$")
+    panels[1].set(ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
+    ticks = (-1, -0.5, 0, 0.5, 1)
+    panels[1].set(xlim=(-1.0, 1.0), xticks=ticks, xlabel=r"pre-stress on both sides $\tau_0$")
     panel_letter(panels[0], "a")
 
 
@@ -158,6 +158,8 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
     """Draw slip velocities over position, each over its largest value, with their pre-stress."""
     strips = figure.subplots(len(profiles), 1, sharex=True)
     panel_letter(strips[0], "d")
+    end = pd.concat(profiles)["x"].abs().max()
+    x = np.linspace(-end, end, 201)
     strips[0].set_title(rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$", fontsize=9)
     for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):
         colour = LOOKS[rows["regime"].iloc[0]][0]
@@ -170,12 +172,12 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
         axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top", fontsize=8.0)
         axes.set(yticks=[], ylim=(0.0, 2.6))
         axes.spines[["left", "right", "top"]].set_visible(False)
-        inset = axes.inset_axes((0.3, 0.47, 0.4, 0.3))
-        x = np.linspace(rows["x"].min(), rows["x"].max(), 201)
+        inset = axes.inset_axes((0.0, 0.47, 1.0, 0.3), sharex=axes)
         inset.axhline(0.0, color=GREY, linewidth=0.6, linestyle=":")
         inset.plot(x, Prestress(*levels)(x), color=BLACK, linewidth=0.8)
-        inset.set(xticks=[], yticks=[0, 1], ylim=(-0.7, 1.1))
-        inset.tick_params(labelsize=7.0, length=1.5, pad=1.5)
+        inset.set(yticks=[0, 1], ylim=(-0.7, 1.1))
+        inset.tick_params("x", length=0.0, labelbottom=False)
+        inset.tick_params("y", labelsize=7.0, length=1.5, pad=1.5)
         inset.set_ylabel(r"$\tau$", fontsize=8.0, rotation=0, labelpad=6.0, va="center")
         inset.spines[["right", "top", "bottom"]].set_visible(False)
-    axes.set_xlabel("position $x$")
+    axes.set(xlabel="position $x$", xlim=(-end, end))

@@ -161,7 +161,8 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
             patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
             axes.add_patch(patch)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
-        axes.text(low - 0.2, base + 0.5 * HEIGHT, text, ha="right", va="center", fontsize=8)
+        look: Look = {"ha": "right", "va": "center", "fontsize": 8.0, "linespacing": 0.95}
+        axes.text(low - 0.2, base + 0.5 * HEIGHT, text, **look)
     top = (PLATE if leaf else HEIGHT) + 0.08
     axes.set(xlim=(low, high), ylim=(-pitch * rows["row"].max() - 0.2, top), yticks=[])
     scale = rf"{rows['scale'].iloc[0]:.2g} $\times$ slip $u$"
