@@ -158,7 +158,7 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
     """Draw slip velocities over position, each over its largest value, with their pre-stress."""
     strips = figure.subplots(len(profiles), 1, sharex=True)
     panel_letter(strips[0], "d")
-    end = pd.concat(profiles)["x"].abs().max()
+    end = 1.08 * pd.concat(profiles)["x"].abs().max()
     x = np.linspace(-end, end, 201)
     strips[0].set_title(rf"slip velocity at $t = {profiles[0]['time'].iloc[0]:g}$", fontsize=9)
     for number, axes, rows in zip(NUMBERS, strips, profiles, strict=False):

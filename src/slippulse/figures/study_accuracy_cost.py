@@ -1,12 +1,11 @@
-"""Error against work for every scheme, order, step and spacing; fronts that lock on the step."""
+"""Error against work of presets, textbook scheme and best settings; fronts locked on the step."""
 
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from .style import BLACK, BLUE, GREY, HALO, ORDER_COLOURS, PAGE, Look, entry, new_panels
+from .style import BLACK, BLUE, GREY, HALO, ORANGE, PAGE, Look, entry, new_panels
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
@@ -15,68 +14,68 @@ PANELS = {
     "peak_velocity": "peak slip velocity",
     "transition_time": r"$T_\text{trans}$",
 }
-MARKERS = dict(zip(ORDER_COLOURS, "osD^P>", strict=True))
-# Marker sizes by step, in spacings.
-SIZES = {1.0: 4.0, 0.5: 2.8, 0.25: 1.8}
+LOOKS: dict[str, Look] = {
+    "textbook": {"color": BLACK, "marker": "x", "linestyle": "-", "linewidth": 0.6},
+    "best": {"color": GREY, "linestyle": "-", "drawstyle": "steps-post"},
+    "preset": {"color": ORANGE, "marker": "o", "linestyle": "none", "markersize": 5.0},
+}
+NAMES = {
+    "textbook": "textbook scheme",
+    "best": "smallest error of any setting of the localised scheme at this work",
+    "preset": "presets",
+}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of the study without the exact solution, which does no work on a lattice."""
+    """Work and error of each quantity for each role of LOOKS, and the rows of part locking.
+
+    Role best has the localised settings of which none with less work has a smaller error.
+    """
     study = tables["accuracy_cost"]
-    return study[study["scheme"] != "continuum"]
+    trade = study[study["part"] == "trade"].sort_values("work", kind="stable")
+    localised = trade[trade["scheme"] == "localised"]
+    parts = [study[study["part"] == "locking"]]
+    for name in PANELS:
+        smallest = localised[name].cummin()
+        rows = {
+            "textbook": trade[trade["scheme"] == "fixed_step"],
+            "best": localised[localised[name] < smallest.shift(fill_value=np.inf)],
+            "preset": trade[trade["preset"].notna()],
+        }
+        for role, part in rows.items():
+            kept = part[["scheme", "order", "step", "dx", "work", "preset", "part"]]
+            parts.append(kept.assign(role=role, quantity=name, error=part[name]))
+    columns = ["part", "role", "quantity", "scheme", "order", "step", "dx", "work", "error"]
+    return pd.concat(parts, ignore_index=True)[[*columns, "preset", "front_speed", "exact"]]
 
 
 def plot(table: pd.DataFrame) -> Figure:
     """Draw three errors against the work, and the speed of the front against the step."""
     figure, axes = new_panels(PAGE, 5.0, 2, 2)
-    trade = table[table["part"] == "trade"]
     for panel, (name, title) in zip(axes, PANELS.items(), strict=False):
-        _draw_trade(panel, trade, name)
+        _draw_trade(panel, table[table["quantity"] == name])
         panel.set(ylabel=f"relative error of {title}", xlabel="stencil passes over a block")
         panel.set_title(r"$\Gamma = 1$", loc="right")
     _draw_locking(axes[3], table[table["part"] == "locking"])
-    look: Look = {"ncols": 5, "columnspacing": 1.0, "handletextpad": 0.3}
-    figure.legend(handles=_handles(trade), loc="outside upper center", **look)
+    handles = [entry(NAMES[role], **look) for role, look in LOOKS.items()]
+    figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.5)
     return figure
 
 
-def _draw_trade(axes: Axes, rows: pd.DataFrame, name: str) -> None:
-    """Draw a mark a setting; presets have a ring.
-
-    Lines join the textbook scheme over its steps, and the localised one at step 1 over spacings.
-    """
-    textbook = rows[rows["scheme"] == "fixed_step"]
-    axes.plot(textbook["work"], textbook[name], "x-", color=BLACK, linewidth=0.6)
-    for (order, step), marks in rows[rows["scheme"] == "localised"].groupby(["order", "step"]):
-        look: Look = {"linewidth": 0.6} if step == 1.0 else {"alpha": 0.35, "linestyle": "none"}
-        look |= {"color": ORDER_COLOURS[order], "marker": MARKERS[order]}
-        look["markersize"] = SIZES.get(step, 2.3)
-        marks = marks.sort_values("work")
-        axes.plot(marks["work"], marks[name], markeredgewidth=0.0, **look)
-    presets = rows[rows["preset"].notna()]
-    axes.plot(presets["work"], presets[name], "o", color=BLACK, markersize=8.0, fillstyle="none")
+def _draw_trade(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw presets with their names, the textbook scheme over its steps, and the envelope."""
+    for role, look in LOOKS.items():
+        part = rows[rows["role"] == role].sort_values("work")
+        work, error = part["work"].to_list(), part["error"].to_list()
+        if role == "best":
+            # More work need not have a larger error.
+            work, error = [*work, rows["work"].max()], [*error, error[-1]]
+        axes.plot(work, error, gid=role, **look)
     # The names of the presets stand on the side that is empty.
-    look = {"xytext": (4, 6), "textcoords": "offset points", "fontsize": 7.5, "path_effects": HALO}
-    for _, preset in presets.iterrows():
-        axes.annotate(preset["preset"], (preset["work"], preset[name]), **look)
+    name: Look = {"textcoords": "offset points", "fontsize": 8.0, "path_effects": HALO}
+    for preset in rows[rows["role"] == "preset"].itertuples():
+        axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
     axes.set(xscale="log", yscale="log")
-
-
-def _handles(rows: pd.DataFrame) -> list[Line2D]:
-    """Legend entries: colours and markers are orders, sizes are steps."""
-    textbook = rows.loc[rows["scheme"] == "fixed_step", "dx"].unique()
-    spacings = ", ".join(f"{dx:g}" for dx in textbook)
-    orders = np.sort(rows.loc[rows["scheme"] == "localised", "order"].unique())
-    line: Look = {"linewidth": 0.6, "linestyle": "-"}
-    entries = [entry(f"textbook, dx = {spacings}", color=BLACK, marker="x", **line)]
-    entries.append(entry("preset", color=BLACK, marker="o", markersize=8.0, fillstyle="none"))
-    for order in orders:
-        look = line | {"color": ORDER_COLOURS[order], "marker": MARKERS[order], "markersize": 4.0}
-        entries.append(entry(f"order {order:g}", **look))
-    for step, size in SIZES.items():
-        look = {"alpha": 1.0 if step == 1.0 else 0.5, "marker": "o", "color": GREY}
-        entries.append(entry(f"step {step:g} dx", markersize=size, **look))
-    return entries
 
 
 def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:

@@ -19,11 +19,8 @@ NEEDS = {
     "studies": ["gaussian_transition"],
 }
 
-KINDS = {"displacement": ("o", BLUE, r"$\Gamma = 1$"), "stress": ("s", ORANGE, r"$\Gamma = 0$")}
-REFERENCES: dict[str, tuple[str, Look]] = {
-    "paper": ("paper's value", {"markersize": 2.5, "markerfacecolor": "white"}),
-    "exact": ("exact one", {"markersize": 1.7, "zorder": 3.0}),
-}
+KINDS = {"displacement": (BLUE, r"$\Gamma = 1$"), "stress": (ORANGE, r"$\Gamma = 0$")}
+REFERENCES = {"exact": ("from exact theory", "-"), "paper": ("from the paper's formula", "--")}
 QUANTITIES = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
@@ -42,12 +39,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def plot(table: pd.DataFrame) -> Figure:
-    """Draw (a, b) measured over predicted values, (c) refined lattices, (d) exact T_trans alone."""
-    figure, (*scatter, refined_axes, last) = style.new_panels(PAGE, 5.0, 2, 2)
-    for axes, quantity in zip(scatter, QUANTITIES, strict=True):
-        _draw_ratios(axes, table[table["role"] == "sweep"], quantity)
+    """Draw (a, b) distributions of errors, (c) refined lattices, (d) exact T_trans alone."""
+    figure, (*distributions, refined_axes, last) = style.new_panels(PAGE, 5.0, 2, 2)
+    for axes, quantity in zip(distributions, QUANTITIES, strict=True):
+        _draw_distributions(axes, table[table["role"] == "sweep"], quantity)
     _draw_refinement(refined_axes, table[table["role"] == "refinement"])
-    style.legend_above(figure, scatter[0])
+    style.legend_above(figure, distributions[0])
     _draw_uniform(last, table[table["role"] == "gaussian"])
     return figure
 
@@ -66,18 +63,18 @@ def _draw_uniform(axes: Axes, rows: pd.DataFrame) -> None:
     axes.legend(loc="upper right", ncols=2)
 
 
-def _draw_ratios(axes: Axes, sweep: pd.DataFrame, quantity: str) -> None:
-    """Draw measured over exact values filled, over the paper's open, against the exact ones."""
-    axes.axhline(1.0, color=BLACK, linewidth=0.6)
-    for reference, (name, reference_look) in REFERENCES.items():
-        for boundary, (marker, colour, label) in KINDS.items():
-            runs = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
-            exact, measured = runs[f"exact_transition_{quantity}"], runs[f"transition_{quantity}"]
-            ratio = measured / runs[f"{reference}_transition_{quantity}"]
-            look: Look = {"color": colour, "label": f"{label}, over the {name}"}
-            axes.plot(exact, ratio, marker, markeredgewidth=0.5, **look | reference_look)
+def _draw_distributions(axes: Axes, sweep: pd.DataFrame, quantity: str) -> None:
+    """Draw the fraction of the runs that are nearer to each prediction than a distance."""
+    for boundary, (colour, boundary_name) in KINDS.items():
+        runs = sweep[(sweep["boundary"] == boundary) & sweep["run_flags"].isna()]
+        for reference, (name, line) in REFERENCES.items():
+            predicted = runs[f"{reference}_transition_{quantity}"]
+            ratio = (runs[f"transition_{quantity}"] / predicted).dropna()
+            look: Look = {"color": colour, "linestyle": line, "gid": f"{boundary} {reference}"}
+            axes.ecdf(np.abs(ratio - 1.0), label=f"{boundary_name}, {name}", **look)
     symbol = SYMBOLS[quantity]
-    axes.set(xscale="log", xlabel=f"exact ${symbol}$", ylabel=f"measured / predicted ${symbol}$")
+    axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|", ylim=(0.0, 1.0))
+    axes.set_ylabel("fraction of runs that are nearer")
 
 
 def _draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:

@@ -1,15 +1,26 @@
 """A specification curve: claims judged by numbers, at each choice that the paper leaves open."""
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .style import BLACK, BLUE, COLUMN, GREEN, GREY, ORANGE, Look, entry, legend_below, new_figure
+from .style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    GREEN,
+    GREY,
+    HALO,
+    ORANGE,
+    Look,
+    entry,
+    legend_below,
+    new_figure,
+)
 
 NEEDS = {"lists": ["results/claims.json"]}
 
 NUMERIC = ("exact", "approximate")
-# A deviation below this fraction of the tolerance is drawn at it.
+# A deviation below this fraction of the tolerance is given as a bound.
 LEAST = 1e-2
 # A verdict in this band changes if the tolerance is larger or smaller by this factor.
 BAND = 1.5
@@ -55,9 +66,11 @@ def plot(table: pd.DataFrame) -> Figure:
     for position, (id, _) in enumerate(farthest.index):
         for (choice, solution), rows in table[table["id"] == id].groupby(["choice", "solution"]):
             look = {"color": LOOKS.get(str(choice), LOOKS[""])["color"]} | MARKERS[str(solution)]
-            over = np.maximum(rows["over"], LEAST)
             height = position + rows["release"].map(APART).fillna(0.0)
-            axes.plot(over, height, linestyle="none", **look)
+            axes.plot(rows["over"].mask(rows["over"] < LEAST), height, linestyle="none", **look)
+        if table.loc[table["id"] == id, "over"].min() < LEAST:
+            bound: Look = {"va": "center", "fontsize": 8.0, "gid": "bound", "path_effects": HALO}
+            axes.text(LEAST, position, rf"$\leq$ {LEAST:g}", **bound)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
     axes.set_ylim(-0.7, len(farthest) - 0.3)

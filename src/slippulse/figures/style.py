@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import ListedColormap, LogNorm, Normalize, PowerNorm, to_hex
+from matplotlib.colors import ListedColormap, LogNorm, Normalize, PowerNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
@@ -39,9 +39,6 @@ GREEN, PURPLE = "#009E73", "#CC79A7"
 SKY, YELLOW = "#56B4E9", "#E69F00"
 BLACK, GREY = "#000000", "#7f7f7f"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
-# Each order of the localised scheme has a colour; the textbook scheme is black.
-_orders = {order: matplotlib.colormaps["plasma"](0.14 * (order - 3)) for order in range(3, 9)}
-ORDER_COLOURS = {order: to_hex(colour) for order, colour in _orders.items()}
 VELOCITY_MAP = "viridis"
 # The outline of letters that stand on a drawing.
 HALO = [withStroke(linewidth=2.2, foreground="white")]
