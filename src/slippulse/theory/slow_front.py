@@ -25,10 +25,13 @@ from .riemann import decay, kernel_of, partial_weights
 RESOLVED = 1e-11
 # The shortest fraction of a panel of entries.
 SHORTEST = 1e-11
-# Distance from a mark from which a front that speeds up to the waves is continued at their speed.
-NEAR_MARK = 1e-4
+# Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
+# continued at their speed.
+NEAR_MARK = 1e-5
 # Relative distance of a look beyond the end of a panel of entries for the next one.
 LOOK = 1e-11
+# An event this close to the first entry of a chunk, in its parameter, has ended the last chunk.
+AT_START = 1e-6
 MOST_CHUNKS = 60
 MOST_NEWTON_STEPS = 60
 
@@ -61,12 +64,17 @@ class Solution(NamedTuple):
     x: np.ndarray
     slope: np.ndarray
 
-    def first_event(self, mark: float, limit: float) -> tuple[float, str] | None:
-        """The first parameter, up to a limit, where the front stops or meets the mark."""
-        events = [(s, "dead") for s in _roots_on(self.slope, limit)]
+    def first_event(self, mark: float, limit: float) -> tuple[float, str | None] | None:
+        """The first parameter, up to a limit, where the front rests or meets the mark."""
+        events: list[tuple[float, str | None]] = [(s, None) for s in _roots_on(self.slope, limit)]
         if np.isfinite(mark):
             events += [(s, "mark") for s in _roots_on(self.x - mark, limit)]
-        return min(events, default=None)
+        return min(events, key=lambda event: event[0], default=None)
+
+    def goes_back(self) -> bool:
+        """Tell whether the front would go back from the start of the chunk on."""
+        first = min(_roots_on(self.slope, 1.0), default=1.0)
+        return bool(legendre.legval(0.5 * (first - 1.0), TO_SERIES @ self.slope) < 0.0)
 
 
 def advance(
@@ -75,9 +83,9 @@ def advance(
     """Continue the right end of a curve into negative pre-stress by one panel of entries at most.
 
     level is the side level at the front, mark the end of the negative piece (may be infinite). The
-    stop is "mark" where the new panel ends there, "dead" where the front stops for good, "unknown"
-    where its characteristic comes from beyond the left end of the curve, and "unresolved" where no
-    panel is short enough.
+    stop is "mark" where the new panel ends there, "dead" where the front could only go back, as
+    the solution beyond shows, "unknown" where its characteristic comes from beyond the left end of
+    the curve, and "unresolved" where no panel is short enough. A panel ends where the front rests.
     """
     front = SlowFront(curve, prestress, level, gamma - 0.25 * alpha**2, alpha)
     entry = front.entry()
@@ -86,11 +94,13 @@ def advance(
     chunk, corrections = Chunk(*entry, -1.0), 0
     for _ in range(MOST_CHUNKS):
         if chunk.start - chunk.stop < SHORTEST:
-            return Advance(None, "dead") if front.stalled() else front.straight(mark)
+            return front.straight(mark)
         solution = front.solve(chunk)
         if solution is None:
             chunk, corrections = chunk._replace(stop=0.5 * (chunk.start + chunk.stop)), 0
             continue
+        if solution.goes_back():
+            return Advance(None, "dead")
         # A chunk that was shortened to end at an event is searched a little beyond its end.
         event = solution.first_event(mark, 1.2 if corrections else 1.0)
         if event is None:
@@ -121,7 +131,7 @@ def _roots_on(values: np.ndarray, limit: float) -> list[float]:
         return []
     roots = legendre.legroots(legendre.legtrim(series, 1e-13 * scale))
     real = roots.real[np.abs(roots.imag) < 1e-9 * (1.0 + np.abs(roots.real))]
-    return real[(real > -1.0 + 1e-12) & (real <= limit)].tolist()
+    return real[(real > -1.0 + AT_START) & (real <= limit)].tolist()
 
 
 @dataclass
@@ -184,6 +194,8 @@ class SlowFront:
 
     def __post_init__(self) -> None:
         self.x0, self.t0 = self.curve.right_end
+        edges = self.curve.edges
+        self.size = max(float(edges[-1] - edges[0]), abs(self.x0))
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress ahead of the front."""
@@ -192,7 +204,7 @@ class SlowFront:
     def entry(self) -> tuple[int, float] | None:
         """Panel and parameter where the characteristic of the front entered the curve, or None."""
         xi = self.t0 - self.x0
-        look = LOOK * max(1.0, abs(xi))
+        look = LOOK * max(self.size, abs(xi))
         # A little later the next panel goes on, or another part of the rupture.
         later = np.array([xi, xi + look])
         entries, _ = self.curve.crossings(np.full(2, self.x0), later, later + 2.0 * self.x0)
@@ -219,22 +231,19 @@ class SlowFront:
     def solve(self, chunk: Chunk) -> Solution | None:
         """Positions of the front by Newton's method; None where the chunk is too long."""
         equation = self.equation(chunk)
-        scale = max(1.0, abs(self.x0))
         x, change = self.guess(chunk), np.inf
         for _ in range(MOST_NEWTON_STEPS):
             step = equation.newton_step(x, self.x0, self.tau)
             if step is None:
                 return None
-            # The front never goes back.
-            new = np.maximum(x - step, self.x0 + 0.1 * (x - self.x0))
-            previous, change = change, float(np.max(np.abs(new - x)))
-            x = new
-            tail = np.max(np.abs(TO_SERIES[-2:] @ x))
+            x = x - step
+            previous, change = change, float(np.max(np.abs(step))) / self.size
+            tail = np.max(np.abs(TO_SERIES[-2:] @ x)) / self.size
             # Further steps, which are smaller, do not resolve it either.
-            if not change <= 1e3 or (tail > 2.0 * RESOLVED * scale and change < 0.1 * tail):
+            if not change <= 1e3 or (tail > 2.0 * RESOLVED and change < 0.1 * tail):
                 return None
-            if change < 1e-13 * scale or (change < 1e-11 and change >= 0.5 * previous):
-                return Solution(x, SLOPE @ x) if tail <= RESOLVED * scale else None
+            if change < 1e-13 or (change < 1e-11 and change >= 0.5 * previous):
+                return Solution(x, SLOPE @ x) if tail <= RESOLVED else None
         return None
 
     def guess(self, chunk: Chunk) -> np.ndarray:
@@ -247,12 +256,6 @@ class SlowFront:
         pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
         return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
 
-    def stalled(self) -> bool:
-        """Tell whether the front has just come to rest, at the end of the last panel of entries."""
-        last = np.array([len(self.curve.panels) - 1])
-        slope = self.curve.evaluate("x", last, np.array([1.0]), order=1)[0]
-        return bool(slope < 1e-3 * (self.curve.edges[-1] - self.curve.edges[-2]))
-
     def panel(self, chunk: Chunk, solution: Solution, end: float | None = None) -> Panel:
         """The new panel of the curve; its end may be known to be a mark."""
         s = np.append(chunk.parameters(), chunk.stop)
@@ -264,7 +267,7 @@ class SlowFront:
 
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0, too short to be resolved, at wave speed."""
-        if not np.isfinite(mark) or mark - self.x0 > NEAR_MARK:
+        if not np.isfinite(mark) or mark - self.x0 > NEAR_MARK * self.size:
             return Advance(None, "unresolved")
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
