@@ -26,6 +26,8 @@ MOST_PANELS = 20_000
 LOWEST = -1e20
 # The largest factor for the numbers of panels, positions and times.
 FINEST = 10
+# Gaussians are narrow below this width, in units of 1/sqrt(gamma).
+NARROW = 0.1
 # Edges of panels stand at these multiples of the width of a Gaussian.
 FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
 
@@ -67,6 +69,10 @@ class FastFront:
         # An edge of a panel stands at each feature, so that none falls between two nodes.
         centres = [centre + width * FEATURES for centre, width in gaussians(prestress)]
         self.features = np.unique(np.concatenate(centres))
+        # Features of the Gaussians that a front crosses within a fraction of a period of the waves.
+        shapes = gaussians(prestress)
+        narrow = [c + w * FEATURES for c, w in shapes if w * self.rate < NARROW or not self.rate]
+        self.narrow = np.concatenate([*narrow, []])
         levels = (prestress.left, prestress.right, *(level for _, level in prestress.steps))
         lowest = float(np.min(prestress(self.features), initial=min(levels)))
         check_number("lowest prestress", lowest, at_least=LOWEST)

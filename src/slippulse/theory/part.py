@@ -12,9 +12,14 @@ from .riemann import Past, Rest
 from .stick_search import StickSearch
 from .trailing_edge import FirstStick, TrailingEdge
 
-# Steps of a search in time: a fraction of 1/sqrt(gamma), or of the duration without leaf springs.
+# Steps of a search in time, in units of `Part.scale`.
 SEARCH = 0.2
-SEARCH_WITHOUT_SPRINGS = 1.0 / 64.0
+SCALE_WITHOUT_SPRINGS = 5.0 / 64.0
+
+
+# The grid for the largest velocity has so many positions a knot, where these are farther apart than
+# a fraction of `Part.scale`.
+DENSER, SAME_GRID = 3, 0.01
 
 
 class Points(NamedTuple):
@@ -32,8 +37,8 @@ class Part:
     curve: Curve
     gamma: float
     until: float
-    # Kinks of the pre-stress, and points where fronts met.
-    marks: Sequence[float] = ()
+    # Positions from which waves come that change du/dt at once, or faster than a search steps.
+    marks: Sequence[float] | np.ndarray = ()
     refinement: int = 1
     # The part is symmetric: x >= 0 tells everything.
     one_side: bool = False
@@ -43,6 +48,11 @@ class Part:
     def rate(self) -> float:
         """The fastest rate at which the kernel changes."""
         return max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
+
+    @property
+    def scale(self) -> float:
+        """Time over which du/dt changes, for want of leaf springs a fraction of the duration."""
+        return 1.0 / self.rate if self.rate > 0.0 else SCALE_WITHOUT_SPRINGS * self.until
 
     @cached_property
     def rest(self) -> Rest:
@@ -84,9 +94,10 @@ class Part:
 
     def search(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions, from release on, without help from other positions."""
-        step = SEARCH / self.rate if self.rate > 0.0 else SEARCH_WITHOUT_SPRINGS * self.until
-        search = StickSearch(self.velocity, step / self.refinement, self.until)
-        return search.stick_time(x, self.curve.arrival(x))
+        marks = np.array(self.marks)
+        arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
+        search = StickSearch(self.velocity, SEARCH * self.scale / self.refinement, self.until)
+        return search.stick_time(x, self.curve.arrival(x), arrivals)
 
     @cached_property
     def edge(self) -> TrailingEdge:
@@ -107,25 +118,35 @@ class Part:
         The grid is one of positions and fractions of the time from release on.
         """
         knots = self.edge.knots
-        last = np.fmin(knots.stick, np.minimum(horizon(knots.x), end))
-        x, fraction = knots.x, np.linspace(0.0, 1.0, 17)
-        reach_x, reach_fraction = np.max(np.diff(x), initial=1e-3), fraction[1]
+        apart = knots.x[np.diff(knots.x, prepend=-np.inf) > SAME_GRID * self.scale]
+        number = np.arange(apart.size)
+        x = np.interp(np.linspace(0.0, number[-1], DENSER * number[-1] + 1), number, apart)
+        fraction = np.tile(np.linspace(0.0, 1.0, 17), (x.size, 1))
+        steps = np.diff(x, prepend=x[:1], append=x[-1:])
+        spacing = np.maximum(np.maximum(steps[1:], steps[:-1]), SAME_GRID * self.scale)
+        reach_fraction = fraction[0, 1]
         window = np.linspace(-1.0, 1.0, 7)
-        largest = 0.0
+        largest, reach_x, centre_x, centre_fraction, slope = 0.0, 0.0, 0.0, 0.0, 0.0
         # Beyond this fraction the largest value changes by rounding only.
         while reach_fraction > 1e-8:
             release = self.curve.arrival(x)[:, None]
-            time = release + (np.interp(x, knots.x, last)[:, None] - release) * fraction
-            row, column = np.nonzero(time > release)
-            values = self.velocity(x[row], time[row, column])
-            n = int(np.argmax(values))
-            # The largest value may lie on a ridge across the grid: the search narrows where it no
-            # longer rises.
-            narrower = 1.0 if values[n] > largest * (1.0 + 1e-10) else 0.4
-            if values[n] > largest:
-                largest = float(values[n])
-                centre_x, centre_fraction = x[row[n]], fraction[column[n]]
+            last = np.minimum(self.edge.about(x), np.minimum(horizon(x), end))
+            time = release + (last[:, None] - release) * fraction
+            after, values = np.nonzero(time > release), np.zeros(time.shape)
+            values[after] = self.velocity(x[after[0]], time[after])
+            row, column = np.unravel_index(np.argmax(values), values.shape)
+            value = float(values[row, column])
+            narrower = 1.2 if value > largest * (1.0 + 1e-10) else 0.4
+            reach_x = reach_x or float(spacing[row])
+            # The largest value may lie on a ridge across the grid: later grids are turned along it.
+            if x.size == window.size:
+                ridge = fraction[np.arange(x.size), np.argmax(values, axis=1)]
+                ways = x - np.mean(x)
+                slope = float(ways @ ridge / max(ways @ ways, 1e-300))
+            if value > largest:
+                largest, centre_x, centre_fraction = value, x[row], fraction[row, column]
             x = (centre_x + reach_x * window).clip(knots.x[0], knots.x[-1])
-            fraction = (centre_fraction + reach_fraction * window).clip(0.0, 1.0)
+            fraction = centre_fraction + reach_fraction * window + slope * (x - centre_x)[:, None]
+            fraction = fraction.clip(0.0, 1.0)
             reach_x, reach_fraction = narrower * reach_x, narrower * reach_fraction
         return largest

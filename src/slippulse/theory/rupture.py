@@ -96,11 +96,15 @@ class Rupture:
 
     def _part(self, stretch: Stretch, until: float) -> Part:
         kinks = [piece.right for piece in self.law.pieces if np.isfinite(piece.right)]
+        restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
+        ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
+        curve = stretch.curve()
+        marks = np.array([0.0, *kinks, *restarts, *stretch.joins, *ends, *self.law.narrow])
         return Part(
-            stretch.curve(),
+            curve,
             self.gamma,
             until,
-            marks=[0.0, *kinks, *stretch.joins],
+            marks=np.unique(marks[curve.covers(marks)]),
             refinement=self.law.refinement,
             one_side=self.prestress.symmetric,
             alpha=self.law.alpha,
@@ -203,13 +207,13 @@ class Rupture:
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None for none until ``duration``."""
-        known = []
-        for part in self._parts:
-            if first := part.first_stick():
-                time = float(self._until_end(np.array(first.x), np.array(first.time)))
-                if np.isfinite(time):
-                    known.append(FirstStick(time, first.x))
-        return min(known, default=None)
+        known = [first for part in self._parts if (first := part.first_stick())]
+        first = min(known, default=None)
+        # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
+        last = min(self.duration, self.limit.time if self.limit else np.inf)
+        if not first or first.time > last * (1.0 + SAME):
+            return None
+        return FirstStick(min(first.time, self.duration), first.x)
 
     @cached_property
     def transition(self) -> ExactTransition:

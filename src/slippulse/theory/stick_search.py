@@ -8,6 +8,8 @@ import numpy as np
 
 from ..model.roots import roots_between
 
+# The first sample comes this fraction of a step after the release.
+LEAST = 0.01
 # Number of times that are computed together.
 BATCH = 8
 # Two steps in time next to a minimum of du/dt are cut into this number of parts, twice.
@@ -62,8 +64,12 @@ class StickSearch:
     step: float
     until: float
 
-    def stick_time(self, x: np.ndarray, release: np.ndarray) -> np.ndarray:
-        """Stick times at positions; NaN where there is none before the end."""
+    def stick_time(self, x: np.ndarray, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
+        """Stick times at positions, released at these times, at which waves [position, wave] come.
+
+        NaN where there is none before the end.
+        """
+        times = self._times(release, waves)
         out = np.full(x.shape, np.nan)
         # The last two samples are kept, since a minimum next to them may lie below 0. The first
         # sample, a velocity of -1, is made up.
@@ -71,7 +77,8 @@ class StickSearch:
         last = VelocitySamples(x, np.stack([release, release], axis=1), velocity)
         sliding = np.flatnonzero(release < self.until)
         while sliding.size:
-            samples = self._continued(last.at_rows(sliding))
+            samples = self._continued(last.at_rows(sliding), times[sliding, :BATCH])
+            times = times[:, BATCH:]
             below = samples.velocity[:, 2:] <= 0.0
             stuck = below.any(axis=1)
             first = np.where(stuck, 2 + np.argmax(below, axis=1), samples.time.shape[1])
@@ -84,11 +91,20 @@ class StickSearch:
             sliding = sliding[~np.isfinite(stick) & (samples.time[:, -1] < self.until)]
         return out
 
-    def _continued(self, last: VelocitySamples) -> VelocitySamples:
+    def _times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
+        """Times of the samples of each position: equal steps, and where waves come."""
+        longest = self.until - np.min(release, initial=self.until)
+        steps = self.step * np.arange(1, BATCH * (longest // (BATCH * self.step) + 1) + 1)
+        times = np.concatenate([release[:, None] + steps, waves], axis=1)
+        # Right after the release du/dt is 0 to rounding.
+        times[~(times > release[:, None] + LEAST * self.step)] = self.until
+        times = np.sort(np.minimum(times, self.until), axis=1)
+        return np.pad(times, ((0, 0), (0, BATCH)), constant_values=self.until)
+
+    def _continued(self, last: VelocitySamples, times: np.ndarray) -> VelocitySamples:
         """The samples and the next batch."""
-        steps = self.step * np.arange(1, BATCH + 1)
-        batch = self._sampled(last.x, np.minimum(last.time[:, 1:] + steps, self.until))
-        time = np.concatenate([last.time, batch.time], axis=1)
+        batch = self._sampled(last.x, times)
+        time = np.concatenate([last.time, times], axis=1)
         return VelocitySamples(
             last.x, time, np.concatenate([last.velocity, batch.velocity], axis=1)
         )

@@ -5,6 +5,9 @@ where du/dt falls along both characteristics, by xi = t - y and by eta = t + y. 
 lies in the past of a sliding one, and Riemann's formula holds up to sticking. The stress of a block
 that has stuck is then d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just before, so that no
 block is ever released again.
+
+The edge is known at knots: at the panels of the curve and where waves from its marks meet the edge,
+then halfway between knots as long as these do not predict what is found there.
 """
 
 from dataclasses import dataclass
@@ -19,12 +22,24 @@ from .curve import SAME, Point
 if TYPE_CHECKING:
     from .part import Part
 
-# Number of positions at which stick times are searched without help from others.
-GRID = 192
+# Stick times halfway between knots are predicted to this fraction of the interval, and their slopes
+# to this.
+PREDICTED, PREDICTED_SLOPE = 1e-3, 0.05
+# The shortest interval that is halved, and that in which the edge reaches the end, or a front that
+# has stopped, in units of `Part.scale`.
+SHORTEST, AT_END = 1e-3, 0.1
+# Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
+# that are cut into so many.
+LOCATED, CUTS = 1e-10, 8
 # Error of Newton's last step to a stick time.
 STEP = 1e-11
-# Stick times that differ by less are equal.
+# Stick times that differ by less are equal, and slip velocities below this are 0.
 ROUNDING = 1e-12
+# Kinds of a knot: it slides at the end; it has stuck, where the edge outruns the waves or not; or
+# it slid too briefly to tell, next to the point where a slow front has stopped.
+SLIDES, FAST, SLOW, BRIEF = range(4)
+# Sliding is brief below this time, in units of `Part.scale`.
+SHORT = 1e-3
 
 
 class FirstStick(NamedTuple):
@@ -35,22 +50,70 @@ class FirstStick(NamedTuple):
 
 
 class Knots(NamedTuple):
-    """Positions, stick times (NaN for none), and the derivatives of du/dt by xi and eta then."""
+    """Positions, stick times (the end for none), kinds, and du/dt and its slopes by xi and eta."""
 
     x: np.ndarray
     stick: np.ndarray
+    kind: np.ndarray
+    velocity: np.ndarray
     by_xi: np.ndarray
     by_eta: np.ndarray
 
     @property
-    def stuck(self) -> np.ndarray:
-        """Mask of the positions that have stuck."""
-        return np.isfinite(self.stick)
-
-    @property
     def pace(self) -> np.ndarray:
         """Derivative of the stick time by position."""
-        return (self.by_xi - self.by_eta) / (self.by_xi + self.by_eta)
+        fall = self.by_xi + self.by_eta
+        return (self.by_xi - self.by_eta) / np.where(fall == 0.0, np.nan, fall)
+
+    def joined(self, other: "Knots") -> "Knots":
+        """These knots and others, in order."""
+        _, first = np.unique(np.append(self.x, other.x), return_index=True)
+        return Knots._make(np.append(a, b)[first] for a, b in zip(self, other, strict=True))
+
+    def of_kinds(self, k: np.ndarray, *kinds: int) -> np.ndarray:
+        """Mask of the intervals right of knots k whose two ends have these kinds in any order."""
+        first, second = self.kind[k], self.kind[k + 1]
+        one, other = kinds
+        return ((first == one) & (second == other)) | ((first == other) & (second == one))
+
+    def jumps(self, k: np.ndarray) -> np.ndarray:
+        """Mask of the intervals right of knots k over which the edge does not outrun the waves."""
+        change = np.abs(self.stick[k + 1] - self.stick[k])
+        slow = change >= (self.x[k + 1] - self.x[k]) * (1.0 + SAME)
+        known = (self.kind[k] != BRIEF) & (self.kind[k + 1] != BRIEF)
+        return slow & known & ~self.of_kinds(k, SLOW, SLOW) | self.of_kinds(k, FAST, SLOW)
+
+    def fast_ends(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Knots at which the edge last outruns the waves before it jumps, and the intervals there.
+
+        Only intervals right of knots k are looked at.
+        """
+        jumps = k[self.jumps(k)]
+        # The edge ends at the earlier of two knots, unless only the other one outruns the waves.
+        later = self.stick[jumps] >= self.stick[jumps + 1]
+        kind = self.kind[[jumps, jumps + 1]]
+        ends = jumps + np.where(kind[0] == kind[1], later, kind[1] == FAST)
+        return ends, self.x[jumps + 1] - self.x[jumps]
+
+    def stick_between(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """Stick times by cubics between knots k and k + 1."""
+        stick, pace, span = self.stick, self.pace, self.x[k + 1] - self.x[k]
+        s = (x - self.x[k]) / span
+        bow = span * ((1.0 - s) * pace[k] - s * pace[k + 1])
+        rise = stick[k + 1] - stick[k]
+        return stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
+
+    def at(self, k: np.ndarray | slice) -> "Knots":
+        """Some knots."""
+        return Knots._make(values[k] for values in self)
+
+    def may_stick(self, other: "Knots") -> np.ndarray:
+        """Mask of knots that slide whose tangents to du/dt meet below 0 before other knots."""
+        span = other.x - self.x
+        fall, rise = (knots.by_eta - knots.by_xi for knots in (self, other))
+        valley = (fall * span < 0.0) & (rise * span > 0.0)
+        at = (other.velocity - self.velocity - rise * span) / np.where(valley, fall - rise, 1.0)
+        return valley & (self.velocity + fall * at <= 0.0) & (self.velocity > ROUNDING)
 
 
 @dataclass
@@ -61,25 +124,101 @@ class TrailingEdge:
 
     @cached_property
     def knots(self) -> Knots:
-        """The trailing edge on a grid that holds the marks of the part."""
-        curve, count = self.part.curve, GRID * self.part.refinement
+        """The trailing edge at knots that predict it in between."""
+        curve = self.part.curve
         left, right = curve.edges[[0, -1]]
         if self.part.one_side:
-            left, count = max(left, 0.0), count // 2
-        grid = np.linspace(left, right, count + 1)
-        marks = np.array(self.part.marks)
-        marks = marks[(marks >= left) & (marks <= right)]
-        distance = np.abs(grid[:, None] - marks).min(axis=1, initial=np.inf)
-        x = np.union1d(grid[distance > SAME * (right - left)], marks)
-        x = x[curve.arrival(x) < self.part.until]
-        return self._knots_at(x, self.part.search(x))
+            left = max(left, 0.0)
+        last = self.part.until * (1.0 - SAME)
+        start = curve.edges[np.argmin(curve.edge_times)]
+        fronts = [curve.front_at(last, start, side) for side in (-1.0, 1.0)]
+        x = np.unique([left, *curve.edges, *self.part.marks, *fronts])
+        x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.part.until)]
+        x = x[np.diff(x, append=np.inf) > SAME * (right - left)]
+        knots = self._knots_at(x)
+        if x.size < 2:
+            return knots
+        knots = knots.joined(self._knots_at(self._landings(knots)))
+        todo = knots.x[:-1]
+        while todo.size:
+            knots, todo = self._refined(knots, todo)
+        return knots
 
-    def _knots_at(self, x: np.ndarray, stick: np.ndarray) -> Knots:
-        slopes = np.full((2, x.size), np.nan)
-        stuck = np.isfinite(stick)
-        if stuck.any():
-            slopes[:, stuck] = self.part.past(x[stuck], stick[stuck]).velocity_slopes()
-        return Knots(x, stick, *slopes)
+    def _knots_at(self, x: np.ndarray) -> Knots:
+        return self._knots_of(x, self.part.search(x))
+
+    def _knots_of(self, x: np.ndarray, stick: np.ndarray) -> Knots:
+        part, sticks = self.part, np.isfinite(stick)
+        time = np.where(sticks, stick, part.until)
+        past = part.past(x, time)
+        velocity = np.where(sticks, 0.0, past.slip_velocity())
+        by_xi, by_eta = past.velocity_slopes()
+        slow = (by_xi >= 0.0) | (by_eta >= 0.0)
+        kind = np.where(sticks, np.where(slow, SLOW, FAST), SLIDES)
+        kind[sticks & (time - part.curve.arrival(x) <= SHORT * part.scale)] = BRIEF
+        return Knots(x, time, kind, velocity, by_xi, by_eta)
+
+    def _landings(self, knots: Knots) -> np.ndarray:
+        """Positions where waves from the marks meet the trailing edge."""
+        marks = np.array(self.part.marks)
+        arrival = self.part.curve.arrival(marks)
+        out = []
+        for side in (-1.0, 1.0):
+            phase = (knots.stick - side * knots.x)[:, None] - (arrival - side * marks)
+            fast = knots.of_kinds(np.arange(knots.x.size - 1), FAST, FAST)[:, None]
+            k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
+            before, after = phase[k, mark], phase[k + 1, mark]
+            x = knots.x[k] + (knots.x[k + 1] - knots.x[k]) * before / (before - after)
+            for _ in range(4 if x.size else 0):
+                time = arrival[mark] + side * (x - marks[mark])
+                past = self.part.past(x, time)
+                x = x - 0.5 * side * past.slip_velocity() / past.velocity_slopes()[side > 0.0]
+                x = x.clip(knots.x[k], knots.x[k + 1])
+            out.append(x)
+        return np.unique(np.concatenate(out))
+
+    def _refined(self, knots: Knots, todo: np.ndarray) -> tuple[Knots, np.ndarray]:
+        """More knots in the intervals right of some, and the intervals that need still more."""
+        k = np.searchsorted(knots.x, todo)
+        # What lies in the future of a jump, wherever it is in its interval, needs no knots.
+        ends, spans = knots.fast_ends(k)
+        lag = knots.stick[k, None] - np.abs(knots.x[k, None] - knots.x[ends])
+        lag = np.minimum(lag, knots.stick[k + 1, None] - np.abs(knots.x[k + 1, None] - knots.x[ends]))
+        k = k[(lag < knots.stick[ends] + 2.0 * spans).all(axis=1)]
+        rough, least = knots.jumps(k), np.full(k.size, SHORTEST * self.part.scale)
+        least[rough] = LOCATED * (self.part.curve.edges[-1] - self.part.curve.edges[0])
+        ends = ~rough & knots.of_kinds(k, FAST, SLIDES)
+        brief = (knots.kind[k] == BRIEF) | (knots.kind[k + 1] == BRIEF)
+        least[ends | brief] = AT_END * self.part.scale
+        long = knots.x[k + 1] - knots.x[k] > least
+        smooth, rough = k[long & ~rough & ~ends], k[long & (rough | ends)]
+        cuts = np.linspace(knots.x[rough], knots.x[rough + 1], CUTS + 1)[:-1]
+        middle = 0.5 * (knots.x[smooth] + knots.x[smooth + 1])
+        found = self._knots_at(np.append(cuts[1:].ravel(), middle))
+        surprise = ~self._predicted(knots, smooth, found.at(slice(cuts[1:].size, None)))
+        new = knots.joined(found)
+        halves = np.append(knots.x[smooth[surprise]], middle[surprise])
+        pieces = cuts.ravel()
+        k = np.searchsorted(new.x, pieces)
+        return new, np.append(halves, pieces[new.jumps(k) | new.of_kinds(k, FAST, SLIDES)])
+
+    def _predicted(self, knots: Knots, k: np.ndarray, middle: Knots) -> np.ndarray:
+        """Mask of the intervals whose ends predict the knot in the middle."""
+        same = (knots.kind[k] == middle.kind) & (knots.kind[k + 1] == middle.kind)
+        half = middle.x - knots.x[k]
+        slope = 0.75 * (knots.stick[k + 1] - knots.stick[k]) / half
+        slope -= 0.25 * (knots.pace[k] + knots.pace[k + 1])
+        near = np.abs(middle.stick - knots.stick_between(k, middle.x)) <= 2.0 * PREDICTED * half
+        near &= np.abs(middle.pace - slope) <= PREDICTED_SLOPE
+        slides = ~middle.may_stick(knots.at(k)) & ~middle.may_stick(knots.at(k + 1))
+        return same & np.choose(middle.kind, [slides, near, True, True])
+
+    def about(self, x: np.ndarray) -> np.ndarray:
+        """Stick times to a fraction of the distance of knots; the end for none."""
+        knots = self.knots
+        k = np.clip(np.searchsorted(knots.x, x, side="right") - 1, 0, knots.x.size - 2)
+        fast = knots.of_kinds(k, FAST, FAST)
+        return np.where(fast, knots.stick_between(k, x), np.interp(x, knots.x, knots.stick))
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions; NaN where there is none before the end."""
@@ -88,126 +227,74 @@ class TrailingEdge:
             return self.part.search(x)
         k = np.clip(np.searchsorted(knots.x, x, side="right") - 1, 0, knots.x.size - 2)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        stuck, pace = knots.stuck, np.abs(knots.pace)
-        both = inside & stuck[k] & stuck[k + 1] & (np.maximum(pace[k], pace[k + 1]) < 1.0)
-        out = self._between_knots(x, k, both)
+        out = self._between_knots(x, k, inside & knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k))
         # A position that slides at the end, as both knots do, has not stuck.
-        slides = np.flatnonzero(inside & ~stuck[k] & ~stuck[k + 1])
+        slides = np.flatnonzero(inside & knots.of_kinds(k, SLIDES, SLIDES))
         slides = slides[self.part.velocity(x[slides], np.full(slides.size, until)) > 0.0]
         unknown = np.setdiff1d(np.flatnonzero(~np.isfinite(out)), slides)
         out[unknown] = self.part.search(x[unknown])
         return np.where(out <= until, out, np.nan)
 
     def _between_knots(self, x: np.ndarray, k: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-        """Stick times by Newton's steps; NaN where not wanted, and where the steps go astray.
-
-        The steps start from the cubic with the stick times and slopes of the knots k and k + 1.
-        """
+        """Stick times by Newton's steps; NaN where not wanted, and where the steps go astray."""
         knots = self.knots
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
-        stick, pace = knots.stick, knots.pace
-        bow = span * ((1.0 - s) * pace[k] - s * pace[k + 1])
-        guess = stick[k] + s**2 * (3.0 - 2.0 * s) * (stick[k + 1] - stick[k]) + s * (1.0 - s) * bow
+        guess = knots.stick_between(k, x)
         rate = knots.by_xi + knots.by_eta
         rate = rate[k] * (1.0 - s) + rate[k + 1] * s
         out, time = np.full(x.shape, np.nan), guess.copy()
+        velocity, step = np.zeros(x.shape), np.zeros(x.shape)
         todo = np.flatnonzero(wanted)
         for _ in range(12):
             if not todo.size:
                 break
-            step = self.part.velocity(x[todo], time[todo]) / rate[todo]
-            time[todo] -= step
+            earlier, velocity[todo] = velocity[todo], self.part.velocity(x[todo], time[todo])
+            last = step[todo]
+            # Secants follow the first step.
+            secant = (earlier - velocity[todo]) / np.where(last == 0.0, np.nan, last)
+            rate[todo] = np.where(np.abs(last) > STEP, secant, rate[todo])
+            step[todo] = velocity[todo] / rate[todo]
+            time[todo] -= step[todo]
             good = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
-            done = good & (np.abs(step) < STEP)
+            size, before = np.abs(step[todo]), np.where(last == 0.0, 1.0, np.abs(last))
+            done = good & ((size < STEP) | (size * before < STEP * SHORTEST * span[todo]))
             out[todo[done]] = time[todo[done]]
             todo = todo[good & ~done]
         return out
 
     def violations(self) -> list[Point]:
         """Points of the trailing edge where it does not outrun the waves."""
-        knots, stuck = self.knots, self.knots.stuck
-        # A position that has not stuck may stick right after the end.
-        stick = np.where(stuck, knots.stick, self.part.until)
-        slow = self._slow(knots)
-        points = zip(knots.x[slow].tolist(), stick[slow].tolist(), strict=True)
-        out = [Point(x, time) for x, time in points]
-        jump = np.abs(np.diff(stick)) >= np.diff(knots.x) * (1.0 + SAME)
-        changes = jump | (slow[1:] != slow[:-1])
-        any_stuck, all_slow = stuck[1:] | stuck[:-1], slow[1:] & slow[:-1]
-        for left in np.flatnonzero(changes & any_stuck & ~all_slow).tolist():
-            fast, other = left, left + 1
-            if slow[left] or (not slow[left + 1] and stick[left] >= stick[left + 1]):
-                fast, other = other, fast
-            if stuck[fast]:
-                out.append(self._end_of_fast_part(fast, other))
-        return out
-
-    def _slow(self, knots: Knots) -> np.ndarray:
-        # Sliding lasts too short a time to tell next to the point where a slow front has stopped.
-        brief = 1e-3 / (self.part.rate or 1.0)
-        lasting = knots.stick - self.part.curve.arrival(knots.x) > brief
-        return ((knots.by_xi >= 0.0) | (knots.by_eta >= 0.0)) & lasting
-
-    def _end_of_fast_part(self, knot: int, towards: int) -> Point:
-        """The last point from one knot towards another up to which the edge outruns the waves."""
-        fast = Point(self.knots.x[knot], self.knots.stick[knot])
-        other = self.knots.x[towards]
-        for _ in range(5):
-            x = np.linspace(fast.x, other, 34)[1:-1]
-            inner = self._knots_at(x, self.part.search(x))
-            runs = np.abs(inner.stick - fast.time) < np.abs(x - fast.x)
-            # The number of fast positions, counted from the fast knot on.
-            count = int(np.argmin(np.append(runs & ~self._slow(inner), False)))
-            if count > 0:
-                fast = Point(x[count - 1], inner.stick[count - 1])
-            if count < x.size:
-                other = x[count]
-        return Point(float(fast.x), float(fast.time))
+        knots = self.knots
+        ends, _ = knots.fast_ends(np.arange(knots.x.size - 1))
+        at = np.union1d(ends, np.flatnonzero(knots.kind == SLOW))
+        points = np.stack([knots.x, knots.stick], axis=1)[at].tolist()
+        return [Point(*point) for point in points]
 
     def first_stick(self) -> FirstStick | None:
         """The first sticking; None where nothing sticks before the end."""
         knots = self.knots
-        if not knots.stuck.any():
+        stuck = knots.kind != SLIDES
+        if not stuck.any():
             return None
         # Of several that stick first, the one nearest to x = 0 counts.
-        first = np.flatnonzero(knots.stick <= np.nanmin(knots.stick) + 1e-10)
-        k = int(first[np.argmin(np.abs(knots.x[first]))])
-        at_knot = FirstStick(float(knots.stick[k]), float(knots.x[k]))
-        if not 0 < k < knots.x.size - 1:
-            return at_knot
-        low = self._later_position(k, k - 1)
-        if not low < at_knot.x:
-            return at_knot
-        high = self._later_position(k, k + 1)
-        if not high > at_knot.x:
-            return at_knot
-        x = root_between(self._pace, low, high, xtol=STEP)
-        time = float(self.stick_time(np.array([x]))[0])
-        # Neither a kink nor an equal time is taken for a minimum.
-        return FirstStick(time, x) if time < at_knot.time - ROUNDING else at_knot
+        earliest = np.min(knots.stick[stuck])
+        first = np.flatnonzero(stuck & (knots.stick <= earliest + 1e-10))
+        nearest = int(first[np.argmin(np.abs(knots.x[first]))])
+        out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
+        # A minimum may lie in each interval at whose ends the edge goes down into it.
+        k = np.arange(knots.x.size - 1)
+        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & knots.of_kinds(k, FAST, FAST)
+        span = np.diff(knots.x)
+        lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * span
+        for low in np.flatnonzero(down & ~knots.jumps(k) & (lowest < out.time)).tolist():
+            x = root_between(self._pace, knots.x[low], knots.x[low + 1], xtol=STEP)
+            time = float(self.stick_time(np.array([x]))[0])
+            # Neither a kink nor an equal time is taken for a minimum.
+            if time < out.time - ROUNDING:
+                out = FirstStick(time, x)
+        return out
 
     def _pace(self, position: float) -> float:
         x = np.array([position])
-        return float(self._knots_at(x, self.stick_time(x)).pace[0])
-
-    def _later_position(self, k: int, neighbour: int) -> float:
-        """A position towards a neighbour where the stick time grows away from knot k, or that of k.
-
-        The neighbour itself may stick after the end.
-        """
-        side = float(neighbour - k)
-        inner, outer = float(self.knots.x[k]), float(self.knots.x[neighbour])
-        position, growth = outer, side * float(self.knots.pace[neighbour])
-        if growth <= 0.0:
-            return inner
-        for _ in range(30):
-            if growth > 0.0:
-                return position
-            if growth <= 0.0:
-                inner = position
-            else:
-                outer = position
-            position = 0.5 * (inner + outer)
-            growth = side * self._pace(position)
-        return position if growth > 0.0 else float(self.knots.x[k])
+        return float(self._knots_of(x, self.stick_time(x)).pace[0])
