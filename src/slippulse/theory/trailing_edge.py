@@ -182,9 +182,9 @@ class TrailingEdge:
         k = np.searchsorted(knots.x, todo)
         # What lies in the future of a jump, wherever it is in its interval, needs no knots.
         ends, spans = knots.fast_ends(k)
-        lag = knots.stick[k, None] - np.abs(knots.x[k, None] - knots.x[ends])
-        lag = np.minimum(lag, knots.stick[k + 1, None] - np.abs(knots.x[k + 1, None] - knots.x[ends]))
-        k = k[(lag < knots.stick[ends] + 2.0 * spans).all(axis=1)]
+        sides = np.array([k, k + 1])[..., None]
+        earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
+        k = k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * spans).all(axis=1)]
         rough, least = knots.jumps(k), np.full(k.size, SHORTEST * self.part.scale)
         least[rough] = LOCATED * (self.part.curve.edges[-1] - self.part.curve.edges[0])
         ends = ~rough & knots.of_kinds(k, FAST, SLIDES)

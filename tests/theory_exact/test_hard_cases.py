@@ -1,0 +1,55 @@
+"""Scenes off the beaten path that once gave wrong answers without a flag: right now, or flagged."""
+
+import numpy as np
+import pytest
+
+from slippulse.model.prestress import Prestress
+from slippulse.theory.rupture import Rupture
+
+# Lattices tend to this end of the front that rests and goes on; the grid of their blocks is 0.01.
+END, LATTICE = 8.72, 0.01
+SAME = 1e-6
+
+
+def a_front_that_rests_goes_on():
+    """The characteristic that comes to it next entered where the pre-stress is positive."""
+    bump = (3.27, 1.25, 0.715)
+    for refinement in (1, 2, 3):
+        keys = Prestress(-0.45, -0.45, 0.95, bumps=(bump,)), 0.108, 0.1, "total", 11.565
+        ((_, right),) = Rupture(*keys, refinement).front_ends
+        assert right.reason == "stops"
+        assert right.x == pytest.approx(END, abs=LATTICE)
+
+
+def slip_is_never_negative_before_a_limit():
+    """Next to a front that has stopped du/dt is below 0 for a short while only."""
+    profile = Prestress(-0.854, 0.417, 30.0, 1.0, ((114.0, -0.189),), ((26.7, 0.269, 4.96),))
+    for refinement in (1, 2):
+        rupture = Rupture(profile, 0.00102, 2.0, "elastic", 110.0, refinement)
+        assert rupture.limit.time == pytest.approx(92.196663, abs=1e-5)
+        assert np.isnan(rupture.slip(-79.5, 110.0))
+        x = np.linspace(*(end.x for end in rupture.front_ends[0]), 200)
+        assert np.nanmin(rupture.slip(x, 110.0)) >= 0.0
+
+
+def the_first_stick_is_the_first():
+    """A dip of the trailing edge that is much narrower than the rupture."""
+    profile = Prestress(0.4314, 0.4314, 4.43, steps=((7.21, 0.893), (-6.456, -1.177)))
+    for refinement in (1, 2):
+        rupture = Rupture(profile, 0.0242, 2.0, "total", 76.8, refinement)
+        assert rupture.first_stick == pytest.approx((16.331963629, -8.390786526), abs=SAME)
+        x = np.linspace(-12.0, 0.0, 200)
+        assert np.nanmin(rupture.stick_time(x)) >= rupture.first_stick.time
+        assert rupture.first_stick.time <= rupture.limit.time
+
+
+CASES = [
+    a_front_that_rests_goes_on,
+    slip_is_never_negative_before_a_limit,
+    the_first_stick_is_the_first,
+]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
+def test_what_was_wrong_is_right_or_flagged(case):
+    case()
