@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from string import ascii_lowercase
+from textwrap import fill
 from typing import Any, NamedTuple, TypeAlias
 
 import matplotlib
@@ -62,6 +63,9 @@ SCALES = {
     "damping_ratio": Scale("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
     "width": Scale("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
+
+# Height of a line below a figure, and characters of it, in inches.
+NOTE_HEIGHT, NOTE_DENSITY = 0.13, 22
 
 # The Times that Matplotlib brings along, for the journal's; the report has it too.
 FAMILY = "STIXGeneral"
@@ -153,8 +157,28 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> Non
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
 
 
-def save_figure(figure: Figure, png: str | Path, pdf: str | Path) -> None:
-    """Write PNG and PDF with no clock in them; the layout is found once, for the PNG."""
+def add_note(figure: Figure, note: str) -> None:
+    """Write a note below a figure, which gets higher by its lines; nothing if it is empty."""
+    if not note:
+        return
+    width, height = figure.get_size_inches()
+    text = fill(note, int(width * NOTE_DENSITY))
+    added = NOTE_HEIGHT * (1 + text.count("\n"))
+    figure.set_size_inches(width, height + added)
+    bottom = added / (height + added)
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
+    look: Look = {"ha": "right", "va": "bottom", "fontsize": 7.0, "color": ORANGE}
+    figure.text(0.995, 0.005, text, **look).set_in_layout(False)
+
+
+def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = "") -> None:
+    """Write PNG and PDF with no clock in them; the layout is found once, for the PNG.
+
+    note : what an altered configuration changed, written below the figure
+    """
+    add_note(figure, note)
     # A spine ends where its axes do, and the layout asks the axes.
     for axes in figure.axes:
         axes.spines[:].set_in_layout(False)

@@ -19,9 +19,17 @@ NONE = "\N{EN DASH}"
 
 
 def scene_page(
-    name: str, title: str, png: str | Path, numbers: pd.DataFrame, attributes: Mapping
+    name: str,
+    title: str,
+    png: str | Path,
+    numbers: pd.DataFrame,
+    attributes: Mapping,
+    note: str = "",
 ) -> str:
-    """A page with its figure inside; ``attributes`` of the data, and the state of the pulse."""
+    """A page with its figure inside; ``attributes`` of the data, and the state of the pulse.
+
+    note : what an altered configuration changed
+    """
     shown = {key: attributes[key] for key in SHOWN if key in attributes}
     if "steps_and_bumps" in shown:
         profile, parts = prestress_from(attributes), []
@@ -35,6 +43,7 @@ def scene_page(
         "scene.html",
         name=name,
         title=title,
+        note=note,
         picture=base64.b64encode(Path(png).read_bytes()).decode("ascii"),
         pulse_state=attributes.get("pulse_state", "none"),
         promised="promised" in numbers,

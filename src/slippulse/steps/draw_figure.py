@@ -8,7 +8,12 @@ from .inputs import given
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as of `given`. Outputs: csv, png, pdf. Settings: figure (its module), values."""
-    module = import_module(f"slippulse.figures.{settings['figure']}")
-    save_table(module.table(*given(files), settings["values"]), outputs["csv"])
-    save_figure(module.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
+    """Files: as of `given`. Outputs: csv, png, pdf.
+
+    Settings: figure (its module), values, altered (what differs from the shipped configuration).
+    """
+    module, note = import_module(f"slippulse.figures.{settings['figure']}"), settings["altered"]
+    table = module.table(*given(files), settings["values"])
+    save_table(table.assign(altered=note) if note else table, outputs["csv"])
+    drawn = load_table(outputs["csv"]).drop(columns="altered", errors="ignore")
+    save_figure(module.plot(drawn), outputs["png"], outputs["pdf"], note)

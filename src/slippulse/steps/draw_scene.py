@@ -15,14 +15,16 @@ FILES = ("report/templates/parts.html", "report/templates/scene.html")
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html.
 
-    Settings: scene (its name), title.
+    Settings: scene (its name), title, altered (what differs from the shipped configuration).
     """
-    name, title = settings["scene"], settings["title"]
+    name, title, note = settings["scene"], settings["title"], settings["altered"]
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
     save_table(numbers, outputs["numbers"])
-    save_table(scene.table(data, numbers, title), outputs["csv"])
-    save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
+    table = scene.table(data, numbers, title)
+    save_table(table.assign(altered=note) if note else table, outputs["csv"])
+    save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
-    write_text(scene_page(name, title, outputs["png"], numbers, values), outputs["html"])
+    page = scene_page(name, title, outputs["png"], numbers, values, note)
+    write_text(page, outputs["html"])

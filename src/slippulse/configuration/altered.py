@@ -1,0 +1,82 @@
+"""Differences of single simulations and figures from the shipped configuration, in words."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from ..data.alterations import changes
+from .resolve import all_simulations, resolve
+from .schema import Configuration
+
+# Symbols of the paper, and of this project, for keys that have one.
+SYMBOLS = {"damping_ratio": "b", "left": "tau_l", "right": "tau_r", "width": "W"}
+# A note names this number of differences.
+MOST = 4
+# The accuracy of a run is that of its preset, and the extent of its samples follows from the rest.
+DERIVED = ("accuracy", "coarser", "samples.extent")
+
+
+class Alterations:
+    """Differences of a configuration from the shipped one, for each simulation as it is run."""
+
+    def __init__(self, shipped: Configuration, here: Configuration) -> None:
+        self.shipped, self.here = shipped, here
+        self.simulations = {
+            name: self._changes(name, simulation)
+            for name, simulation in all_simulations(here).items()
+        }
+
+    def _changes(self, name: str, simulation: Any) -> list[dict]:
+        """Changes of a resolved simulation; an added one is compared under the shipped model."""
+        before = all_simulations(self.shipped).get(name, simulation)
+        pair = (before, self.shipped.model), (simulation, self.here.model)
+        sweeps = [resolve(sweep, model, {}) for sweep, model in pair]
+        without = (*DERIVED, "damping_ratio") if "beta" in sweeps[1] else DERIVED
+        return [one for one in changes(*sweeps) if one["key"] not in without]
+
+    def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
+        """One line on what differs, such as 'altered: b = 0.05'; empty where nothing does.
+
+        simulations : names of all that are used
+        keys : dotted keys of the configuration that are used besides
+        """
+        differences = {
+            _equation(change): None
+            for name in simulations
+            for change in self.simulations.get(name, ())
+        }
+        given, used = changes(self.shipped.given(), self.here.given()), tuple(keys)
+        for change in given:
+            if change["key"].startswith(used):
+                differences[_equation(change)] = None
+        named = [*differences][:MOST]
+        if len(differences) > MOST:
+            named.append(f"{len(differences) - MOST} more")
+        return f"altered: {', '.join(named)}" if named else ""
+
+    def untaken(self) -> list[str]:
+        """A line for each altered default of the model that some simulations do not take."""
+        lines = []
+        for change in changes(self.shipped.model.plain(), self.here.model.plain()):
+            key = change["key"]
+            alone = {key, "beta"} if key == "damping_ratio" else {key}
+            own = [
+                name
+                for name, simulation in all_simulations(self.here).items()
+                if alone & {*simulation.plain()}
+            ]
+            if own:
+                lines.append(
+                    f"model.{key} = {change['here']} is a default; simulations that give {key}"
+                    f" themselves do not take it: {', '.join(own)}"
+                )
+        return lines
+
+
+def _equation(change: Mapping[str, Any]) -> str:
+    name = change["key"].rpartition(".")[2]
+    value = change["here"]
+    if isinstance(value, list) and value and not isinstance(value[0], list | dict):
+        value = ", ".join(map(str, value))
+    elif isinstance(value, list | dict):
+        value = "other values"
+    return f"{SYMBOLS.get(name, name)} = {'absent' if value is None else value}"
