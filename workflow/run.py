@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
@@ -42,14 +43,30 @@ def arguments(command: str) -> list[str]:
 
 
 def full_target(target: str) -> str:
-    """Complete the short name of a figure, such as fig5, fig05.png or study_arrest.pdf."""
+    """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
     name, dot, ending = target.removeprefix("results/figures/").partition(".")
-    short = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
-    start = f"fig{int(short[1]):02d}_" if short else None
-    for path in sorted(Path("src/slippulse/figures").glob("*_*.py")):
-        if path.stem == name or (start and path.stem.startswith(start)):
-            return f"results/figures/{path.stem}.{ending}" if dot else path.stem
+    figures = sorted(path.stem for path in Path("src/slippulse/figures").glob("*_*.py"))
+    figures = [figure for figure in figures if figure.startswith(("fig", "study_"))]
+    numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
+    start = f"fig{int(numbered[1]):02d}_" if numbered else None
+    for figure in figures:
+        if figure == name or (start and figure.startswith(start)):
+            return f"results/figures/{figure}.{ending or 'png'}"
+    if numbered:
+        sys.exit(f"TARGET: {target}; allowed: {', '.join(figures)}, sweep_NAME")
+    if name.startswith("sweep_"):
+        return f"results/figures/{name}.{ending or 'png'}"
     return target
+
+
+def changed_verdicts(ledger: Iterable) -> str:
+    """A line for each verdict that an altered configuration changed, with a headline."""
+    from ruamel.yaml import YAML
+
+    shipped = YAML(typ="safe").load(Path("manuscript/shipped_verdicts.yaml"))
+    pairs = [(claim, shipped.get(claim.id, "absent")) for claim in ledger]
+    lines = [f"  {c.id}: {before} -> {c.verdict}\n" for c, before in pairs if before != c.verdict]
+    return "Verdicts that differ from the shipped ones:\n" + "".join(lines) if lines else ""
 
 
 def answer() -> str:
@@ -59,7 +76,8 @@ def answer() -> str:
         from slippulse.claims.reading import Ledger
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        return f"{ledger.summary()}\nOpen results/index.html"
+        changed = changed_verdicts(ledger) if called["altered"] else ""
+        return f"{ledger.summary()}\n{changed}Open results/index.html"
     if called["targets"] == ["all"]:
         return "Open results/figures; TARGET=everything makes studies, ledger and report too"
     return f"Made: {', '.join(called['targets'])}"

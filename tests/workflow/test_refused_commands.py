@@ -210,9 +210,14 @@ def test_a_short_name_of_a_figure_is_understood(project, monkeypatch):
     monkeypatch.chdir(project)
     path = "results/figures/fig07_damage_zone.png"
     short = {
-        "fig7": "fig07_damage_zone",
+        "fig7": path,
         "figure_07.png": path,
         path: path,
-        "fig07_x.png": "fig07_x.png",
+        "fig07.csv": path.replace("png", "csv"),
+        "sweep_mine": "results/figures/sweep_mine.png",
+        "everything": "everything",
     }
-    assert [*map(runpy.run_path("workflow/run.py")["full_target"], short)] == [*short.values()]
+    full_target = runpy.run_path("workflow/run.py")["full_target"]
+    assert [*map(full_target, short)] == [*short.values()]
+    with pytest.raises(SystemExit, match=r"TARGET: fig99; allowed: fig01_system_sketch, .*sweep_"):
+        full_target("fig99")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from slippulse.claims.reading import read_entries
 from slippulse.configuration.accuracy import promised
+from slippulse.configuration.altered import Alterations
 from slippulse.configuration.expand import run_count
 from slippulse.configuration.limits import bound_of_sweep
 from slippulse.configuration.problems import ConfigError
@@ -111,6 +112,24 @@ KERNELS = {
 def made(kind, names):
     """Files of one kind."""
     return expand(FILES[kind], name=[*names])
+
+
+# What an overlay or the command line changed; None where nothing can have changed.
+ALTERED = None
+if OVERLAYS or workflow.config_settings.config:
+    ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
+
+
+def note_of(needs, *keys):
+    """One line on what differs from the shipped configuration in what a figure is made from."""
+    if ALTERED is None:
+        return ""
+    names, settings = set(), [*keys, *needs.get("settings", ())]
+    for needed in (needs, *(STUDY_NEEDS[study] for study in needs.get("studies", ()))):
+        settings += needed.get("settings", ())
+        for kind in ("data", "measured", "predicted", "uncertainties", "sweeps"):
+            names.update(needed.get(kind, ()))
+    return ALTERED.note(sorted(names), settings)
 
 
 def inputs_of(needs):

@@ -53,6 +53,7 @@ for figure, needs in (NEEDS | SWEEPS).items():
             step="draw_figure",
             figure=figure if figure in NEEDS else "user_defined_sweep",
             values=selected(config, needs.get("settings", ()), config["figures"].get(figure, {})),
+            altered=note_of(needs, f"figures.{figure}"),
         message:
             f"Drawing {figure}"
         run:
@@ -76,6 +77,7 @@ rule draw_scene:
         "results/logs/draw_scene/{scene}.log",
     params:
         title=lambda wildcards: TITLES[wildcards.scene],
+        altered=lambda wildcards: note_of({"data": [wildcards.scene]}),
     message:
         "Drawing scene {wildcards.scene}"
     run:

@@ -63,6 +63,8 @@ def begin_with(targets):
     # Without an executor Snakemake only looks, as for a graph.
     makes = workflow.executor_plugin and not (workflow.dryrun or workflow.touch)
     held = PLAN.begin(wanted, makes)
+    for line in ALTERED.untaken() if ALTERED else ():
+        print(line, file=sys.stderr)
     if makes:
         if workflow.local_exec:
             # Each job would start a timer, for which Snakemake waits at its end.
@@ -70,6 +72,8 @@ def begin_with(targets):
         JOBS.begin()
         # `make verify` and the last line of a run read how the run was called.
         called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
+        kept = {**config, "preset": SHIPPED["preset"]}
+        called["altered"] = bool(ALTERED and changes(SHIPPED, kept))
         write_json(called, "results/records/.call")
     return held
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..model.checks import short_repr
 from .problems import nearest
-from .schema import NAME_WORDS, Configuration
+from .schema import NAME_WORDS, Configuration, Measure, Model, NamedScene, Simulation
 
 # A refusal has this number of lines at most: a reader mends a few mistakes at a time.
 LINES = 20
@@ -47,9 +47,21 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if kind == "extra_forbidden":
         known = [*schema["properties"]]
         allowed = ", ".join(known)
-        return f"{dotted(path)}: unknown key{nearest(path[-1], known)}; allowed: {allowed}"
+        hint = nearest(path[-1], known) or _elsewhere(path[-1])
+        return f"{dotted(path)}: unknown key{hint}; allowed: {allowed}"
     allowed = "a finite number" if kind == "finite_number" else words(schema)
     return f"{dotted(known_path)}: {short_repr(value)}; allowed: {allowed}{_remedy(value)}"
+
+
+def _elsewhere(key: str | int) -> str:
+    """Hint at the blocks of named entries that have a key, such as gamma."""
+    blocks = {"simulations": Simulation, "scenes": NamedScene, "model": Model, "measure": Measure}
+    places = [
+        f"{block}.{key}" if block in ("model", "measure") else f"{block}.NAME.{key}"
+        for block, entries in blocks.items()
+        if key in entries.model_fields
+    ]
+    return f" (it is set by {' and '.join(places)})" if places else ""
 
 
 def _missing_line(path: Path, config: Mapping) -> str:

@@ -64,8 +64,8 @@ SCALES = {
     "width": Scale("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
 
-# Height of a line below a figure, and characters of it, in inches.
-NOTE_HEIGHT, NOTE_DENSITY = 0.13, 22
+# A note below a figure: inches of a line and of the gap above, and characters an inch.
+NOTE_LINE, NOTE_GAP, NOTE_DENSITY = 0.12, 0.1, 22
 
 # The Times that Matplotlib brings along, for the journal's; the report has it too.
 FAMILY = "STIXGeneral"
@@ -163,7 +163,7 @@ def add_note(figure: Figure, note: str) -> None:
         return
     width, height = figure.get_size_inches()
     text = fill(note, int(width * NOTE_DENSITY))
-    added = NOTE_HEIGHT * (1 + text.count("\n"))
+    added = NOTE_GAP + NOTE_LINE * (1 + text.count("\n"))
     figure.set_size_inches(width, height + added)
     bottom = added / (height + added)
     engine = figure.get_layout_engine()
