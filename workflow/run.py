@@ -44,7 +44,7 @@ def arguments(command: str) -> list[str]:
 
 def full_target(target: str) -> str:
     """Complete the short name of a figure, such as fig5, fig05.pdf or sweep_NAME.png."""
-    name, dot, ending = target.removeprefix("results/figures/").partition(".")
+    name, _, ending = target.removeprefix("results/figures/").partition(".")
     figures = sorted(path.stem for path in Path("src/slippulse/figures").glob("*_*.py"))
     figures = [figure for figure in figures if figure.startswith(("fig", "study_"))]
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
