@@ -72,15 +72,17 @@ def changed_verdicts(ledger: Iterable) -> str:
 def answer() -> str:
     """Say what to open when a run has ended, with the verdicts if it made or kept them."""
     called = json.loads(CALL.read_text(encoding="utf-8"))
-    if called["page"]:
+    text = ""
+    if called["judged"]:
         from slippulse.claims.reading import Ledger
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
-        changed = changed_verdicts(ledger) if called["altered"] else ""
-        return f"{ledger.summary()}\n{changed}Open results/index.html"
+        text = f"{ledger.summary()}\n{changed_verdicts(ledger) if called['altered'] else ''}"
+    if called["page"]:
+        return f"{text}Open results/index.html"
     if called["targets"] == ["all"]:
         return "Open results/figures; TARGET=everything makes studies, ledger and report too"
-    return f"Made: {', '.join(called['targets'])}"
+    return f"{text}Made: {', '.join(called['targets'])}"
 
 
 def main(command: str) -> int:

@@ -296,7 +296,7 @@ def test_a_run_begins_with_what_is_as_made_and_alone(plan, results, capsys):
     times = [path.stat().st_mtime for path in (results.parent / "src", results / DATA)]
     assert max(times) <= (results / PAGE).stat().st_mtime < 2e9
     said, reason = capsys.readouterr().err, "not what its job wrote; made anew where needed"
-    assert f"1 results are not as made by what is here now, as results/{TABLE}: {reason}" in said
+    assert f"1 result is out of date, such as results/{TABLE}: {reason}" in said
     assert f"1 files have a time in the future, as results/{DATA}" in said
     with pytest.raises(ConfigError, match="Another run is at work"):
         plan.begin([])

@@ -72,6 +72,7 @@ def begin_with(targets):
         JOBS.begin()
         # `make verify` and the last line of a run read how the run was called.
         called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}
+        called["judged"] = "claims.json" in wanted
         kept = {**config, "preset": SHIPPED["preset"]}
         called["altered"] = bool(ALTERED and changes(SHIPPED, kept))
         write_json(called, "results/records/.call")

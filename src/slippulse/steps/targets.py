@@ -149,5 +149,7 @@ def write_faulty(reasons: Mapping[str, str], outcome: str) -> None:
     """Write one line on faulty results, with the reason of the first that has its own."""
     if reasons:
         first = min(reasons, key=lambda name: "older than" in reasons[name])
-        faulty = f"{len(reasons)} results are not as made by what is here now"
-        sys.stderr.write(f"{faulty}, as results/{first}: {reasons[first]}{outcome}\n")
+        count = "1 result is" if len(reasons) == 1 else f"{len(reasons)} results are"
+        sys.stderr.write(
+            f"{count} out of date, such as results/{first}: {reasons[first]}{outcome}\n"
+        )
