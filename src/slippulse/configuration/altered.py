@@ -29,9 +29,9 @@ class Alterations:
         """Changes of a resolved simulation; an added one is compared under the shipped model."""
         before = all_simulations(self.shipped).get(name, simulation)
         pair = (before, self.shipped.model), (simulation, self.here.model)
-        sweeps = [resolve(sweep, model, {}) for sweep, model in pair]
-        without = (*DERIVED, "damping_ratio") if "beta" in sweeps[1] else DERIVED
-        return [one for one in changes(*sweeps) if one["key"] not in without]
+        old, new = (resolve(sweep, model, {}) for sweep, model in pair)
+        without = (*DERIVED, "damping_ratio") if "beta" in new else DERIVED
+        return [one for one in changes(old, new) if one["key"] not in without]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
         """One line on what differs, such as 'altered: b = 0.05'; empty where nothing does.

@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
+from pydantic import BaseModel
+
 from ..model.checks import short_repr
 from .problems import nearest
 from .schema import NAME_WORDS, Configuration, Measure, Model, NamedScene, Simulation
@@ -55,7 +57,12 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
 
 def _elsewhere(key: str | int) -> str:
     """Hint at the blocks of named entries that have a key, such as gamma."""
-    blocks = {"simulations": Simulation, "scenes": NamedScene, "model": Model, "measure": Measure}
+    blocks: dict[str, type[BaseModel]] = {
+        "simulations": Simulation,
+        "scenes": NamedScene,
+        "model": Model,
+        "measure": Measure,
+    }
     places = [
         f"{block}.{key}" if block in ("model", "measure") else f"{block}.NAME.{key}"
         for block, entries in blocks.items()

@@ -18,6 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, LogNorm, Normalize, PowerNorm
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullFormatter
@@ -167,7 +168,7 @@ def add_note(figure: Figure, note: str) -> None:
     figure.set_size_inches(width, height + added)
     bottom = added / (height + added)
     engine = figure.get_layout_engine()
-    if engine is not None:
+    if isinstance(engine, ConstrainedLayoutEngine):
         engine.set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
     look: Look = {"ha": "right", "va": "bottom", "fontsize": 7.0, "color": ORANGE}
     figure.text(0.995, 0.005, text, **look).set_in_layout(False)
