@@ -36,7 +36,8 @@ STUDIED = {
     if declared(f"studies.{name}", "NEEDS") is not None
 }
 # Modules that steps share, and steps whose rules are those of figures and studies.
-NO_RULES = {"__init__", "inputs", "job", "libraries", "origins", "processes", "reach", "targets"}
+NO_RULES = {"__init__", "inputs", "job", "libraries", "origins", "processes", "reach", "reading"}
+NO_RULES |= {"targets"}
 NO_RULES |= {"draw_figure", "run_study"}
 # Two schemes have other steps of the same rules.
 STEPS = modules_in("steps") - NO_RULES
@@ -150,7 +151,9 @@ def seen(inputs) -> dict[str, set[str]]:
     """Sources that each rule depends on: what its modules reach, and the texts that it takes."""
     depends = {}
     for name in inputs.keys() - NAMES:
-        texts = {file for file in inputs[name] if not file.startswith(("results/", "<"))}
+        # The folder of the sources only has a time.
+        files = inputs[name] - {"src"}
+        texts = {file for file in files if not file.startswith(("results/", "<"))}
         depends[name] = texts.union(sources(*MODULES[name]))
     return depends
 

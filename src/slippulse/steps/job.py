@@ -36,7 +36,7 @@ def run_job(
         step = import_module(f"slippulse.steps.{origin.step}")
         step.run(files, outputs, {**settings, "progress": progress_of(name, progress)})
         reading.check(origin.files)
-        inputs = {name: reading.digest(f"results/{name}") for name in origin.inputs}
+        inputs = {name: reading.digest_of_read(f"results/{name}") for name in origin.inputs}
         seconds = time.monotonic() - began
         used = {
             "seconds": round(seconds, 2),

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 
 from .reach import PACKAGE, ROOT
@@ -28,14 +29,9 @@ class _FromSource(SourceFileLoader):
 
 
 class _Finder:
-    """Finder of the modules of the package."""
-
     @staticmethod
     def find_spec(name: str, path=None, target=None) -> ModuleSpec | None:
-        """Find a module as Python does, but have it loaded from its source."""
-        if not name.startswith("slippulse."):
-            return None
-        spec = PathFinder.find_spec(name, path, target)
+        spec = PathFinder.find_spec(name, path) if name.startswith("slippulse.") else None
         if spec and isinstance(spec.loader, SourceFileLoader):
             spec.loader = _FromSource(name, spec.loader.path)
         return spec
@@ -43,11 +39,11 @@ class _Finder:
 
 def begin() -> None:
     """Take digests of all that this process reads from now on."""
-    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())
+    if _Finder not in sys.meta_path:
+        sys.meta_path.insert(0, _Finder)
         sys.addaudithook(_note)
         for name, module in [*sys.modules.items()]:
-            if name.partition(".")[0] == "slippulse" and getattr(module, "__file__", None):
+            if name.partition(".")[0] == "slippulse":
                 _add(os.path.realpath(str(module.__file__)))
 
 
@@ -67,7 +63,7 @@ def check(planned: Mapping[str, str]) -> None:
             raise FileChanged(f"{path}: changed since this run was planned; run again")
 
 
-def digest(path: str) -> str:
+def digest_of_read(path: str) -> str:
     """SHA-256 of a file as this job has read it. Raises FileChanged if it read two versions."""
     digests = _digests(path)
     if len(digests) != 1:
@@ -84,20 +80,23 @@ def _digests(path: str) -> set[str]:
 
 
 def _real(path: str) -> str:
-    return os.path.realpath(path if path.startswith("results/") else ROOT / path)
+    return os.path.realpath(path) if path.startswith("results/") else _real_source(path)
+
+
+@cache
+def _real_source(path: str) -> str:
+    return os.path.realpath(ROOT / path)
 
 
 def _note(event: str, arguments: tuple) -> None:
     """Take the digest of a file that Python opens for reading, or that a program may read."""
-    if event == "open" and isinstance(arguments[0], str | os.PathLike) and arguments[1]:
-        path = os.fspath(arguments[0])
-        if "r" in arguments[1] and isinstance(path, str) and not path.endswith(".pyc"):
-            real = os.path.realpath(path)
-            if real in _watched or (real.endswith(".py") and real.startswith(str(PACKAGE))):
-                _add(real)
+    if event == "open" and isinstance(arguments[0], str) and "r" in (arguments[1] or ""):
+        real = "" if arguments[0].endswith(".pyc") else os.path.realpath(arguments[0])
+        if real in _watched or (real.endswith(".py") and real.startswith(str(PACKAGE))):
+            _add(real)
     elif event == "subprocess.Popen":
-        for real in _watched:
-            if not real.endswith(".py") and real not in _read:
+        for real in _watched - _read.keys():
+            if not real.endswith(".py"):
                 _add(real)
 
 
