@@ -1,6 +1,8 @@
 """Every figure drawn from small, really simulated data, through the CSV as the pipeline does it."""
 
+from collections.abc import Callable
 from importlib import import_module
+from pathlib import Path
 from types import SimpleNamespace
 
 import pandas as pd
@@ -16,67 +18,90 @@ from slippulse.steps.predict import predictions
 from slippulse.steps.reach import declared
 from slippulse.steps.targets import selected
 
-# A claim that a choice decides, and one without a choice, as in claims.json.
+
+def claim(
+    name: str, verdict: str, tolerance: float, deviation: float, choice="", choices=()
+) -> dict:
+    """A claim as in claims.json."""
+    return {
+        "id": name,
+        "label": f"an {name}",
+        "kind": "approximate" if choice else "exact",
+        "verdict": verdict,
+        "tolerance": tolerance,
+        "choice": choice,
+        "deviation": deviation,
+        "choices": list(choices),
+    }
+
+
+LATTICE = {"release": "total", "deviation": 0.24, "solution": "lattice"}
+EXACT = {"release": "elastic", "deviation": 0.16, "solution": "exact"}
 CLAIMS = [
-    {"id": "estimate", "label": "an estimate", "kind": "approximate",
-     "verdict": "depends on an open choice", "tolerance": 0.2, "choice": "release", "deviation": 0.24, "choices": [
-         {"release": "total", "deviation": 0.24, "solution": "lattice"},
-         {"release": "elastic", "deviation": 0.16, "solution": "exact"}]},
-    {"id": "equation", "label": "an equation", "kind": "exact", "verdict": "reproduced", "tolerance": 0.01,
-     "choice": "", "deviation": 1e-9, "choices": []},
-    {"id": "position", "label": "a position", "kind": "approximate", "verdict": "reproduced", "tolerance": 0.2,
-     "choice": "damping_ratio", "deviation": 0.01, "choices": [
-         {"release": "total", "deviation": 0.04, "solution": "lattice"}]},
-]  # fmt: skip
+    claim("estimate", "depends on an open choice", 0.2, 0.24, "release", [LATTICE, EXACT]),
+    claim("equation", "reproduced", 0.01, 1e-9),
+    claim("extent", "reproduced", 0.2, 0.01, "damping_ratio", [LATTICE | {"deviation": 0.04}]),
+]
 
 
-@pytest.fixture(scope="session")
-def draw(shipped, shared, tmp_path_factory, study):
-    """A function that draws a figure by name and returns its table, its Figure and what it was drawn from."""
-    folder = tmp_path_factory.mktemp("tables")
-    simulated, drawn = {}, {}
+class Drawings:
+    """Figures drawn by name, each once, and the small sweeps that they show."""
 
-    def simulate(name: str):
-        if name not in simulated:
-            block = small_sweep(shipped, name)
-            files = [shared / f"sweeps/{name}.{ending}" for ending in ("nc", "csv")]
+    def __init__(self, shipped: dict, shared: Path, folder: Path, study: Callable):
+        self.shipped, self.shared, self.folder, self.study = shipped, shared, folder, study
+        self.simulated: dict[str, tuple] = {}
+        self.drawn: dict[str, SimpleNamespace] = {}
+
+    def simulate(self, name: str) -> tuple:
+        """Data, measured table and scenes of a sweep."""
+        if name not in self.simulated:
+            block = small_sweep(self.shipped, name)
+            data, measured = (self.shared / f"sweeps/{name}.{ending}" for ending in ("nc", "csv"))
             scenes, samples = expand(block)
-            if not files[1].exists():
-                save_dataset(run_sweep(scenes, samples, block["record"], threads=2), files[0])
-                save_table(measured_table(load_dataset(files[0]), shipped["measure"]), files[1])
-            simulated[name] = (load_dataset(files[0]), load_table(files[1]), scenes)
-        return simulated[name]
+            if not measured.exists():
+                save_dataset(run_sweep(scenes, samples, block["record"], threads=2), data)
+                save_table(measured_table(load_dataset(data), self.shipped["measure"]), measured)
+            self.simulated[name] = (load_dataset(data), load_table(measured), scenes)
+        return self.simulated[name]
 
-    def inputs(needs: dict) -> tuple[dict, dict]:
+    def predict(self, name: str, topics: list[str]) -> pd.DataFrame:
+        path = self.shared / f"sweeps/{name}.{'_'.join(topics)}.csv"
+        if not path.exists():
+            scenes = self.simulate(name)[2]
+            save_table(predictions(topics, scenes, self.shipped["measure"]), path)
+        return load_table(path)
+
+    def inputs(self, needs: dict) -> tuple[dict, dict]:
         """Data and tables, as the workflow joins them."""
-        data = {source: simulate(source)[0] for source in needs.get("data", [])}
-        tables = {source: simulate(source)[1] for source in needs.get("measured", [])}
-        for source, topics in needs.get("predicted", {}).items():
-            path = shared / f"sweeps/{source}.{'_'.join(topics)}.csv"
-            if not path.exists():
-                save_table(predictions(topics, simulate(source)[2], shipped["measure"]), path)
-            predicted = load_table(path)
-            tables[source] = tables[source].join(predicted) if source in tables else predicted
-        for source in needs.get("studies", []):
-            tables[source] = study(source, *inputs(declared(f"studies.{source}", "NEEDS")))
+        data = {name: self.simulate(name)[0] for name in needs.get("data", [])}
+        tables = {name: self.simulate(name)[1] for name in needs.get("measured", [])}
+        for name, topics in needs.get("predicted", {}).items():
+            predicted = self.predict(name, topics)
+            tables[name] = tables[name].join(predicted) if name in tables else predicted
+        for name in needs.get("studies", []):
+            tables[name] = self.study(name, *self.inputs(declared(f"studies.{name}", "NEEDS")))
         if "lists" in needs:
             tables["claims"] = pd.DataFrame(CLAIMS)
         return data, tables
 
-    def drawn_by(name: str) -> SimpleNamespace:
-        if name not in drawn:
+    def draw(self, name: str) -> SimpleNamespace:
+        """Table and Figure, what they were drawn from, and the module."""
+        if name not in self.drawn:
             module = import_module(f"slippulse.figures.{name}")
             needs = declared(f"figures.{name}", "NEEDS")
-            settings = selected(
-                shipped, needs.get("settings", ()), shipped["figures"].get(name, {})
-            )
-            data, tables = inputs(needs)
-            save_table(module.table(data, tables, settings), folder / f"{name}.csv")
-            table = load_table(folder / f"{name}.csv")
+            options = self.shipped["figures"].get(name, {})
+            settings = selected(self.shipped, needs.get("settings", ()), options)
+            data, tables = self.inputs(needs)
+            save_table(module.table(data, tables, settings), self.folder / f"{name}.csv")
+            table = load_table(self.folder / f"{name}.csv")
             figure = module.plot(table)
-            drawn[name] = SimpleNamespace(
+            self.drawn[name] = SimpleNamespace(
                 table=table, figure=figure, measured=tables, module=module
             )
-        return drawn[name]
+        return self.drawn[name]
 
-    return drawn_by
+
+@pytest.fixture(scope="session")
+def draw(shipped, shared, tmp_path_factory, study):
+    """Function that draws a figure by its name."""
+    return Drawings(shipped, shared, tmp_path_factory.mktemp("tables"), study).draw

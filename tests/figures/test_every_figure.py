@@ -21,11 +21,10 @@ from slippulse.figures.style import PAGE, colour_scale, save_figure
 from slippulse.measurement.regime import REGIMES
 
 MODULES = Path(__file__).parents[2] / "src/slippulse/figures"
-NAMES = sorted(path.stem for pattern in ("fig*.py", "study*.py") for path in MODULES.glob(pattern))
-# The figures of the paper, and among the slow tests the studies.
-DRAWN = [
-    pytest.param(name, marks=() if name.startswith("fig") else pytest.mark.slow) for name in NAMES
-]
+NAMES = sorted(path.stem for path in (*MODULES.glob("fig*.py"), *MODULES.glob("study*.py")))
+# Studies are among the slow tests.
+DRAWN = [name for name in NAMES if name.startswith("fig")]
+DRAWN += [pytest.param(name, marks=pytest.mark.slow) for name in NAMES if name not in DRAWN]
 # Points, at the width of the journal.
 SMALLEST = 7.0
 # Inches by which the boxes of two texts may overlap, since letters do not fill them.
@@ -48,15 +47,13 @@ def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_wr
     # The resolution is not what is tested, and takes most of the time.
     figure.set_dpi(50)
     save_figure(figure, tmp_path / "first.png", tmp_path / "first.pdf")
-    for ending in ("png", "pdf"):
-        assert (tmp_path / f"first.{ending}").stat().st_size > 2000
+    assert all((tmp_path / f"first.{ending}").stat().st_size > 2000 for ending in ("png", "pdf"))
     # As many grey levels as letters and lines have.
     with Image.open(tmp_path / "first.png") as picture:
         assert len(picture.convert("L").getcolors()) > 20
-    texts = [
-        text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()
-    ]
-    assert min(text.get_fontsize() for text in texts) > SMALLEST - 1e-9
+    texts = [text for text in figure.findobj(Text) if text.get_visible()]
+    sizes = [text.get_fontsize() for text in texts if text.get_text().strip()]
+    assert min(sizes) > SMALLEST - 1e-9
     page = figure.bbox.padded(1.0)
     for legend in figure.findobj(Legend):
         assert page.count_contains(legend.get_window_extent().get_points()) == 2, "cut off"
@@ -67,40 +64,43 @@ def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_wr
 )
 def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
     drawn = draw(name)
+    takes = []
     with matplotlib.rc_context({"figure.dpi": 50}):
         for take in ("first", "again"):
-            save_figure(
-                drawn.module.plot(drawn.table), tmp_path / f"{take}.png", tmp_path / f"{take}.pdf"
-            )
-    for ending in ("png", "pdf"):
-        assert (tmp_path / f"first.{ending}").read_bytes() == (
-            tmp_path / f"again.{ending}"
-        ).read_bytes()
+            paths = [tmp_path / f"{take}.{ending}" for ending in ("png", "pdf")]
+            save_figure(drawn.module.plot(drawn.table), *paths)
+            takes.append([path.read_bytes() for path in paths])
+    assert takes[0] == takes[1]
+
+
+def shown_regime(parts: pd.DataFrame, point: list[float]) -> str:
+    """Regime of the last drawn area or line that holds a point of the plane of levels."""
+    regimes = []
+    for (_, regime), part in parts.groupby(["series", "regime"]):
+        corners = part[["left", "right"]]
+        if (part["role"] == "area").all():
+            holds = Outline(corners).contains_point(point, radius=1e-9)
+        else:
+            holds = (corners.sum() * point).sum() > 0.0
+        if holds:
+            regimes.append(regime)
+    return regimes[-1]
 
 
 def test_areas_and_lines_have_the_regime_that_the_runs_on_them_end_in(draw):
     drawn = draw("fig02_phase_diagram")
-    told = 0
-    for sweep in phases.DRAWN:
-        for run in drawn.measured[sweep].itertuples():
-            rows = drawn.table[drawn.table["boundary"] == run.boundary]
-            role, at = ("line" if run.left * run.right == 0.0 else "area"), [run.left, run.right]
-            if (
-                run.exact_regime not in REGIMES
-                or (role == "line" and max(at) > 0.0)
-                or at == [0.0, 0.0]
-            ):
-                continue
-            found = []
-            for regime, part in rows[rows["role"] == role].groupby(["series", "regime"]):
-                points = part[["left", "right"]]
-                inside = Outline(points).contains_point(at, radius=1e-9)
-                if inside if role == "area" else (points.sum() * at).sum() > 0.0:
-                    found.append(regime[1])
-            # The wedge of growing pulses lies upon the quadrant of cracks.
-            assert found[-1] == run.exact_regime, run
-            told += 1
-    assert told > 200
+    compared = 0
+    for run in pd.concat([drawn.measured[sweep] for sweep in phases.DRAWN]).itertuples():
+        levels, on_line = [run.left, run.right], run.left * run.right == 0.0
+        without_line = on_line and (max(levels) > 0.0 or levels == [0.0, 0.0])
+        if run.exact_regime not in REGIMES or without_line:
+            continue
+        panel = drawn.table[drawn.table["boundary"] == run.boundary]
+        parts = panel[panel["role"] == ("line" if on_line else "area")]
+        # The wedge of growing pulses lies upon the quadrant of cracks.
+        assert shown_regime(parts, levels) == run.exact_regime, run
+        compared += 1
+    assert compared > 200
 
 
 def test_runs_are_filled_where_they_end_as_theory_says_and_crossed_out_where_flagged(draw):
@@ -151,10 +151,9 @@ def test_looks_tell_all_regimes_apart():
 
 def curves(axes, kind: str) -> dict[str, np.ndarray]:
     """Drawn lines of one kind by run."""
-    named = [line for line in axes.lines if (line.get_gid() or "").startswith(f"{kind} ")]
-    return {
-        line.get_gid().removeprefix(f"{kind} "): np.column_stack(line.get_data()) for line in named
-    }
+    prefix = f"{kind} "
+    lines = [line for line in axes.lines if (line.get_gid() or "").startswith(prefix)]
+    return {line.get_gid().removeprefix(prefix): line.get_xydata() for line in lines}
 
 
 PULSES = ("fig03_steady_state", "fig08_steady_state_displacement", "fig09_steady_state_stress")
@@ -167,14 +166,12 @@ def test_simulated_pulses_lie_on_the_exact_ones(draw, name):
         assert simulated.keys() == exact.keys() and len(simulated) >= 4
         for run, curve in simulated.items():
             # The front's layer, a few blocks wide at this coarse lattice, is the difference.
-            off = np.abs(curve[:, 1] - np.interp(curve[:, 0], *exact[run].T))
-            assert np.median(off) < 0.03 * exact[run][:, 1].max()
+            distance = np.abs(curve[:, 1] - np.interp(curve[:, 0], *exact[run].T))
+            assert np.median(distance) < 0.03 * exact[run][:, 1].max()
             assert len(curve) <= 400 and len(exact[run]) <= 801
 
 
-def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_falls_behind_the_front(
-    draw,
-):
+def test_undamped_pulses_are_the_papers_damping_lowers_them_and_slip_only_grows(draw):
     table, figure = draw(PULSES[1]).table, draw(PULSES[1]).figure
     runs = table[table["role"] == "run"].set_index("run")
     fields = ["slip", "slip_velocity", "slip_acceleration"]
@@ -184,10 +181,8 @@ def test_undamped_pulses_are_the_papers_and_damping_lowers_them_and_slip_never_f
     runs["peak"] = peaks["slip_velocity"]
     by_damping = runs.pivot(index="left", columns="damping_ratio", values="peak")
     assert (np.diff(by_damping.to_numpy(), axis=1) < 0.0).all()
-    assert all(
-        (np.diff(line[:, 1]) <= 1e-5).all()
-        for line in curves(figure.axes[0], "simulation").values()
-    )
+    for line in curves(figure.axes[0], "simulation").values():
+        assert (np.diff(line[:, 1]) <= 1e-5).all()
 
 
 def test_the_arrows_are_the_measured_transition(draw):
@@ -207,8 +202,8 @@ def test_the_arrows_are_the_measured_transition(draw):
 
 def offsets(axes, gid: str) -> np.ndarray:
     """Positions of the markers with a name."""
-    found = [group.get_offsets() for group in axes.collections if group.get_gid() == gid]
-    return np.ma.getdata(np.concatenate(found))
+    groups = [group.get_offsets() for group in axes.collections if group.get_gid() == gid]
+    return np.ma.getdata(np.concatenate(groups))
 
 
 def test_every_run_is_drawn_in_the_collapse_in_two_colours(draw):
@@ -217,11 +212,10 @@ def test_every_run_is_drawn_in_the_collapse_in_two_colours(draw):
         axes, runs = drawn.figure.axes[index], drawn.measured[f"scaling_{boundary}"]
         sound = runs[runs["run_flags"].isna()]
         expected = np.sort(sound[f"transition_{quantity}"].dropna())
-        drawn_at = offsets(axes, "runs")
-        assert len(drawn_at) == len(sound)
-        assert np.sort(drawn_at[np.isfinite(drawn_at).all(axis=1), 1]) == pytest.approx(
-            expected, rel=1e-6
-        )
+        marks = offsets(axes, "runs")
+        assert len(marks) == len(sound)
+        heights = np.sort(marks[np.isfinite(marks).all(axis=1), 1])
+        assert heights == pytest.approx(expected, rel=1e-6)
         assert axes.get_xscale() == axes.get_yscale() == "log"
         (line,) = [line for line in axes.lines if line.get_gid() == "equality"]
         assert np.array_equal(line.get_xdata(), line.get_ydata())
@@ -238,9 +232,8 @@ def test_lattices_tend_to_the_exact_transition(draw, name):
     table = draw(name).table
     runs = table[table["run_flags"].isna() & (table["boundary"] == "displacement")]
     for quantity in ("length", "time"):
-        assert runs[quantity].to_numpy() == pytest.approx(
-            runs[f"exact_{quantity}"], rel=tol.DRAFT_TRANSITION
-        )
+        exact = pytest.approx(runs[f"exact_{quantity}"], rel=tol.DRAFT_TRANSITION)
+        assert runs[quantity].to_numpy() == exact
     stress = table[(table["boundary"] == "stress") & table["time"].notna()]
     assert (stress["time"] > stress["paper_time"]).all()
 
@@ -265,10 +258,9 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
             lines = [line for line in inset.lines if line.get_gid() == "exact"]
             assert len(lines) >= 2 and all(len(line.get_xdata()) == len(ratios) for line in lines)
     runs = drawn[0].table
-    off = (
-        (runs["length"] / runs["paper_length"] - 1.0).abs().groupby(runs["damping_ratio"]).median()
-    )
-    assert off[1.0] > 2.0 * off[0.0]
+    deviations = (runs["length"] / runs["paper_length"] - 1.0).abs()
+    medians = deviations.groupby(runs["damping_ratio"]).median()
+    assert medians[1.0] > 2.0 * medians[0.0]
 
 
 @pytest.mark.parametrize("name", DRAWN)

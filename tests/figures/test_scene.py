@@ -1,4 +1,4 @@
-"""A scene by name, and a run: recorded where fronts go, drawn from its table, numbers beside theory, a page alone."""
+"""A scene by name, and one run: its samples, figure, numbers beside theory, and page."""
 
 import re
 from types import SimpleNamespace
@@ -24,17 +24,17 @@ from slippulse.simulation.simulate import run_sweep
 from slippulse.steps import draw_scene, measure, predict, simulate, study_grid
 
 TITLE = "A <scene> & its $title"
+HELD = {"boundary": "displacement", "gamma": 0.65}
+STRESS = {"boundary": "stress"}
 SCENES = {
-    "displacement": {
-        "boundary": "displacement", "left": 0.6, "right": 0.6, "gamma": 0.65, "dx": 0.04, "duration": 40.0,
-    },
-    "stress": {"boundary": "stress", "left": -0.75, "right": 0.0, "width": 2.0, "dx": 0.08, "duration": 25.0},
-    "barrier": {
-        "boundary": "displacement", "left": 0.5, "right": 0.2, "gamma": 0.65, "dx": 0.05, "duration": 15.0,
-        "bumps": [[10.0, -2.5, 1.0]], "damping_ratio": 0.0,
-    },
-    "arrested at once": {"boundary": "stress", "left": -3.0, "right": -3.0, "width": 0.5, "dx": 0.05, "duration": 2.0},
-}  # fmt: skip
+    "displacement": HELD | {"left": 0.6, "right": 0.6, "dx": 0.04, "duration": 40.0},
+    "stress": STRESS | {"left": -0.75, "right": 0.0, "width": 2.0, "dx": 0.08, "duration": 25.0},
+    "barrier": HELD
+    | {"left": 0.5, "right": 0.2, "dx": 0.05, "duration": 15.0}
+    | {"bumps": [[10.0, -2.5, 1.0]], "damping_ratio": 0.0},
+    "arrested at once": STRESS
+    | {"left": -3.0, "right": -3.0, "width": 0.5, "dx": 0.05, "duration": 2.0},
+}
 
 
 @pytest.fixture(scope="module")
@@ -46,9 +46,8 @@ def drawn(shipped, tmp_path_factory):
         folder = tmp_path_factory.mktemp("scene")
         kinds = ("measured", "predicted", "uncertainties", "coarser")
         files = {kind: folder / f"{kind}.csv" for kind in kinds} | {"data": folder / "one.nc"}
-        outputs = {
-            kind: folder / f"one.{kind}" for kind in ("numbers", "csv", "png", "pdf", "html")
-        }
+        endings = ("numbers", "csv", "png", "pdf", "html")
+        outputs = {ending: folder / f"one.{ending}" for ending in endings}
         simulation = scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model)
         factors = (1.0, *accuracy["coarser"])
         sweeps = {factor: resolve(simulation, model, accuracy, factor) for factor in factors}
@@ -74,9 +73,8 @@ def test_samples_reach_beyond_the_fronts_and_the_figure_shows_them(drawn, name):
     assert scene.outputs["png"].stat().st_size > 20_000
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in drawing.axes]
     assert sum(map(bool, labels)) >= 4
-    (profile,) = (
-        axes for axes in drawing.axes if "velocity $\\dot u$ at the end" in axes.get_ylabel()
-    )
+    label = "velocity $\\dot u$ at the end"
+    (profile,) = (axes for axes in drawing.axes if label in axes.get_ylabel())
     shown = profile.lines[1].get_ydata()
     assert np.max(shown) == pytest.approx(float(run["slip_velocity"].max()), rel=1e-8)
     texts = " ".join(text.get_text() for part in drawing.subfigs for text in part.texts)
@@ -124,14 +122,16 @@ def test_the_animation_runs_from_rest_to_the_end(drawn, tmp_path):
         assert (np.asarray(film.convert("RGB")) != first).any()
 
 
-HELD = {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.65]}
+SPRINGS = {"boundary": "displacement", "left": [0.5], "right": "same", "gamma": [0.65]}
+GAMMAS, LEVELS, RATIOS = {"gamma": [0.3, 0.65]}, {"left": [0.4, 0.5]}, {"damping_ratio": [0.0, 0.1]}
+# Lists, number of lines, and number of runs on each line.
 SWEEPS = {
-    "over gamma": (HELD | {"gamma": [0.3, 0.65]}, 1, 2),
+    "over gamma": (SPRINGS | GAMMAS, 1, 2),
     "over levels": ({"boundary": "stress", "left": [-1.0, -0.5], "right": [0.0]}, 1, 2),
-    "one run": (HELD, 1, 1),
-    "over both": (HELD | {"left": [0.4, 0.5], "gamma": [0.3, 0.65]}, 2, 2),
-    "over three": (HELD | {"left": [0.4, 0.5], "gamma": [0.3, 0.65], "damping_ratio": [0.0, 0.1]}, 4, 2),
-}  # fmt: skip
+    "one run": (SPRINGS, 1, 1),
+    "over both": (SPRINGS | LEVELS | GAMMAS, 2, 2),
+    "over three": (SPRINGS | LEVELS | GAMMAS | RATIOS, 4, 2),
+}
 
 
 @pytest.mark.parametrize("name", SWEEPS)
@@ -141,19 +141,17 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     scenes, samples = expand(resolve(sweep, config["model"], config["presets"]["draft"]))
     measured = measured_table(run_sweep(scenes, samples, sweep["record"]), config["measure"])
     predicted = predict.predictions(predict.TOPICS, scenes, config["measure"])
-    save_table(
-        user_defined_sweep.table({}, {name: measured.join(predicted)}, {}), tmp_path / "sweep.csv"
-    )
+    table = user_defined_sweep.table({}, {name: measured.join(predicted)}, {})
+    save_table(table, tmp_path / "sweep.csv")
     drawn = user_defined_sweep.plot(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
-    # Of each line, theory and markers full and open.
+    # Each line has theory, and markers full and open.
     assert len(speeds.lines) == 3 * lines
     assert all(len(line.get_xdata()) == runs for line in speeds.lines[::3])
     (legend,) = drawn.legends
     texts = [text.get_text() for text in legend.get_texts()]
-    assert {"simulation", "exact theory"} <= {*texts} and len(texts) >= 2 + (
-        lines if lines > 1 else 0
-    )
+    assert {"simulation", "exact theory"} <= {*texts}
+    assert len(texts) >= (2 + lines if lines > 1 else 2)
     shown = [axes for axes in drawn.axes if axes.get_visible()]
     values = [tuple(np.round(axes.lines[1].get_ydata(), 9)) for axes in shown]
     assert len({*values}) == len(values), "no panel twice"
@@ -162,8 +160,8 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
 
 # A run as a picture, in one call.
 PLAIN = sp.Scene(
-    boundary="displacement", prestress=sp.Prestress(0.5, 0.4), gamma=0.65, duration=8.0, dx=0.05, scheme="continuum"
-)  # fmt: skip
+    "displacement", sp.Prestress(0.5, 0.4), 8.0, dx=0.05, gamma=0.65, scheme="continuum"
+)
 SAMPLES = sp.Samples(np.linspace(0.0, 8.0, 41), np.linspace(-12.0, 12.0, 81))
 
 
@@ -176,9 +174,8 @@ def test_fronts_trailing_edge_and_slip_are_drawn(samples):
     _, times, slip = figure.axes[:3]
     lines = {line.get_label(): line for line in times.lines}
     released = np.isfinite(run["release_time"].values)
-    assert lines["front"].get_xdata() == pytest.approx(
-        run["release_time"].values[released], abs=0.1
-    )
+    releases = run["release_time"].values[released]
+    assert lines["front"].get_xdata() == pytest.approx(releases, abs=0.1)
     stick = run.attrs["first_stick_time"]
     assert np.nanmin(lines["trailing edge"].get_xdata()) == pytest.approx(stick, abs=0.01)
     assert np.max(slip.lines[0].get_xdata()) == pytest.approx(float(run["slip"].max()))
@@ -197,10 +194,9 @@ def test_what_is_no_run_is_refused():
 @pytest.mark.parametrize("scheme", ["localised", "continuum"])
 @pytest.mark.parametrize(("peak", "times", "positions"), [(1.0, 0, 0), (0.9, 1, 9), (1.0, 5, 1)])
 def test_every_run_is_drawn(boundary, scheme, peak, times, positions):
-    gamma = 0.65 * (boundary == "displacement")
-    scene = sp.Scene(
-        boundary, sp.Prestress(-0.5, 0.0, peak=peak), 4.0, 0.1, gamma=gamma, scheme=scheme
-    )
+    gamma = 0.65 if boundary == "displacement" else 0.0
+    prestress = sp.Prestress(-0.5, 0.0, peak=peak)
+    scene = sp.Scene(boundary, prestress, 4.0, 0.1, gamma=gamma, scheme=scheme)
     samples = sp.Samples(np.linspace(0.0, 4.0, times), np.linspace(-3.0, 3.0, positions))
     assert sp.plot(sp.simulate(scene, samples))._repr_png_().startswith(b"\x89PNG")
 
@@ -208,6 +204,5 @@ def test_every_run_is_drawn(boundary, scheme, peak, times, positions):
 def test_a_scene_shows_its_parameters():
     html = PLAIN._repr_html_()
     for name, value in PLAIN.attributes().items():
-        assert f"<th>{name}</th>" in html and (
-            isinstance(value, str) or f"<td>{value}</td>" in html
-        )
+        assert f"<th>{name}</th>" in html
+        assert isinstance(value, str) or f"<td>{value}</td>" in html

@@ -1,6 +1,6 @@
-"""Figures 1, 6 and 7: sketches show what was computed, blocks and springs stand where the runs put them."""
+"""Figures 1, 6 and 7: the sketches, and the blocks and springs at positions of the runs."""
 
-from itertools import pairwise
+from itertools import chain, pairwise
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from slippulse.figures import fig06_burridge_knopoff as figure
 from slippulse.studies import damage_zone
 
 SPAN, THICKNESSES = {"from": 1e-4, "to": 2.0, "count": 31}, [0.5, 2.0, 8.0]
+SYMBOLS = ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$", "$y$")
 
 
 def named(axes, gid: str) -> list:
@@ -24,7 +25,7 @@ def texts(axes) -> str:
 
 
 def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
-    """Under a stress the mean stands for the interface; held, the mean of the displacement is half of the slip."""
+    """The mean displacement is the slip under a stress, and half of the slip under a held top."""
     table = fig01_system_sketch.table({}, {}, {"thickness": 2.0, "strip_width": 0.1})
     assert table["strip_width"].iloc[0] == 0.2 and table["y"].max() == 2.0
     stress, held = fig01_system_sketch.plot(table).axes
@@ -38,28 +39,14 @@ def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
         assert (strip.get_width(), strip.get_height()) == pytest.approx((0.1, 1.0))
         (friction,) = named(axes, "friction")
         assert np.diff(friction.get_path().vertices[:2, 0])[0] < 0.0, "friction opposes sliding"
-        for symbol in (
-            "G",
-            r"\lambda",
-            "H",
-            "f_f",
-            r"\mu_s",
-            r"\mu_k",
-            r"\mathrm{d}x",
-            "$x$",
-            "$y$",
-        ):
-            assert symbol in texts(axes)
+        assert all(symbol in texts(axes) for symbol in SYMBOLS)
     assert r"\tau" in texts(stress) and r"\partial t = 0" in texts(held)
 
 
 @pytest.fixture(scope="module")
 def zone():
-    settings = {
-        "figures": {
-            "fig07_damage_zone": {"stiffness_ratios": SPAN, "thickness_ratios": THICKNESSES}
-        }
-    }
+    ratios = {"stiffness_ratios": SPAN, "thickness_ratios": THICKNESSES}
+    settings = {"figures": {"fig07_damage_zone": ratios}}
     table = fig07_damage_zone.table({}, {"damage_zone": damage_zone.table({}, {}, settings)}, {})
     return fig07_damage_zone.plot(table).axes
 
@@ -73,9 +60,8 @@ def test_one_stress_goes_through_both_layers_of_the_damage_zone(zone):
     assert after[0][0] - before[0][0] == pytest.approx(damage_zone.SLIP)
     assert after[0][-1] == pytest.approx(before[0][-1])
     drop = (np.diff(before[0]) - np.diff(after[0]))[0]
-    assert drop == pytest.approx(
-        damage_zone.SLIP / (1.0 + damage_zone.STIFFNESS_RATIO * damage_zone.ROCK)
-    )
+    closed = damage_zone.SLIP / (1.0 + damage_zone.STIFFNESS_RATIO * damage_zone.ROCK)
+    assert drop == pytest.approx(closed)
     for symbol in (r"\delta", r"\hat u", "$H$", "$H_r$", "$G$", "G_r", "H + H_r"):
         assert symbol in texts(zone[0])
 
@@ -96,37 +82,26 @@ LATTICE = {"dx": 1.0, "max_step": 0.1, "resolved_blocks": 1}
 
 
 def sweep(scene, count=101):
-    samples = Samples(
-        times=np.linspace(0.0, scene.duration, count), positions=np.linspace(-20.0, 20.0, 41)
-    )
+    samples = Samples(np.linspace(0.0, scene.duration, count), np.linspace(-20.0, 20.0, 41))
     return run_sweep([scene], [samples], ("fronts", "fields", "samples"))
 
 
 @pytest.fixture(scope="module")
 def drawn():
     """Runs, their table, and blocks and pre-stress of each panel."""
-    held = Scene(
-        boundary="displacement", gamma=0.4, prestress=Prestress(0.3, 0.3), duration=10.0, **LATTICE
-    )
-    loaded = Scene(boundary="stress", prestress=Prestress(-0.7, 0.0), duration=12.0, **LATTICE)
+    held = Scene("displacement", Prestress(0.3, 0.3), 10.0, gamma=0.4, **LATTICE)
+    loaded = Scene("stress", Prestress(-0.7, 0.0), 12.0, **LATTICE)
     data = {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
     rows = figure.table(data, {}, {})
     axes = figure.plot(rows).axes
-    return (
-        data,
-        rows,
-        {name: axes[2 * index : 2 * index + 2] for index, name in enumerate(figure.PITCH)},
-    )
+    panels = dict(zip(figure.PITCH, (axes[:2], axes[2:4]), strict=True))
+    return data, rows, panels
 
 
 def segments(axes, name):
     """Springs of one kind, as arrays of points."""
-    return [
-        line
-        for group in axes.collections
-        if group.get_gid() == name
-        for line in group.get_segments()
-    ]
+    groups = [group.get_segments() for group in axes.collections if group.get_gid() == name]
+    return list(chain.from_iterable(groups))
 
 
 @pytest.mark.parametrize("name", figure.PITCH)
@@ -136,19 +111,16 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
     part = rows[rows["panel"] == name].sort_values(["row", "x"])
     moved = part["x"] + part["scale"] * part["slip"]
     blocks = [patch for patch in axes.patches if patch.get_gid() in figure.COLOURS]
-    assert np.sort([block.get_x() + 0.5 * figure.BLOCK for block in blocks]) == pytest.approx(
-        np.sort(moved)
-    )
+    centres = np.sort([block.get_x() + 0.5 * figure.BLOCK for block in blocks])
+    assert centres == pytest.approx(np.sort(moved))
     for state in figure.COLOURS:
         assert sum(block.get_gid() == state for block in blocks) == (part["state"] == state).sum()
-    gaps = np.concatenate(
-        [np.diff(centres) - figure.BLOCK for _, centres in moved.groupby(part["row"])]
-    )
+    steps = np.concatenate([np.diff(row) for _, row in moved.groupby(part["row"])])
+    gaps = steps - figure.BLOCK
     coils = segments(axes, "coil springs")
     assert [coil[-1, 0] - coil[0, 0] for coil in coils] == pytest.approx(gaps)
-    assert 0.0 < gaps.min() < 1.0 - figure.BLOCK < gaps.max(), (
-        "no blocks overlap, some springs are stretched"
-    )
+    # No blocks overlap, and some springs are stretched.
+    assert 0.0 < gaps.min() < 1.0 - figure.BLOCK < gaps.max()
     leaves = segments(axes, "leaf springs")
     if name == "displacement":
         assert np.sort([leaf[0, 0] for leaf in leaves]) == pytest.approx(np.sort(part["x"]))
@@ -157,9 +129,8 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
     else:
         assert leaves == []
     first = part[part["row"] == 0]
-    assert [bar.get_height() for bar in strip.patches] == pytest.approx(
-        first["prestress"].to_list()
-    )
+    bars = [bar.get_height() for bar in strip.patches]
+    assert bars == pytest.approx(first["prestress"].to_list())
     assert f"{first['scale'].iloc[0]:.2g}" in axes.get_xlabel()
     assert f"{first['left'].iloc[0]:g}" in strip.get_title()
 
@@ -168,15 +139,14 @@ def test_blocks_and_springs_stand_where_the_slip_puts_them(drawn, name):
 def test_instants_are_the_start_a_crack_the_first_stick_and_later(drawn, name):
     data, rows, _ = drawn
     run = point(data[f"burridge_knopoff_{name}"], 0)
-    (start, first), (crack, _), (stick, at), *_, (_, last) = figure.instants(run)
+    (start, first), (crack, _), (stick, index), *_, (_, last) = figure.instants(run)
     assert (start, first, crack, stick) == ("start", 0, "crack", "first stick")
     slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
     stuck = (slip > 0.0) & (velocity <= 0.0)
-    assert not stuck[:at].any() and stuck[at].any()
+    assert not stuck[:index].any() and stuck[index].any()
     times = rows[rows["panel"] == name].groupby("row")["time"].first()
-    assert (np.diff(times) > 0.0).all() and times.iloc[-1] == pytest.approx(
-        run["sample_time"].values[last]
-    )
+    assert (np.diff(times) > 0.0).all()
+    assert times.iloc[-1] == pytest.approx(run["sample_time"].values[last])
     low, high = figure.window(run)
     slipped = run["sample_position"].values[slip[last] > 0.0]
     assert low < slipped.min() and slipped.max() < high
@@ -194,19 +164,13 @@ def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_release
     last, framed = part[part["instant"] == "pulse"], part[part["arresting_block"]]
     sliding, stuck = (last.loc[last["state"] == state, "x"] for state in states)
     assert stuck.size and stuck.max() < sliding.min() and sliding.min() > 0.0
-    assert (
-        framed["x"].nunique() == 1
-        and (framed["slip"] == 0.0).all()
-        and (framed["prestress"] < 0.0).all()
-    )
-    assert stuck.min() == framed["x"].iloc[0] + 1.0
-    assert (
-        sum(patch.get_linewidth() > 1.0 for patch in panels["stress"][0].patches)
-        == part["row"].nunique()
-    )
+    assert framed["x"].nunique() == 1 and stuck.min() == framed["x"].iloc[0] + 1.0
+    assert (framed["slip"] == 0.0).all() and (framed["prestress"] < 0.0).all()
+    frames = [patch for patch in panels["stress"][0].patches if patch.get_linewidth() > 1.0]
+    assert len(frames) == part["row"].nunique()
 
 
 def test_a_run_without_a_stick_is_called_a_crack():
-    scene = Scene(boundary="stress", prestress=Prestress(0.3, 0.3), duration=4.0, **LATTICE)
+    scene = Scene("stress", Prestress(0.3, 0.3), 4.0, **LATTICE)
     names = [name for name, _ in figure.instants(point(sweep(scene, 21), 0))]
     assert names == ["start", "crack", "crack"]

@@ -1,5 +1,6 @@
-"""How a figure is written; and readers with any colour vision can tell its colours apart, simulated after Machado et
-al. (2009).
+"""Files of a figure, and colours that readers with any colour vision can tell apart.
+
+Colour vision is simulated after Machado et al. (2009).
 """
 
 from itertools import combinations
@@ -37,9 +38,8 @@ APART, GREYS_APART = 10.0, 15.0
 
 def linear(colour) -> np.ndarray:
     """Linear red, green and blue of a colour."""
-    return np.array(
-        [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
-    )
+    rgb = np.array(to_rgb(colour))
+    return np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)
 
 
 def lab(colour, vision: str) -> np.ndarray:
@@ -70,9 +70,8 @@ def test_levels_are_seen_on_white(quantity, value):
 def test_a_scale_goes_one_way_in_lightness(quantity, vision):
     _, _, ends, norm = SCALES[quantity]
     values = np.geomspace(*ends, 9) if norm is LogNorm else np.linspace(*ends, 9)
-    lightness = np.array(
-        [lab(colour_scale(quantity).to_rgba(value), vision)[0] for value in values]
-    )
+    colours = [colour_scale(quantity).to_rgba(value) for value in values]
+    lightness = [lab(colour, vision)[0] for colour in colours]
     steps = np.diff(lightness)
     assert (steps > 0.0).all() or (steps < 0.0).all()
     assert abs(lightness[-1] - lightness[0]) > 40.0
@@ -85,7 +84,7 @@ def test_states_of_a_block_are_apart_in_grey():
 
 @pytest.mark.parametrize("configuration", ["0123456789abcdef", ""])
 def test_a_figure_names_its_configuration_alone_and_has_words(configuration, tmp_path, monkeypatch):
-    """Of a figure that no job made there is none."""
+    """A figure that no job made has no configuration."""
     monkeypatch.setenv(CONFIGURATION, configuration)
     figure = style.new_figure(COLUMN, 2.0)
     figure.subplots().set(xlabel="pre-stress AVATAR", ylabel=r"$\tau_0$")

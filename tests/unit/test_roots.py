@@ -32,8 +32,8 @@ def test_roots_of_many_functions_between_ends():
     def cubic(x, which):
         return x**3 - VALUES[which]
 
-    found = roots_between(cubic, lower, upper, -VALUES, 1000.0 - VALUES, 1e-12)
-    assert found == pytest.approx(np.cbrt(VALUES), abs=2e-12)
+    roots = roots_between(cubic, lower, upper, -VALUES, 1000.0 - VALUES, 1e-12)
+    assert roots == pytest.approx(np.cbrt(VALUES), abs=2e-12)
     with pytest.raises(ValueError, match="different signs"):
         roots_between(cubic, lower, upper, VALUES, VALUES, 1e-12)
 
@@ -42,7 +42,7 @@ def test_roots_of_increasing_functions_by_secants():
     def sinh(x, which):
         return np.arcsinh(x) - np.arcsinh(VALUES[which])
 
-    found = increasing_roots(sinh, np.ones(4), np.zeros(4), np.full(4, 1e3))
-    assert found == pytest.approx(VALUES, rel=1e-13)
+    roots = increasing_roots(sinh, np.ones(4), np.zeros(4), np.full(4, 1e3))
+    assert roots == pytest.approx(VALUES, rel=1e-13)
     with pytest.raises(ArithmeticError, match="no root"):
         increasing_roots(lambda x, which: np.full(x.size, np.nan), *np.ones((3, 4)))

@@ -1,4 +1,4 @@
-"""The layer in the plane: energy, plane waves, the resonance of a strip, symmetry, and pulses on three grids."""
+"""Layer in the plane: energy, plane waves, resonance of a strip, symmetry, and pulses."""
 
 from dataclasses import replace
 
@@ -63,11 +63,11 @@ def test_a_strip_that_slides_as_one_sticks_after_two_shear_travel_times():
     assert run.slip[middle] == pytest.approx(2.0 * 0.8 / GAMMA, rel=0.01)
 
 
-def test_half_a_layer_and_a_whole_one_agree():
+def test_half_a_layer_and_a_full_one_agree():
     half = simulate_layer(PULSE)
-    whole = simulate_layer(replace(PULSE, coupling=1e-14))
+    full = simulate_layer(replace(PULSE, coupling=1e-14))
     for sign in (1.0, -1.0):
-        mirrored = np.interp(half.x[:-20], np.sort(sign * whole.x), whole.slip[:: int(sign)])
+        mirrored = np.interp(half.x[:-20], np.sort(sign * full.x), full.slip[:: int(sign)])
         np.testing.assert_allclose(mirrored, half.slip[:-20], atol=1e-9)
 
 

@@ -34,9 +34,9 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
 
 
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
-    """Numbers of `measure_run`, the state of the leading pulse, and the paper's T_trans and L_trans.
+    """Numbers of `measure_run`, the state of the leading pulse, and the paper's transition.
 
-    The last two (sections III B and III C) are in the row where the transition is measured.
+    The paper's T_trans and L_trans (sections III B and III C) are in the row if measured ones are.
     """
     row, pulse = measure_run(run, settings)
     if pulse is not None:
