@@ -166,7 +166,8 @@ def faults(keys: Keys, other: Keys, positions: int = 40) -> list[str]:
         worst = int(np.argmax(difference))
         if difference[worst] > AGREEMENT * end:
             out.append(
-                f"{name} at {x[worst]:.6g}: {getattr(one, name)[worst]:.9g}, {getattr(two, name)[worst]:.9g}"
+                f"{name} at {x[worst]:.6g}: "
+                f"{getattr(one, name)[worst]:.9g}, {getattr(two, name)[worst]:.9g}"
             )
     latest = min(one.limit, two.limit, end) * (1.0 - AGREEMENT)
     if abs(min(one.first, latest) - min(two.first, latest)) > AGREEMENT * end:

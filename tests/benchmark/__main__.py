@@ -21,7 +21,7 @@ from slippulse.configuration.read import read_config, read_overlay
 from slippulse.data.files import write_text
 from slippulse.data.provenance import machine_class
 from slippulse.data.versions import versions
-from slippulse.measurement.fronts import front_speed
+from slippulse.measurement.fronts import fit_front
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
 from slippulse.simulation.simulate import simulate
@@ -119,7 +119,7 @@ def whole_scene(accuracy: Mapping, window: float) -> dict:
     """
     scene = _scene(DURATION, DX, accuracy)
     exact = float(exact_speed(LEVEL, RATIO))
-    error = abs(front_speed(simulate(scene), window)[0] / exact - 1.0)
+    error = abs(fit_front(simulate(scene), window)[0] / exact - 1.0)
     seconds = best(lambda: solve_on_lattice(scene))
     twice = best(lambda: solve_on_lattice(_scene(2.0 * DURATION, DX, accuracy)))
     errors = textbook_errors(window)
@@ -161,7 +161,7 @@ def textbook_errors(window: float) -> list[dict]:
     def speed(scheme: str, step: float) -> float:
         values = {"scheme": scheme, "max_step": step, "order": 8}
         scene = Scene("stress", Prestress(LEVEL, LEVEL, 2.0), LENGTH, 1.0, beta=RATIO, **values)
-        return front_speed(simulate(scene), window)[0]
+        return fit_front(simulate(scene), window)[0]
 
     reference = speed("localised", 0.5)
     results = []

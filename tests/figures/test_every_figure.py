@@ -1,4 +1,4 @@
-"""Every figure fits the journal, is labelled and finite; and what the figures of the paper show."""
+"""Every figure fits the journal, is labelled and finite; the figures of the paper show runs."""
 
 from itertools import combinations, product
 from pathlib import Path
@@ -252,7 +252,7 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
             measured = runs.loc[runs["run_flags"].isna(), f"transition_{quantity}"].dropna()
             shown = np.sort(np.ma.compressed(group.get_offsets()[:, 1]))
             assert shown[np.isfinite(shown)] == pytest.approx(np.sort(measured), rel=1e-6)
-            # The inset has the ratio against b, with a line of exact theory for each of a few levels.
+            # The inset has the ratio against b, with lines of exact theory for a few levels.
             (inset,) = axes.child_axes
             assert np.allclose(np.unique(offsets(inset, "runs")[:, 0]), ratios)
             lines = [line for line in inset.lines if line.get_gid() == "exact"]

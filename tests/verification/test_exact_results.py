@@ -8,7 +8,7 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.measurement.fronts import arrival, front_speed, position_at
+from slippulse.measurement.fronts import arrival, fit_front, position_at
 from slippulse.measurement.pulses import leading_pulse
 
 GAMMA = 2.0 / 3.0
@@ -25,7 +25,7 @@ def run_of(left, right=None, width=1.0, *, gamma=0.0, **values):
 @pytest.mark.parametrize("tau0", [0.23, 0.37, 0.5, 0.71, 0.9])
 def test_undamped_front_speed_and_slip(tau0, paper_accuracy):
     run = run_of(tau0, gamma=0.65, dx=0.02, duration=120.0, **paper_accuracy)
-    speed = front_speed(run, 0.3)[0]
+    speed = fit_front(run, 0.3)[0]
     assert speed == pytest.approx(1.0 / np.sqrt(1.0 - tau0**2), rel=tol.FRONT_SPEED)
     assert leading_pulse(run, 0.3).slip == pytest.approx(2.0 * tau0 / 0.65, rel=tol.PULSE_SLIP)
     assert run.attrs["run_flags"] == ""
@@ -57,7 +57,7 @@ def test_steady_pulse(tau0, ratio):
 
 def test_the_published_figure():
     run = run_of(0.25, gamma=0.55, beta=1e-3, dx=0.01, duration=10.8, release="total", max_step=0.5)
-    speed, intercept, _ = front_speed(run, 0.6)
+    speed, intercept, _ = fit_front(run, 0.6)
     assert speed == pytest.approx(1.070, rel=tol.PUBLISHED_FRONT_SPEED)
     assert intercept == pytest.approx(0.81, abs=tol.PUBLISHED_INTERCEPT)
     assert run.attrs["first_stick_time"] == pytest.approx(3.93, rel=tol.PUBLISHED_FRONT_SPEED)

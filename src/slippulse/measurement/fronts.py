@@ -45,7 +45,7 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
     return float(np.interp(distance, distances, latest)), float(np.max(waits, initial=0.0))
 
 
-def front_speed(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
+def fit_front(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
     """Speed, intercept and standard error of the speed on the last fraction of a front's path.
 
     They are those of `straight_line`; NaN with fewer than 4 blocks.

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data.points import AnyRun
-from .fronts import front_speed, path
+from .fronts import fit_front, path
 
 NAN = float("nan")
 
@@ -24,7 +24,7 @@ class LeadingPulse(NamedTuple):
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     """Measure the pulse of a run; its speed is that on the last fraction ``window`` of its path."""
     end = run.attrs["end_time"]
-    speed, _, _ = front_speed(run, window)
+    speed, _, _ = fit_front(run, window)
     release, distance = path(run)
     front = float(distance[-1] + speed * (end - release[-1])) if distance.size else NAN
     start = np.searchsorted(run["x"], 0.0)

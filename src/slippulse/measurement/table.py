@@ -6,7 +6,7 @@ import numpy as np
 
 from ..data.points import AnyRun
 from ..model.prestress import prestress_from
-from .fronts import front_speed, position_at
+from .fronts import fit_front, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify
 from .transition import transition_displacement, transition_stress
@@ -42,7 +42,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     row["beyond"] = steps[-1][1] if steps else row["right"]
     for side in ("right", "left"):
         names = (f"front_speed_{side}", f"front_intercept_{side}", f"front_speed_error_{side}")
-        row |= zip(names, front_speed(run, settings["front_window"], side), strict=True)
+        row |= zip(names, fit_front(run, settings["front_window"], side), strict=True)
     row |= transition(run, settings["share"])
     row["first_stick_time"] = run.attrs["first_stick_time"]
     times = settings["trailing_times"]

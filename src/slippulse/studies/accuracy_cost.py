@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measurement.fronts import arrival, front_speed, path
+from ..measurement.fronts import arrival, fit_front, path
 from ..measurement.pulses import leading_pulse
 from ..model.prestress import Prestress
 from ..model.scene import Scene
@@ -103,7 +103,7 @@ def locking(window: float) -> pd.DataFrame:
     steps += [("localised", step) for step in LOCKING_STEPS[::4]]
     rows = pd.DataFrame(steps, columns=["scheme", "step"])
     scenes = [LOCKING(scheme=scheme, max_step=step) for scheme, step in steps]
-    rows["front_speed"] = [front_speed(simulate(scene), window)[0] for scene in scenes]
+    rows["front_speed"] = [fit_front(simulate(scene), window)[0] for scene in scenes]
     exact = front_speed_undamped(scenes[0].prestress.left)
     return rows.assign(exact=exact, dx=scenes[0].dx, part="locking")
 

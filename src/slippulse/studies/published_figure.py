@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from ..measurement.fronts import front_speed, position_at
+from ..measurement.fronts import fit_front, position_at
 from ..measurement.transition import between_fronts
 from ..model.prestress import Prestress
 from ..model.samples import Samples
@@ -143,7 +143,7 @@ class LeftPanel:
         tau0, gamma = map(float, trial)
         profile = Prestress(tau0, tau0)
         run = sampled(lattice_of("displacement", profile, END, dx, gamma, ratio * dx, release), 0.0)
-        speed, intercept, _ = front_speed(run, WINDOW)
+        speed, intercept, _ = fit_front(run, WINDOW)
         first = run.attrs["first_stick_time"]
         known = {
             "front_speed_right": speed,

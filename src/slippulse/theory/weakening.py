@@ -1,4 +1,4 @@
-"""Steady ruptures under friction that weakens linearly with slip, in the continuum at fixed damping.
+"""Steady ruptures under friction that weakens linearly with slip, in the damped continuum.
 
 Behind a front of speed v, U(xi) with xi = x - v t <= 0 obeys
 
@@ -25,7 +25,7 @@ from .domains import check_domains
 SLOWEST, FASTEST = 0.05, 50.0
 # Trial speeds on the way up from the slowest.
 FASTER = 1.1
-# Samples behind a front: from a fraction of the shortest length of the exponentials to a multiple of
+# Samples behind a front: from a fraction of the least length of the exponentials to a multiple of
 # the longest, each farther than the last by this factor.
 NEAREST, FARTHEST, FACTOR = 1e-2, 60.0, 1.01
 # Below this fraction of the bounded exponentials the growing one is rounding.
@@ -76,7 +76,7 @@ class _Exponentials:
 def _weakening_zone(
     b: float, k: float, gamma: float, tau0: float, weakening: float
 ) -> tuple[_Exponentials, float]:
-    """U in the zone where friction weakens, and its end; -inf where the slip velocity ends first."""
+    """U in the zone where friction weakens, and its end; -inf where slip velocity ends first."""
     zone = _Exponentials(b, k, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
     xi = zone.samples()
     weak = zone.at(xi) >= weakening
@@ -90,7 +90,7 @@ def _weakening_zone(
 
 @dataclass(frozen=True)
 class _Tail:
-    """U behind the weakening zone, whose end is at ``start``; ``turn`` is where U'' returns to 0."""
+    """U behind the weakening zone, which ends at ``start``; ``turn`` is where U'' returns to 0."""
 
     exponentials: _Exponentials
     start: float
@@ -180,7 +180,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
 
 
 def _decays(tail: _Exponentials) -> bool:
-    """Whether a tail creeps for ever: no growing exponential, no oscillation, and no overshoot."""
+    """True for a tail that creeps for ever: no growing exponential, oscillation or overshoot."""
     _, slow, fast = tail.exponents
     if slow.imag or fast.imag or abs(tail.sizes[0]) > ABSENT * np.abs(tail.sizes[1:]).max():
         return False
@@ -233,7 +233,7 @@ def _root_above(function: Callable[[float], float], lower: float) -> float:
 
 
 def weakening_front_speed(tau0: float, beta: float, weakening: float) -> float:
-    """Speed of a front without leaf springs, in wave speeds, selected by slip weakening and damping.
+    """Speed of a front without leaf springs, in wave speeds, by slip weakening and damping.
 
     Parameters
     ----------
@@ -285,7 +285,7 @@ def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> floa
 
     Notes
     -----
-    The energy tau_0 u - gamma u^2/2 that a length of the layer releases is its fracture energy d_c/2.
+    The energy tau_0 u - gamma u^2/2 that the layer releases is its fracture energy d_c/2.
 
     Examples
     --------
