@@ -34,6 +34,7 @@ _HOMES = {
     "Scene": "model.scene",
     "UnresolvedRun": "simulation.simulate",
     "UnstableRun": "solver.lattice",
+    "friction": "model.friction",
     "measure": "predict.one_run",
     "plot": "figures.run",
     "point": "data.points",

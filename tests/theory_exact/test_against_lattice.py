@@ -24,7 +24,11 @@ RICHARDSON = 1e-4
 
 def lattice_run(profile, gamma, ratio, duration, dx, samples=None, alpha=0.0):
     boundary = "displacement" if gamma else "stress"
-    values = {"gamma": gamma, "beta": ratio * dx, "rate_strengthening": alpha}
+    values = {
+        "gamma": gamma,
+        "beta": ratio * dx,
+        "friction": sp.friction("linear_rate", alpha=alpha),
+    }
     scene = sp.Scene(boundary, profile, duration, dx, max_step=0.5, order=8, **values)
     return sp.simulate(scene, samples=samples)
 

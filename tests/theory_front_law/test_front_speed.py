@@ -165,7 +165,7 @@ SPRINGS = [
 @pytest.mark.parametrize(("tau", "gamma", "dx", "ratio", "release", "alpha"), SPRINGS)
 def test_pulses_of_lattices(tau, gamma, dx, ratio, release, alpha):
     law = lattice_front_speed(tau, gamma, dx, ratio, release, alpha)
-    friction = {"release": release, "rate_strengthening": alpha}
+    friction = {"release": release, "friction": sp.friction("linear_rate", alpha=alpha)}
     accuracy = {"order": 8, "max_step": 0.15, "resolved_blocks": 1}
     values = {"gamma": gamma, "beta": ratio * dx, **friction, **accuracy}
     scene = sp.Scene("displacement", sp.Prestress(tau, tau), 600.0 * dx / law, dx, **values)

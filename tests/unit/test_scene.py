@@ -50,9 +50,11 @@ def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(
 
 def test_attributes_without_a_parameter_are_refused_by_its_name():
     attributes = sp.Scene(**STRESS).attributes()
-    # Older files have no rate strengthening; they are read as those of the paper's model.
-    del attributes["rate_strengthening"]
-    assert sp.Scene.from_attributes(attributes).rate_strengthening == 0.0
+    # Files from before other laws are of the paper's model, or of friction linear in slip rate.
+    del attributes["friction"]
+    assert sp.Scene.from_attributes(attributes).friction == sp.friction("coulomb")
+    strengthened = sp.Scene.from_attributes(attributes | {"rate_strengthening": 0.4})
+    assert strengthened.friction == sp.friction("linear_rate", alpha=0.4)
     del attributes["steps_and_bumps"]
     refusal = "steps_and_bumps: missing; allowed: every attribute of a run"
     with pytest.raises(ValueError, match=refusal):

@@ -127,7 +127,7 @@ def test_the_energy_balance_closes(paper_accuracy, case, rates):
         pytest.skip("slip runs away")
     boundary, dx = "displacement" if gamma else "stress", 0.02
     scene = sp.Scene(boundary, sp.Prestress(*levels), 12.0, dx, gamma, ratio * dx)
-    scene = replace(scene, rate_strengthening=alpha, **paper_accuracy)
+    scene = replace(scene, friction=sp.friction("linear_rate", alpha=alpha), **paper_accuracy)
     numbers = sp.simulate(scene).attrs
     assert numbers["energy_residual"] < tol.ENERGY
     stored = ("kinetic_energy", "elastic_energy", "leaf_spring_energy", "viscous_loss")

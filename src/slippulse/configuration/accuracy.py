@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from ..model.checks import check_choice, check_kind, check_number, short_repr
+from ..model.friction import COULOMB, friction_from
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
 from ..model.stability import MARGIN, largest_step
@@ -153,12 +154,11 @@ def promised(simulation: Mapping) -> Mapping[str, Any]:
         raise ConfigError(f"scheme: {scheme!r}; allowed: 'localised' where accuracy is given")
     if math.isnan(promise):
         return simulation
-    strengthening = simulation.get("rate_strengthening", [])
-    if any(strengthening):
-        # The constants hold without it: beyond alpha_c no pulse has a width, and near -alpha_c the
-        # slip diverges.
-        allowed = "0 where accuracy is given, or a dx of its own"
-        raise ConfigError(f"rate_strengthening: {short_repr(strengthening)}; allowed: {allowed}")
+    laws = simulation.get("friction", [])
+    if any(friction_from(law) != COULOMB for law in laws):
+        # The constants hold for it alone. Other laws have pulses without a width, or that diverge.
+        allowed = "law coulomb where accuracy is given, or a dx of its own"
+        raise ConfigError(f"friction: {short_repr(laws)}; allowed: {allowed}")
     common = {"boundary": simulation["boundary"], "fields": "fields" in simulation["record"]}
     spacings = []
     for run in runs(simulation):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..data.chunks import runs_of
 from ..model.balance import prestress_balance_position
+from ..model.friction import COULOMB, Friction, friction_from
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
@@ -23,7 +24,7 @@ class Run(NamedTuple):
     gamma: float
     dx: float | None
     damping: float
-    alpha: float
+    friction: Friction
 
 
 def promise_of(simulation: Mapping) -> float | None:
@@ -47,8 +48,8 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     wanted = set(runs_of(chunk[0], chunk[1], run_count(simulation))) if chunk else None
     for number, entries in enumerate(product(*_axes(simulation))):
         if wanted is None or number in wanted:
-            release, *shape, gamma, dx, damping, alpha = entries
-            yield Run(release, _profile(*shape), gamma, dx, damping, alpha)
+            release, *shape, gamma, dx, damping, law = entries
+            yield Run(release, _profile(*shape), gamma, dx, damping, friction_from(law))
 
 
 def run_count(simulation: Mapping) -> int:
@@ -70,7 +71,8 @@ def _axes(simulation: Mapping) -> list[Sequence]:
         shapes = [simulation["left"], rights, simulation["width"], steps]
     gamma, dx = simulation.get("gamma", [0.0]), simulation.get("dx", [None])
     damping = simulation.get("beta", simulation["damping_ratio"])
-    return [releases, *shapes, gamma, dx, damping, simulation.get("rate_strengthening", [0.0])]
+    laws = simulation.get("friction", [COULOMB.mapping()])
+    return [releases, *shapes, gamma, dx, damping, laws]
 
 
 def _profile(left, right=None, width=1.0, steps=()) -> Prestress:
@@ -92,7 +94,7 @@ def _scene(simulation: Mapping, run: Run, index: int) -> Scene:
         release=run.release,
         max_step=_max_step(simulation, run, dx, beta),
         order=simulation["accuracy"]["order"],
-        rate_strengthening=run.alpha,
+        friction=run.friction,
         **{key: simulation[key] for key in common},
     )
 
@@ -112,8 +114,10 @@ def _spacing(simulation: Mapping, run: Run, index: int) -> float:
 def _max_step(simulation: Mapping, run: Run, dx: float, beta: float) -> float:
     """The simulation's own step, or the preset's, cut to a safe fraction of the stability bound."""
     accuracy = simulation["accuracy"]
-    ratios, enough = (beta / dx, run.gamma * dx**2, run.alpha * dx), accuracy["max_step"] / MARGIN
+    ratios = beta / dx, run.gamma * dx**2, run.friction.steepest * dx
+    enough = accuracy["max_step"] / MARGIN
     bound = largest_step(simulation["scheme"], accuracy["order"], *ratios, enough=enough)
+    bound = min(bound, run.friction.longest_step / dx)
     step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
     if "promise" in accuracy:
         step = min(step, accuracy["max_step"])

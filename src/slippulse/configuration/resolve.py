@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ..model.friction import COULOMB, LinearRate
 from ..theory.front_speeds import LARGEST_RATIO, front_speed
 from .accuracy import ORDER, STEP
 from .schema import Configuration, Model, NamedScene, Profile, Simulation
@@ -10,7 +11,7 @@ from .schema import Configuration, Model, NamedScene, Profile, Simulation
 # A scene samples these numbers of times and positions, for its map and its animation.
 TIMES, POSITIONS = 241, 801
 # Keys of which a scene has one value and a simulation a list.
-LISTED = ("gamma", "damping_ratio", "beta", "dx", "rate_strengthening")
+LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening")
 # Lists of a simulation whose smallest and largest values are the most demanding ones.
 ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "levels")
 
@@ -38,6 +39,12 @@ def resolve(
     defaults["damping_ratio"] = [defaults["damping_ratio"]]
     given = Simulation.model_validate(simulation).plain()
     del given["chunks"]
+    if "friction" in defaults:
+        defaults["friction"] = [defaults["friction"]]
+    if "rate_strengthening" in given:
+        alphas = given.pop("rate_strengthening")
+        laws = [LinearRate(alpha) if alpha else COULOMB for alpha in alphas]
+        given["friction"] = [law.mapping() for law in laws]
     kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
     return {**defaults, **given, "accuracy": kept, "coarser": coarser}
 

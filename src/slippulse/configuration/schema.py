@@ -11,6 +11,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validat
 from pydantic_core import PydanticCustomError
 
 from ..model.checks import short_repr
+from ..model.friction import NAMES, friction_from
 from ..model.measured_columns import RECORD_FOR
 from .problems import nearest
 
@@ -73,6 +74,17 @@ Boundary = Literal["displacement", "stress"]
 Switch = Annotated[bool, Field(strict=False)]
 Release = Literal["total", "elastic"]
 Scheme = Literal["localised", "fixed_step", "continuum"]
+LAW = f"a mapping with law ({', '.join(NAMES)}) and its parameters"
+
+
+def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
+    friction_from(mapping)
+    return mapping
+
+
+Friction = Annotated[
+    dict[str, str | float], Field(json_schema_extra={"allowed": LAW}), AfterValidator(_known_law)
+]
 # Rows of numbers, which are lists in YAML.
 Step = Annotated[tuple[float, float], Field(strict=False)]
 Bump = Annotated[tuple[float, float, Positive], Field(strict=False)]
@@ -87,7 +99,8 @@ STUDIES = "a list of different names, at least one"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
-ALPHA = "alpha, friction that grows (> 0) or weakens (< 0) with slip rate; by default 0 [c/H]"
+ALPHA = "deprecated: alpha of `friction: {law: linear_rate, alpha: ...}` [c/H]"
+LAWS = "law of friction of sliding blocks, below; by default the model's"
 KEPT = "what is kept: release and stick times; slip, velocity, acceleration at the end; samples"
 RECORDED = "a list of fronts (always: all is measured from them), fields, samples"
 
@@ -152,6 +165,7 @@ class Physics(Block):
             allowed = "left out under boundary 'stress', which has no leaf springs"
             require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
         self.alone("beta", "damping_ratio")
+        self.alone("rate_strengthening", "friction")
         return self
 
 
@@ -166,6 +180,7 @@ class Simulation(Physics):
     gamma: Distinct[Positive] | None = key(GAMMA, None)
     damping_ratio: Distinct[NonNegative] | None = key("beta/dx; by default the model's", None)
     beta: Distinct[NonNegative] | None = key("damping, instead of `damping_ratio` [H]", None)
+    friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
     rate_strengthening: Distinct[float] | None = key(ALPHA, None)
     duration: Duration = key("how long each run is, in one of three units, below", words=UNITS)
     spacing: SpacingRule = key("a rule for the block spacing, below", SpacingRule(), RULE)
@@ -207,6 +222,7 @@ class NamedScene(Profile, Physics):
     gamma: Positive | None = key(GAMMA, None)
     damping_ratio: NonNegative | None = key("beta/dx; by default the model's", None)
     beta: NonNegative | None = key("damping, instead of `damping_ratio` [H]", None)
+    friction: Friction | None = key(LAWS, None, LAW)
     rate_strengthening: float | None = key(ALPHA, None)
     dx: Spacing | None = key("block spacing; by default the preset's [H]", None)
     release: Release | None = key("by default the model's", None)
@@ -230,6 +246,7 @@ class Model(Block):
         "`localised`: every release and stick at its instant; `fixed_step`: the textbook scheme;"
         " `continuum`: the exact continuum limit, which has neither `max_step` nor `order`"
     )
+    friction: Friction | None = key("law of friction; by default coulomb, the paper's", None, LAW)
     friction_ratio: NonNegative = key("mu_k/(mu_s - mu_k): stress below -(1 + 2 of it) is flagged")
     resolved_blocks: int = key("narrower pulses (`stress`: Gaussians) are flagged [dx]", ge=1)
 

@@ -22,6 +22,7 @@ VARIABLES = {
     "half_lattice": "1 where half of a symmetric scene may be simulated",
     "friction_ratio": "mu_k/(mu_s - mu_k)",
     "resolved_blocks": "sliding blocks below which a pulse is flagged",
+    "friction": "law of friction of sliding blocks with its parameters, as JSON",
     "rate_strengthening": "alpha, by which friction grows with slip rate, "
     "in units of the wave speed over H",
     "work_of_prestress": "work of the pre-stress on the slip",
@@ -29,6 +30,8 @@ VARIABLES = {
     "elastic_energy": "elastic energy of the strain at the end",
     "leaf_spring_energy": "energy of the leaf springs at the end",
     "viscous_loss": "energy lost to the damping and to what friction gains with slip rate",
+    "friction_loss": "work against friction above the kinetic one: the fracture energy of slip "
+    "weakening; with law linear_rate a part of viscous_loss",
     "event_loss": "energy lost as blocks stick within a step (textbook scheme)",
     "energy_residual": "what the energy balance misses, over its largest part",
     "end_time": "time at which the run ended",

@@ -1,10 +1,12 @@
 """Every number of one run, with those of the shape of its pulse."""
 
+import json
 from collections.abc import Mapping
 
 import numpy as np
 
 from ..data.points import AnyRun
+from ..model.friction import friction_of
 from ..model.prestress import prestress_from
 from .fronts import fit_front, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
@@ -17,10 +19,8 @@ PARAMETERS = (
     "damping_ratio", "dx", "max_step", "duration", "release", "scheme", "order", "half_lattice",
     "friction_ratio", "resolved_blocks", "run_flags", "steps", "block_updates", "energy_residual",
     "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases", "end_time",
-    "rate_strengthening",
+    "friction",
 )  # fmt: skip
-# Files from before this parameter are of the paper's model.
-SINCE = {"rate_strengthening": 0.0}
 # Fewer sliding blocks show no waves of the lattice.
 FEWEST = 12
 # The Gaussian is 0, to rounding of what is shown, beyond this number of widths.
@@ -36,7 +36,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     Returns its parameters and all numbers that the recorded data allow, NaN where one does not
     apply; and its leading pulse, where slip velocity is recorded.
     """
-    attributes = SINCE | run.attrs
+    attributes = run.attrs | {"friction": json.dumps(friction_of(run.attrs).mapping())}
     row = {name: attributes[name] for name in PARAMETERS}
     steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]

@@ -8,7 +8,8 @@ from html import escape
 from numbers import Real
 from typing import Any, Self
 
-from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
+from .checks import check_choice, check_kind, check_number, short_repr
+from .friction import COULOMB, Friction, friction_of
 from .prestress import Prestress, prestress_from
 from .stability import MARGIN, largest_step
 
@@ -24,11 +25,11 @@ MOST_STEPS = 2.0**52
 # The attributes of each simulation in a data file.
 ATTRIBUTES = """
     boundary gamma beta damping_ratio left right width peak steps_and_bumps duration dx release
-    scheme max_step order half_lattice friction_ratio resolved_blocks rate_strengthening
+    scheme max_step order half_lattice friction_ratio resolved_blocks friction
 """
 # Parameters that are not floats. A data file has number types of its own for them.
 KINDS = {"half_lattice": bool, "order": int, "resolved_blocks": int}
-FLOATS = ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio", "rate_strengthening")
+FLOATS = ("duration", "dx", "gamma", "beta", "max_step", "friction_ratio")
 
 
 @dataclass(frozen=True)
@@ -38,12 +39,13 @@ class Scene:
     The sliding lattice obeys, for slip u_i and slip velocity v_i at spacing dx,
 
         dv_i/dt = (u_{i+1} - 2 u_i + u_{i-1})/dx^2 - Gamma gamma u_i + tau_i
-                  + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2 - alpha v_i.
+                  + beta (v_{i+1} - 2 v_i + v_{i-1})/dx^2 - f_i.
 
-    A block is released when its stress reaches 1 and sticks when its velocity reaches 0.
+    A block is released when its stress reaches 1 and sticks when its velocity reaches 0. The
+    friction f_i is what a law makes of v_i and of the slip since the release; it is 0 in the paper.
 
     Source: equation (5) of the paper with the sign of its damping corrected, section II A and
-    appendix B. The rate strengthening is an addition of this project.
+    appendix B. Other laws of friction are an addition of this project.
 
     Parameters
     ----------
@@ -74,9 +76,9 @@ class Scene:
         mu_k/(mu_s - mu_k), >= 0. Reverse sliding begins at the stress -(1 + 2 friction_ratio).
     resolved_blocks : int
         A pulse of fewer sliding blocks is flagged: its width errs by about a block.
-    rate_strengthening : float, units of wave speed / H
-        Growth alpha of friction with slip rate. Refused where slip would run away:
-        alpha <= -2 sqrt(gamma), and alpha < 0 under "stress".
+    friction : Friction
+        Law of friction of a sliding block, which `friction` makes. "continuum" takes none but
+        "coulomb" and "linear_rate", and "localised" these and "slip_weakening".
 
     Raises
     ------
@@ -102,7 +104,7 @@ class Scene:
     half_lattice: bool = True
     friction_ratio: float = 5.0
     resolved_blocks: int = 8
-    rate_strengthening: float = 0.0
+    friction: Friction = COULOMB
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -110,7 +112,7 @@ class Scene:
         # Single-precision or integer parameters would be computed with as such, and compiled for.
         for name in FLOATS:
             object.__setattr__(self, name, float(getattr(self, name)))
-        check_runaway(self.gamma, self.rate_strengthening)
+        self._check_friction()
         self._check_resolution()
         self._check_step()
 
@@ -137,8 +139,15 @@ class Scene:
         elif not isinstance(self.gamma, Real) or isinstance(self.gamma, bool) or self.gamma != 0.0:
             allowed = "0 or left out under boundary 'stress' (no leaf springs)"
             raise ValueError(f"gamma: {short_repr(self.gamma)}; allowed: {allowed}")
-        check_number("rate_strengthening", self.rate_strengthening)
         check_number("max_step", self.max_step)
+
+    def _check_friction(self) -> None:
+        check_kind("friction", self.friction, Friction)
+        self.friction.check(self.gamma)
+        if self.scheme not in self.friction.schemes:
+            schemes = " or ".join(self.friction.schemes)
+            allowed = f"{schemes}, with friction law {self.friction.law!r}"
+            raise ValueError(f"scheme: {self.scheme!r}; allowed: {allowed}")
 
     def _check_resolution(self) -> None:
         width = self.prestress.width
@@ -161,8 +170,8 @@ class Scene:
         if self.scheme != "continuum":
             check_number("duration", self.duration, at_most=MOST_STEPS * self.max_step * self.dx)
         if self.max_step > bound:
-            if self.rate_strengthening:
-                ratios += f", rate_strengthening dx = {self.rate_strengthening * self.dx:.4g}"
+            if self.friction != COULOMB:
+                ratios += f", friction {json.dumps(self.friction.mapping())}"
             raise ValueError(
                 f"max_step: {self.max_step!r}; allowed: <= {bound:.4g} (in units of dx), the"
                 f" stability bound of scheme {self.scheme!r} at {ratios}"
@@ -189,8 +198,10 @@ class Scene:
         return self._stable_step(math.inf)
 
     def _stable_step(self, enough: float) -> float:
-        stiffness, drag = self.gamma * self.dx**2, self.rate_strengthening * self.dx
-        return largest_step(self.scheme, self.order, self.damping_ratio, stiffness, drag, enough)
+        stiffness, drag = self.gamma * self.dx**2, self.friction.steepest * self.dx
+        ratios = self.damping_ratio, stiffness, drag
+        bound = largest_step(self.scheme, self.order, *ratios, enough)
+        return min(bound, self.friction.longest_step / self.dx)
 
     def attributes(self) -> dict:
         """Every parameter as a plain number or text, for a data file.
@@ -204,6 +215,7 @@ class Scene:
         parts = {"steps": profile.steps, "bumps": profile.bumps}
         values = vars(profile) | vars(self) | {"half_lattice": int(self.half_lattice)}
         values |= {"damping_ratio": self.damping_ratio, "steps_and_bumps": json.dumps(parts)}
+        values["friction"] = json.dumps(self.friction.mapping())
         return {name: values[name] for name in ATTRIBUTES.split()}
 
     def _repr_html_(self) -> str:
@@ -219,7 +231,7 @@ class Scene:
         Parameters
         ----------
         attributes : mapping of names to values
-            As `attributes` writes them; rate_strengthening may be missing and is then 0.
+            As `attributes` writes them; older files have rate_strengthening, or no friction.
 
         Returns
         -------
@@ -232,7 +244,7 @@ class Scene:
             for name, kind in KINDS.items():
                 largest = 1 if kind is bool else None
                 check_number(name, attributes[name], integer=True, at_least=0, at_most=largest)
-            values = {"rate_strengthening": 0.0, **attributes}
+            values = dict(attributes) | {"friction": friction_of(attributes)}
             values["prestress"] = prestress_from(attributes)
             values |= {name: kind(values[name]) for name, kind in KINDS.items()}
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})

@@ -11,6 +11,7 @@ from ..data.points import AnyRun, runs_in
 from ..measurement.fronts import path
 from ..measurement.pulses import LeadingPulse, comoving, slip_variation
 from ..measurement.table import measure_run
+from ..model.friction import COULOMB, friction_of
 from ..model.prestress import prestress_from
 from ..theory.pulse import (
     paper_pulse,
@@ -62,6 +63,8 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
     """
     if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
+        return "none"
+    if friction_of(run.attrs) != COULOMB:
         return "none"
     ahead = np.argmin(np.abs(np.asarray(run["x"]) - path(run)[1][-1]))
     tau = float(np.asarray(run["prestress"])[ahead])

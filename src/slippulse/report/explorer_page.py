@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
+from ..model.friction import COULOMB, friction_of
 from ..model.prestress import Prestress, prestress_from
 from .html import page
 
@@ -60,7 +61,8 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     for run in table[table["boundary"] == "displacement"].to_dict("records"):
         prestress = prestress_from(run)
         plain = Prestress(prestress.left, prestress.left, prestress.width)
-        if prestress != plain or not prestress.left > 0.0 or run["damping_ratio"] > largest_ratio:
+        known = prestress == plain and friction_of(run) == COULOMB
+        if not known or not prestress.left > 0.0 or run["damping_ratio"] > largest_ratio:
             continue
         if run.get("pulse_state", "steady") != "steady":
             run["pulse_slip"] = math.nan

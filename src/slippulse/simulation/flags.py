@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ..model.friction import COULOMB
 from ..model.scene import Scene
 from ..solver.solution import Solution
 
@@ -42,8 +43,8 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
 
 
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:
-    """True if rate-dependent friction let nothing stick for 2 pi/sqrt(gamma)."""
-    if scene.rate_strengthening == 0.0 or scene.gamma == 0.0:
+    """True if another law of friction than the paper's let nothing stick for 2 pi/sqrt(gamma)."""
+    if scene.friction == COULOMB or scene.gamma == 0.0:
         return False
     if not np.any(solution.slip_velocity > 0.0):
         return False

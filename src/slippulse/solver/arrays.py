@@ -31,7 +31,10 @@ ALL_STUCK = 4
 # Kernels and Python read the fields of these records as attributes. There is one dtype object of
 # each kind: numba recognises it by its address, and would find the type of a copy in each call.
 # The viscous loss of pending_step still lacks the part of the dissipation at its end.
-_FLOATS = "time first_stick_time pending_step viscous_loss stick_loss min_velocity min_stuck_stress"
+_FLOATS = (
+    "time first_stick_time pending_step viscous_loss stick_loss friction_loss min_velocity"
+    " min_stuck_stress"
+)
 _COUNTS = (
     "steps block_updates event_updates samples_taken releases re_releases sticks first_stuck_block"
 )
@@ -58,7 +61,10 @@ class Medium(NamedTuple):
     leaf: float  # Gamma gamma
     beta: float
     damping: float  # beta/dx^2
-    alpha: float  # rate strengthening of friction
+    alpha: float  # friction that is linear in slip rate
+    law: int  # number of another law of friction, 0: none
+    first: float  # its parameters
+    second: float
     mirror: bool  # block 1 lies at x = 0 and block 0 is the mirror image of block 2
     total: bool  # the stress that is compared with 1 includes the damping force
 
@@ -72,6 +78,10 @@ class Motion(NamedTuple):
     velocity: np.ndarray  # (N,), slip velocity at the end of the step
     strain: np.ndarray  # (N,), (u_{i+1} - u_i)/dx
     tau: np.ndarray  # (N,), pre-stress
+    # Of laws of friction other than those of no and of linear rate dependence:
+    resists: np.ndarray  # (N,), 1 where the law holds, 0 where the rupture is nucleated without it
+    released: np.ndarray  # (N,), slip at the last release
+    friction: np.ndarray  # (N,), friction, of the textbook scheme alone
 
 
 class Segments(NamedTuple):
@@ -158,7 +168,7 @@ class Limits(NamedTuple):
 
 def make_motion(rows: int, size: int) -> Motion:
     """Blocks at rest. All rows lie in one piece of memory, equally spaced: see `lattice.PAGE`."""
-    memory = np.zeros((rows + 4, size))
+    memory = np.zeros((rows + len(Motion._fields) - 1, size))
     return Motion(memory[:rows], *memory[rows:])
 
 
@@ -188,7 +198,13 @@ def make_scratch(size: int, order: int) -> Scratch:
 
 
 def make_medium(
-    dx: float, leaf: float, beta: float, mirror: bool, total: bool, alpha: float = 0.0
+    dx: float,
+    leaf: float,
+    beta: float,
+    mirror: bool,
+    total: bool,
+    friction: tuple[float, int, float, float] = (0.0, 0, 0.0, 0.0),
 ) -> Medium:
-    """Constants of one scene."""
-    return Medium(dx, 1.0 / dx, 1.0 / (dx * dx), leaf, beta, beta / (dx * dx), alpha, mirror, total)
+    """Constants of one scene; ``friction`` has alpha, law, first and second of `Medium`."""
+    per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
+    return Medium(dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, mirror, total)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from ..model.samples import Samples
 from ..model.scene import Scene
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
+from .friction import resist, work_on_friction
 from .jit import entry, inner
 from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
@@ -60,6 +61,7 @@ def move(medium, motion, sliding, history, dt, end):
             tally.min_velocity = min(tally.min_velocity, after)
             after = 0.0
             sliding[i] = False
+            motion.released[i] = slip[i]
             note_stick(history, i, end)
         velocity[i] = after
         slip[i] += dt * after
@@ -119,6 +121,8 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         moving = forces(medium, motion, sliding, history, t)
         if moving == 0:
             return ALL_STUCK
+        if medium.law:
+            resist(medium, motion, sliding)
         fastest = move(medium, motion, sliding, history, dt, end)
         if fastest == math.inf:
             return UNSTABLE
@@ -126,6 +130,8 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
             velocity[0] = velocity[2]
         if medium.beta > 0.0 or medium.alpha != 0.0:
             tally.viscous_loss += viscous_loss(medium, velocity, dt)
+        if medium.law:
+            tally.friction_loss += work_on_friction(medium, motion, dt)
         tally.steps += 1
         tally.block_updates += moving
         tally.time = end

@@ -24,6 +24,8 @@ import numba
 from numba.extending import register_jitable
 
 SOURCES = Path(__file__).resolve().parent
+# Laws of friction, which the kernels compile too.
+LAWS = SOURCES.parent / "model" / "friction_laws"
 
 
 def source_digest(folder: Path = SOURCES) -> str:
@@ -32,7 +34,7 @@ def source_digest(folder: Path = SOURCES) -> str:
     numba's own cache looks only at the file of the compiled function, not at those that it calls.
     """
     digest = hashlib.sha256()
-    for path in sorted(folder.glob("*.py")):
+    for path in [*sorted(folder.glob("*.py")), *sorted(LAWS.glob("*.py"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()[:16]
 

@@ -7,6 +7,7 @@ import numpy as np
 from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, taylor
+from .friction import constants_of
 
 # A call of a kernel makes at most this number of steps, and of updates of a block, which take about
 # a tenth of a second. Between calls Python tells the progress and can be interrupted.
@@ -38,10 +39,10 @@ class Lattice:
         self.call_steps = CALL_STEPS
         self.mirror = scene.symmetric
         leaf = scene.gamma if scene.boundary == "displacement" else 0.0
-        total, alpha = scene.release == "total", scene.rate_strengthening
-        self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, alpha)
-        # Where friction weakens with slip rate, velocity can grow by this factor more.
-        weakening = max(-scene.rate_strengthening, 0.0) * scene.duration
+        total, friction = scene.release == "total", constants_of(scene.friction)
+        self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, friction)
+        # Where friction weakens without limit with slip rate, velocity can grow by this factor more.
+        weakening = max(-scene.friction.linear_rate, 0.0) * scene.duration
         self.growth = float(np.exp(min(weakening, 600.0)))
         # The block at array position 0; block 0 lies at x = 0.
         self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
@@ -110,12 +111,16 @@ class Lattice:
         self.motion.w[:, inside] = old.w
         self.motion.strain[inside] = old.strain
         self.motion.tau[inside] = old.tau
+        self.motion.released[inside] = old.released
+        self.motion.friction[inside] = old.friction
+        away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
+        self.motion.resists[:] = away >= self.scene.friction.zone
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
         if self.mirror:
             self.motion.tau[0] = self.motion.tau[2]
-        self.largest_force = float(np.abs(self.motion.tau).max())
+        self.largest_force = float(np.abs(self.motion.tau).max()) + self.scene.friction.drive
         self.sliding = np.pad(self.sliding, (left, right))
         release, stick = np.full((2, size), np.nan)
         release[inside], stick[inside] = self.history.release_time, self.history.stick_time

@@ -54,6 +54,7 @@ def energies(lattice: Lattice, totals: dict) -> dict:
         "leaf_spring_energy": float(0.5 * medium.leaf * np.sum(weight * slip * slip) * dx),
         "viscous_loss": totals["viscous_loss"],
         "event_loss": totals["stick_loss"],
+        "friction_loss": totals["friction_loss"],
     }
     work, *others = parts.values()
     largest = max(map(abs, parts.values()))

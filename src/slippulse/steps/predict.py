@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 
+import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
@@ -22,6 +23,11 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def predictions(topics: Iterable[str], scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
-    """Join the predictions of some modules of `predict`, one row a run; NaN where there is none."""
+    """Join the predictions of some modules of `predict`, one row a run; NaN where there is none.
+
+    Theory does not know the laws of friction that the exact continuum does not.
+    """
     modules = [import_module(f"slippulse.predict.{topic}") for topic in topics]
-    return pd.concat([module.predictions(scenes, settings) for module in modules], axis=1)
+    table = pd.concat([module.predictions(scenes, settings) for module in modules], axis=1)
+    unknown = ["continuum" not in scene.friction.schemes for scene in scenes]
+    return table.mask(np.array(unknown)) if any(unknown) else table

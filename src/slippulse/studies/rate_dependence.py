@@ -9,6 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ..model.balance import prestress_balance_position
+from ..model.friction_laws.linear_rate import LinearRate
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
@@ -96,7 +97,7 @@ def _lattice(level: float, fraction: float) -> LatticePulse:
     speed, critical = _front(level)
     alpha, dx = fraction * critical, SPACING * level
     duration = SHORTEST + MEMORIES / (speed - 1.0)
-    numbers: dict[str, Any] = {"order": ORDER, "max_step": MAX_STEP, "rate_strengthening": alpha}
+    numbers: dict[str, Any] = {"order": ORDER, "max_step": MAX_STEP, "friction": LinearRate(alpha)}
     profile = Prestress(level, level)
     scene = Scene("displacement", profile, duration, dx, GAMMA, RATIO * dx, **numbers)
     run = simulate_on_lattice(scene)
@@ -132,7 +133,7 @@ def _map(regime: str, alpha: float) -> pd.DataFrame:
 
 def _arrest(alpha: float, dx: float) -> pd.DataFrame:
     """A left front without leaf springs over time, on a lattice."""
-    numbers: dict[str, Any] = {"rate_strengthening": alpha, "max_step": 0.4}
+    numbers: dict[str, Any] = {"friction": LinearRate(alpha), "max_step": 0.4}
     scene = Scene("stress", ARRESTING, float(TIMES[-1]), dx, 0.0, RATIO * dx, **numbers)
     run = simulate_on_lattice(scene, Samples(TIMES, np.arange(-8.0, TIMES[-1] + 10.0, 0.25)))
     x, release = run["x"].values, run["release_time"].values

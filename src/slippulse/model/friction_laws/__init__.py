@@ -1,0 +1,1 @@
+"""Laws of friction: one module each. `slippulse.model.friction` lists them."""

@@ -1,0 +1,44 @@
+"""Friction that falls linearly with the slip since the release."""
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from ..checks import check_number
+from .law import Friction
+
+# The longest step over sqrt(d_c), the time by which slip grows e-fold where friction weakens.
+RESOLVED = 0.5
+
+
+@dataclass(frozen=True)
+class SlipWeakening(Friction):
+    """Friction 1 - slip/d_c until it is 0, healed at a stick. Within |x| < ``nucleation`` it is 0.
+
+    A pre-stress of 1 at x = 0 alone starts nothing, since friction is 1 there too at first.
+    """
+
+    d_c: float
+    nucleation: float
+
+    law: ClassVar = "slip_weakening"
+    schemes: ClassVar[tuple[str, ...]] = ("localised", "fixed_step")
+
+    def __post_init__(self) -> None:
+        check_number("d_c", self.d_c, above=0.0)
+        check_number("nucleation", self.nucleation, at_least=0.0)
+
+    @staticmethod
+    def friction(slip, velocity, d_c, nucleation):
+        """Return 1 - slip/d_c, or 0 beyond d_c."""
+        return max(0.0, 1.0 - slip / d_c)
+
+    @property
+    def zone(self) -> float:
+        """The nucleation."""
+        return self.nucleation
+
+    @property
+    def longest_step(self) -> float:
+        """A fraction of sqrt(d_c); beyond it the speed of the front is wrong at any spacing."""
+        return RESOLVED * math.sqrt(self.d_c)
