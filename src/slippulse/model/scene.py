@@ -77,8 +77,8 @@ class Scene:
     resolved_blocks : int
         A pulse of fewer sliding blocks is flagged: its width errs by about a block.
     friction : Friction
-        Law of friction of a sliding block, which `friction` makes. "continuum" takes none but
-        "coulomb" and "linear_rate", and "localised" these and "slip_weakening".
+        Law of friction of a sliding block, which `friction` makes. "fixed_step" takes any, the
+        other schemes "coulomb" and "linear_rate".
 
     Raises
     ------

@@ -22,7 +22,6 @@ class SlipWeakening(Friction):
     nucleation: float
 
     law: ClassVar = "slip_weakening"
-    schemes: ClassVar[tuple[str, ...]] = ("localised", "fixed_step")
 
     def __post_init__(self) -> None:
         check_number("d_c", self.d_c, above=0.0)
