@@ -84,6 +84,15 @@ def viscous_loss(medium, velocity, dt):
 
 
 @inner()
+def note_losses(medium, motion, tally, dt):
+    """Add the losses of a step to the totals."""
+    if medium.beta > 0.0 or medium.alpha != 0.0:
+        tally.viscous_loss += viscous_loss(medium, motion.w[1], dt)
+    if medium.law:
+        tally.friction_loss += work_on_friction(medium, motion, dt)
+
+
+@inner()
 def take_samples(recorder, motion, tally, end):
     """Take the samples that are due by ``end``, with the velocity at that time."""
     times, blocks = recorder.times, recorder.blocks
@@ -121,17 +130,13 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         moving = forces(medium, motion, sliding, history, t)
         if moving == 0:
             return ALL_STUCK
-        if medium.law:
-            resist(medium, motion, sliding)
+        resist(medium, motion, sliding)
         fastest = move(medium, motion, sliding, history, dt, end)
         if fastest == math.inf:
             return UNSTABLE
         if medium.mirror:
             velocity[0] = velocity[2]
-        if medium.beta > 0.0 or medium.alpha != 0.0:
-            tally.viscous_loss += viscous_loss(medium, velocity, dt)
-        if medium.law:
-            tally.friction_loss += work_on_friction(medium, motion, dt)
+        note_losses(medium, motion, tally, dt)
         tally.steps += 1
         tally.block_updates += moving
         tally.time = end

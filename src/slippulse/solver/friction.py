@@ -41,7 +41,9 @@ law_of_friction = choose(LAWS)
 
 @inner()
 def resist(medium, motion, sliding):
-    """Subtract the friction of sliding blocks by a law other than alpha v from the force in w[2]."""
+    """Subtract the friction of sliding blocks from the force in w[2], except alpha v."""
+    if medium.law == 0:
+        return
     slip, velocity, force = motion.w[0], motion.w[1], motion.w[2]
     for i in range(1, slip.shape[0] - 1):
         if sliding[i]:

@@ -41,7 +41,7 @@ class Lattice:
         leaf = scene.gamma if scene.boundary == "displacement" else 0.0
         total, friction = scene.release == "total", constants_of(scene.friction)
         self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, friction)
-        # Where friction weakens without limit with slip rate, velocity can grow by this factor more.
+        # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
         weakening = max(-scene.friction.linear_rate, 0.0) * scene.duration
         self.growth = float(np.exp(min(weakening, 600.0)))
         # The block at array position 0; block 0 lies at x = 0.
