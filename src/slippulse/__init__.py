@@ -9,23 +9,8 @@
 
 A module is loaded at the first use of one of its names, so that this import is fast.
 """
-# ruff: noqa: F401 since editors need the names of the first block, which are loaded when used
 
 from importlib import import_module
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    # Absolute imports: the steps do not depend on what is not loaded (`steps.reach`).
-    from slippulse import theory
-    from slippulse.configuration.accuracy import settings_for
-    from slippulse.data.points import point
-    from slippulse.figures.run import plot
-    from slippulse.model.prestress import Prestress
-    from slippulse.model.samples import Samples
-    from slippulse.model.scene import Scene
-    from slippulse.predict.one_run import measure
-    from slippulse.simulation.simulate import UnresolvedRun, run_sweep, simulate
-    from slippulse.solver.lattice import UnstableRun
 
 __version__ = "0.1.0"
 _HOMES = {

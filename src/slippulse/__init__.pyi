@@ -1,0 +1,15 @@
+# The names that the package loads when they are used, for editors and type checkers.
+from . import theory as theory
+from .configuration.accuracy import settings_for as settings_for
+from .data.points import point as point
+from .figures.run import plot as plot
+from .model.prestress import Prestress as Prestress
+from .model.samples import Samples as Samples
+from .model.scene import Scene as Scene
+from .predict.one_run import measure as measure
+from .simulation.simulate import UnresolvedRun as UnresolvedRun
+from .simulation.simulate import run_sweep as run_sweep
+from .simulation.simulate import simulate as simulate
+from .solver.lattice import UnstableRun as UnstableRun
+
+__version__: str
