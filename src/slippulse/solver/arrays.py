@@ -81,7 +81,6 @@ class Motion(NamedTuple):
     # Of laws of friction other than those of no and of linear rate dependence:
     resists: np.ndarray  # (N,), 1 where the law holds, 0 where the rupture is nucleated without it
     released: np.ndarray  # (N,), slip at the last release
-    friction: np.ndarray  # (N,), friction, of the textbook scheme alone
 
 
 class Segments(NamedTuple):

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from ..model.samples import Samples
 from ..model.scene import Scene
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, ROOM, UNSTABLE, Limits
-from .friction import resist, work_on_friction
+from .friction import resist
 from .jit import entry, inner
 from .lattice import Lattice
 from .solution import Solution, solve_on_lattice
@@ -84,15 +84,6 @@ def viscous_loss(medium, velocity, dt):
 
 
 @inner()
-def note_losses(medium, motion, tally, dt):
-    """Add the losses of a step to the totals."""
-    if medium.beta > 0.0 or medium.alpha != 0.0:
-        tally.viscous_loss += viscous_loss(medium, motion.w[1], dt)
-    if medium.law:
-        tally.friction_loss += work_on_friction(medium, motion, dt)
-
-
-@inner()
 def take_samples(recorder, motion, tally, end):
     """Take the samples that are due by ``end``, with the velocity at that time."""
     times, blocks = recorder.times, recorder.blocks
@@ -130,13 +121,14 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         moving = forces(medium, motion, sliding, history, t)
         if moving == 0:
             return ALL_STUCK
-        resist(medium, motion, sliding)
+        tally.friction_loss += resist(medium, motion, sliding, dt)
         fastest = move(medium, motion, sliding, history, dt, end)
         if fastest == math.inf:
             return UNSTABLE
         if medium.mirror:
             velocity[0] = velocity[2]
-        note_losses(medium, motion, tally, dt)
+        if medium.beta > 0.0 or medium.alpha != 0.0:
+            tally.viscous_loss += viscous_loss(medium, velocity, dt)
         tally.steps += 1
         tally.block_updates += moving
         tally.time = end

@@ -40,28 +40,27 @@ law_of_friction = choose(LAWS)
 
 
 @inner()
-def resist(medium, motion, sliding):
-    """Subtract the friction of sliding blocks from the force in w[2], except alpha v."""
+def resist(medium, motion, sliding, dt):
+    """Subtract the friction of sliding blocks, except alpha v, from the force in w[2].
+
+    Returns the work of the step against it, with the mean of the velocities before and after. A
+    block that stops in the step works against nothing: its kinetic energy is a loss of its own.
+    """
     if medium.law == 0:
-        return
+        return 0.0
     slip, velocity, force = motion.w[0], motion.w[1], motion.w[2]
-    for i in range(1, slip.shape[0] - 1):
-        if sliding[i]:
-            since, v = slip[i] - motion.released[i], velocity[i]
-            value = law_of_friction(medium.law, since, v, medium.first, medium.second)
-            motion.friction[i] = motion.resists[i] * value
-            force[i] -= motion.friction[i]
-
-
-@inner()
-def work_on_friction(medium, motion, dt):
-    """Work of a step against the friction at its start, with the velocities at its end."""
-    velocity, friction = motion.w[1], motion.friction
     work = 0.0
-    for i in range(1, velocity.shape[0] - 1):
-        work += friction[i] * velocity[i]
-    if medium.mirror:
-        work = 2.0 * work - friction[1] * velocity[1]
+    for i in range(1, slip.shape[0] - 1):
+        if not sliding[i]:
+            continue
+        since, before = slip[i] - motion.released[i], velocity[i]
+        value = law_of_friction(medium.law, since, before, medium.first, medium.second)
+        friction = motion.resists[i] * value
+        force[i] -= friction
+        after = before + dt * force[i]
+        if after > 0.0:
+            weight = 2.0 if medium.mirror and i > 1 else 1.0
+            work += weight * friction * 0.5 * (before + after)
     return medium.dx * dt * work
 
 

@@ -112,7 +112,6 @@ class Lattice:
         self.motion.strain[inside] = old.strain
         self.motion.tau[inside] = old.tau
         self.motion.released[inside] = old.released
-        self.motion.friction[inside] = old.friction
         away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
         self.motion.resists[:] = away >= self.scene.friction.zone
         for first, last in ((0, left), (inside.stop, size)):
