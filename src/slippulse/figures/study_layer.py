@@ -1,0 +1,103 @@
+"""Pulses of the layer in the plane, and one dimension over the plane against their width."""
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .style import (
+    BLACK,
+    GREY,
+    PAGE,
+    Look,
+    colour_scale,
+    entry,
+    few_ticks,
+    legend_below,
+    new_figure,
+    panel_letter,
+)
+
+NEEDS = {"studies": ["layer"]}
+
+# Measured numbers, with their names.
+QUANTITIES = {
+    "speed": "front speed",
+    "pulse_width": "width",
+    "pulse_slip": "slip",
+    "first_stick": "first stick",
+}
+# Numbers of one dimension by the prefix of their columns: how they are drawn, and what they are.
+LOOKS: dict[str, Look] = {
+    "paper": {"linestyle": "-", "marker": "o"},
+    "damped": {"linestyle": ":", "marker": "s", "markerfacecolor": "white"},
+    "balance": {"linestyle": "--", "marker": "^", "markerfacecolor": "white"},
+    "strip": {"linestyle": "--", "marker": "v", "markerfacecolor": "white"},
+}
+NAMES = {
+    "paper": "formula of the paper",
+    "damped": "1D, the same slip weakening, the paper's damping",
+    "balance": "balance of energy",
+    "strip": "shear wave to the top and back",
+}
+# Colours end at this fraction of the largest velocity, which is that of the tip alone.
+BRIGHT = 0.6
+KEYS = ["source", "tau0"]
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Part "ratio": ``ratio`` of a number of one dimension to one in the plane (quantity, source,
+    gamma, tau0, pulse_width), finest grid and last station; part "field" as in the study.
+    """
+    study = tables["layer"]
+    runs = study[study["part"] == "pulse"]
+    runs = runs[(runs["cells"] == runs["cells"].max()) & (runs["station"] == runs["station"].max())]
+    parts = [study[study["part"] == "field"].dropna(axis="columns", how="all")]
+    for source in LOOKS:
+        for quantity in QUANTITIES:
+            if f"{source}_{quantity}" in runs:
+                ratio = runs[f"{source}_{quantity}"] / runs[quantity]
+                known = {"part": "ratio", "source": source, "quantity": quantity, "ratio": ratio}
+                parts.append(runs[["gamma", "tau0", "pulse_width"]].assign(**known))
+    return pd.concat(parts, ignore_index=True)
+
+
+def plot(table: pd.DataFrame) -> Figure:
+    """Draw (a) the velocity over the layer, (b-e) ratios of one dimension to the plane."""
+    figure = new_figure(PAGE, 3.9)
+    panels = figure.subplot_mosaic("aaaa;bcde", height_ratios=(1.0, 2.9))
+    for letter, axes in panels.items():
+        panel_letter(axes, letter)
+    _draw_field(panels["a"], table[table["part"] == "field"])
+    ratios = table[table["part"] == "ratio"]
+    ends = 0.8 * ratios["ratio"].min(), 1.25 * ratios["ratio"].max()
+    for letter, (quantity, name) in zip("bcde", QUANTITIES.items(), strict=True):
+        axes = panels[letter]
+        for (source, tau0), line in ratios[ratios["quantity"] == quantity].groupby(KEYS):
+            line, colour = line.sort_values("pulse_width"), colour_scale("tau_0").to_rgba(tau0)
+            axes.plot(line["pulse_width"], line["ratio"], color=colour, **LOOKS[source])
+        axes.axhline(1.0, color=BLACK, linewidth=0.6)
+        axes.set(xscale="log", yscale="log", ylim=ends, xlabel=r"width $W_\mathrm{p}/H$")
+        axes.set_title(name, loc="right")
+        few_ticks(axes.xaxis, (2.0, 4.0, 8.0))
+        few_ticks(axes.yaxis, (0.2, 0.5, 1.0, 2.0, 5.0))
+    panels["b"].set_ylabel("one dimension / plane")
+    handles = [entry(NAMES[source], color=GREY, **look) for source, look in LOOKS.items()]
+    for tau0 in ratios["tau0"].unique():
+        handles.append(entry(rf"$\tau_0 = {tau0:g}$", color=colour_scale("tau_0").to_rgba(tau0)))
+    legend_below(figure, handles, 4)
+    return figure
+
+
+def _draw_field(axes: Axes, field: pd.DataFrame) -> None:
+    """Draw the horizontal velocity over the layer, to scale."""
+    grid = field.pivot(index="y", columns="x", values="velocity")
+    x, y = grid.columns.to_numpy(), grid.index.to_numpy()
+    brightest = BRIGHT * float(grid.to_numpy().max())
+    look: Look = {"cmap": "RdBu_r", "vmin": -brightest, "vmax": brightest, "shading": "gouraud"}
+    image = axes.pcolormesh(x, y, grid.to_numpy(), rasterized=True, **look)
+    bar = axes.figure.colorbar(image, ax=axes, aspect=6, pad=0.01, extend="max")
+    bar.set_label(r"$\dot u_x$")
+    axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
+    time, tau0, gamma = field[["time", "tau0", "gamma"]].iloc[0]
+    numbers = rf"$\Gamma = 1$, $\tau_0 = {tau0:g}$, $\gamma = {gamma:.3g}$, $t = {time:g}$"
+    axes.set_title(numbers, loc="right")

@@ -1,0 +1,152 @@
+"""The layer in the plane, beside the paper's equation in one dimension, under slip weakening."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ..model.prestress import Prestress
+from ..solver.layer import LayerRun, LayerScene, simulate_layer
+from ..theory.pulse import paper_pulse, paper_transition_displacement, paper_transition_stress
+from ..theory.weakening import undamped_weakening_slip, weakening_pulse
+
+NEEDS = {}  # type: dict[str, list[str]]
+
+# gamma of lambda = G, for which the paper means its formulas; smaller ones give pulses of many H.
+GAMMA = 2.0 / 3.0
+GAMMAS = (GAMMA, 0.3, 0.12, 0.06)
+LEVELS = (0.5, 0.65, 0.8, 0.95)
+# Fracture energy d_c/2 over tau_0^2/(2 gamma), the most that a length of the layer releases.
+TOUGHNESS = 5.0 / 12.0
+# Half of the length without friction, the duration, and half of the length in which a speed is
+# fitted, at GAMMA; they are longer at smaller gamma, as the paper's pulses are.
+NUCLEATION, DURATION = 2.0, 30.0
+HALF = 1.0
+# Three grids show what converges; one case has a finer one.
+CELLS, FINE = (10, 20, 40), (20, 40, 80)
+# Fractions of the path of the front at which a pulse is measured: the last two say if it settles.
+STATIONS = (0.3, 0.6, 0.85)
+# The paper's damping.
+BETA = 1e-3
+# Pre-stress and weakening of the pulse whose top is free to rise, and of a crack under held stress.
+FREE, CRACK = (0.5, 0.225), (0.8, 0.8)
+# A level that stops the left front under held stress, the width of the Gaussian at nucleation, and
+# weakenings.
+BARRIER, WIDTH = -0.75, 5.0
+WEAKENINGS = (0.05, 0.2, 0.8)
+# Coefficients of friction of a strength that follows the normal stress.
+COUPLINGS = (0.3, 0.6)
+# The drawn pulse, at twice the length of nucleation after this time, on every second cell.
+SNAPSHOT, EVERY = 12.0, 2
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Rows of part "pulse" (held displacement), "free" (the same, the top free to rise), "coupled"
+    (strength by normal stress, on either side), "fine" (one pulse on a finer grid), "crack" and
+    "barrier" (held stress): speed, pulse_width and pulse_slip at three stations, first_stick, end
+    of the rupture; numbers of one dimension by the paper's formulas (paper_), with the same
+    weakening at the paper's damping (damped_), by the balance of energy, and of a strip that slides
+    as one. Part "field": velocity at x and y.
+    """
+    rows = []
+    for gamma in GAMMAS:
+        for tau0 in LEVELS:
+            scene = uniform("displacement", gamma, tau0, TOUGHNESS * tau0**2 / gamma)
+            beside = one_dimension(scene)
+            rows += [row | beside for row in on_grids("pulse", scene, CELLS)]
+    rows += on_grids("free", replace(uniform("displacement", GAMMA, *FREE), top="free"), CELLS)
+    rows += on_grids("crack", uniform("stress", GAMMA, *CRACK), CELLS)
+    closest = uniform("displacement", GAMMA, 0.8, TOUGHNESS * 0.8**2 / GAMMA)
+    rows += on_grids("fine", closest, FINE)
+    for coupling in COUPLINGS:
+        rows += on_grids("coupled", replace(closest, coupling=coupling), FINE[:2], (1, -1))
+    for weakening in WEAKENINGS:
+        barrier = Prestress(BARRIER, 0.0, WIDTH)
+        scene = replace(uniform("stress", GAMMA, *CRACK), prestress=barrier, weakening=weakening)
+        balance = {"balance_distance": paper_transition_stress(barrier)[0]}
+        stopped = on_grids("barrier", replace(scene, duration=1.8 * DURATION), CELLS, (1, -1))
+        rows += [row | balance for row in stopped]
+    return pd.concat([pd.DataFrame(rows), field(replace(closest, duration=SNAPSHOT))])
+
+
+def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
+    """Scene in uniform pre-stress, which a length without friction nucleates."""
+    stretch = math.sqrt(GAMMA / gamma)
+    duration, nucleation = DURATION * stretch, NUCLEATION * stretch
+    prestress = Prestress(tau0, tau0, peak=tau0)
+    return LayerScene(boundary, gamma, prestress, weakening, duration, nucleation=nucleation)
+
+
+def on_grids(
+    part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
+) -> list[dict[str, Any]]:
+    """Rows of one scene, for each grid, side and station."""
+    rows = []
+    for cells in grids:
+        run = simulate_layer(replace(scene, cells=cells))
+        known = {
+            "part": part,
+            "gamma": scene.gamma,
+            "tau0": scene.prestress.right,
+            "weakening": scene.weakening,
+            "coupling": scene.coupling,
+            "cells": cells,
+            "first_stick": first_stick(run, scene.nucleation),
+            "energy_residual": run.energy_residual,
+        }
+        half = scene.nucleation * HALF / NUCLEATION
+        for side in sides:
+            end = float((side * run.x[np.isfinite(run.release_time)]).max())
+            for station in STATIONS:
+                row = {"side": side, "end": side * end, "station": station}
+                rows.append(known | row | passage(run, side * station * end, half))
+    return rows
+
+
+def passage(run: LayerRun, position: float, half: float) -> dict[str, float]:
+    """Speed and width of what passes a position, and the slip that is left there at the end."""
+    near = np.abs(run.x - position) <= half
+    speed = 1.0 / abs(np.polyfit(run.x[near], run.release_time[near], 1)[0])
+    width = speed * float((run.stick_time - run.release_time)[near].mean())
+    return {"speed": speed, "pulse_width": width, "pulse_slip": float(run.slip[near].mean())}
+
+
+def first_stick(run: LayerRun, nucleation: float) -> float:
+    """Time of the first stick in the length without friction, infinite without any."""
+    sticks = run.stick_time[np.abs(run.x) <= nucleation]
+    return float(sticks[np.isfinite(sticks)].min(initial=math.inf))
+
+
+def one_dimension(scene: LayerScene) -> dict[str, float]:
+    """Numbers of the paper's equation at the parameters of a scene, and times of a strip."""
+    tau0, gamma = scene.prestress.right, scene.gamma
+    weakening = scene.weakening
+    paper, damped = paper_pulse(tau0, gamma), weakening_pulse(tau0, gamma, BETA, weakening)
+    return {
+        "paper_speed": paper.speed,
+        "paper_pulse_width": paper.width,
+        "paper_pulse_slip": paper.slip,
+        "paper_first_stick": paper_transition_displacement(tau0, gamma)[0],
+        # A strip that slides as one sticks when a shear wave has gone to the top and back.
+        "strip_first_stick": 2.0 / math.sqrt(0.5 * gamma),
+        "damped_speed": damped.speed,
+        "damped_pulse_width": damped.width,
+        "damped_pulse_slip": damped.slip,
+        "balance_pulse_slip": undamped_weakening_slip(tau0, gamma, weakening),
+    }
+
+
+def field(scene: LayerScene) -> pd.DataFrame:
+    """Horizontal velocity over the layer at the end of a scene, where anything has moved."""
+    run = simulate_layer(scene)
+    ahead = run.x <= scene.duration + 2.0 * scene.nucleation
+    columns = np.flatnonzero(ahead)[::EVERY]
+    rows = np.arange(0, scene.cells + 1, EVERY)
+    y, x = np.meshgrid(rows / scene.cells, run.x[columns], indexing="ij")
+    velocity = run.velocity[np.ix_(rows, columns)]
+    shape = {"x": x.ravel(), "y": y.ravel(), "velocity": velocity.ravel()}
+    numbers = {"gamma": scene.gamma, "tau0": scene.prestress.right, "weakening": scene.weakening}
+    return pd.DataFrame(shape).assign(part="field", time=scene.duration, **numbers)
