@@ -30,8 +30,10 @@ include: "workflow/rules/targets.smk"
 
 onsuccess:
     end()
+    begin().close()
 
 
 onerror:
+    begin().close()
     # The last words are the reasons.
     sys.stderr.write("".join(f"{reason}\n" for reason in FAILED))

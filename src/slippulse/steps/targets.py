@@ -108,6 +108,8 @@ class Plan:
         write_faulty(faulty, "; made anew where needed.")
         if held:
             self._set_times({*wanted}, {f"{RESULTS}/{name}" for name in faulty})
+            if not makes:
+                held.close()
         return held
 
     def _set_times(self, wanted: set[str], faulty: set[str]) -> None:
