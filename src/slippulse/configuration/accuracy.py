@@ -190,7 +190,8 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
 
 def _spacings_without_springs(demand: Demand) -> list[float]:
     """Spacings that the numbers of a scene under a stress boundary allow, one for each number."""
-    error, prestress, ratio = demand.error, demand.prestress, demand.damping_ratio
+    error, ratio = demand.error, demand.damping_ratio
+    prestress = demand.prestress
     # Distances to where the Gaussian falls to 0, towards each negative level.
     distances = [
         prestress.width * math.sqrt(2.0 * math.log1p(-prestress.peak / level))

@@ -66,7 +66,8 @@ SCALES = {
 }
 
 # A note below a figure: inches of a line and of the gap above, and characters an inch.
-NOTE_LINE, NOTE_GAP, NOTE_DENSITY = 0.13, 0.08, 22
+NOTE_LINE, NOTE_GAP = 0.13, 0.08
+NOTE_DENSITY = 22
 
 # The Times that Matplotlib brings along, for the journal's; the report has it too.
 FAMILY = "STIXGeneral"

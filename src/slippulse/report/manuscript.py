@@ -55,7 +55,8 @@ class Gallery:
     def __init__(
         self, included: Sequence[str], texts: Mapping, captions: Mapping, folder: Path, here: str
     ) -> None:
-        self.captions, self.folder, self.here = captions, folder, here
+        self.captions = captions
+        self.folder, self.here = folder, here
         named = {document: NAMED.findall(text) for document, text in texts.items()}
         everywhere = {*chain.from_iterable(named.values())}
         self.unnamed = [name for name in included if name not in everywhere]
