@@ -48,7 +48,7 @@ def test_it_fits_a_page_its_axes_are_labelled_and_what_is_drawn_is_finite_and_wr
     figure.set_dpi(50)
     save_figure(figure, tmp_path / "first.png", tmp_path / "first.pdf")
     assert all((tmp_path / f"first.{ending}").stat().st_size > 2000 for ending in ("png", "pdf"))
-    # As many grey levels as letters and lines have.
+    # Letters and lines have more than 20 grey levels.
     with Image.open(tmp_path / "first.png") as picture:
         assert len(picture.convert("L").getcolors()) > 20
     texts = [text for text in figure.findobj(Text) if text.get_visible()]

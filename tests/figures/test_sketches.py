@@ -16,7 +16,7 @@ SYMBOLS = ("G", r"\lambda", "H", "f_f", r"\mu_s", r"\mu_k", r"\mathrm{d}x", "$x$
 
 
 def named(axes, gid: str) -> list:
-    """What is drawn under one name."""
+    """Artists of one name."""
     return [artist for artist in (*axes.patches, *axes.lines) if artist.get_gid() == gid]
 
 

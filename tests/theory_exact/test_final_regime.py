@@ -101,7 +101,7 @@ def test_without_leaf_springs_a_barrier_leaves_the_centre_part_of_the_velocity(l
     for time in times:
         largest = np.max(exact.slip_velocity(np.linspace(0.8, speed, 301) * time, time))
         errors.append(abs(float(exact.slip_velocity(0.0, time)) / largest / expected - 1.0))
-    # What the Gaussian adds is forgotten like 1/t.
+    # The contribution of the Gaussian decays like 1/t.
     assert errors[1] < 0.1 and errors[1] < 0.6 * errors[0]
     pulse = expected < STILL
     assert regime(left, right, 0.0) == (

@@ -1,4 +1,4 @@
-"""Whether two trees of results agree within their uncertainties."""
+"""Comparison of two trees of results within their uncertainties."""
 
 import json
 import math

@@ -248,7 +248,7 @@ def test_verification_reads_what_planning_remembers(results, monkeypatch):
     assert faults(results) == {}
     path = results / DATA
     content = path.read_bytes()
-    # What a program writes through a map of memory may change the content and no time.
+    # A program that writes through a map of memory may change the content and no time.
     cache = results / "records/.digests"
     remembered = json.loads(cache.read_text())
     path.write_bytes(content[:-1] + b"!")

@@ -68,7 +68,7 @@ def test_it_can_be_started_from_anywhere(finished, tmp_path):
 
 @pytest.mark.slow
 def test_a_failing_job_says_so_in_one_line(finished, tmp_path):
-    """As `make replicate` runs it, whose logger prints the logs of jobs that fail."""
+    """Run as `make replicate` does, whose logger prints the logs of jobs that fail."""
     copy = Path(shutil.copytree(finished, tmp_path / "copy", symlinks=True))
     (copy / SCENE).unlink()
     (copy / DATA).write_bytes(b"no data")

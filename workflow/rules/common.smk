@@ -114,7 +114,7 @@ def made(kind, names):
     return expand(FILES[kind], name=[*names])
 
 
-# What an overlay or the command line changed; None where nothing can have changed.
+# Changes by an overlay or the command line; None where nothing can have changed.
 ALTERED = None
 if OVERLAYS or workflow.config_settings.config:
     ALTERED = Alterations(read_config(SHIPPED, every_run=False), CONFIG)
@@ -160,7 +160,7 @@ def settings_of(job):
             for factor in map(float, ACCURACY["coarser"])
         },
         "measure": {**config["measure"], "share": share},
-        # Of a shipped simulation the topics that are read; of an added one all.
+        # A shipped simulation has the topics that are read; an added one has all.
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
         # Each scheme has its steps: an edit of the theory re-runs exact solutions alone.
         "simulate": f"simulate{by_scheme}",

@@ -79,7 +79,7 @@ def begin_with(targets):
     return held
 
 
-# What Snakemake says after the reasons of jobs that failed.
+# Text of Snakemake after the reasons of jobs that failed.
 AFTERWARDS = ("Complete log", "Elapsed time", "At least one job did not complete")
 
 

@@ -1,1 +1,1 @@
-"""What the paper says, what was measured, and the verdict, computed."""
+"""Claims of the paper, with what was measured and the computed verdict."""

@@ -106,7 +106,7 @@ class Tree:
         """Find files that are as records of their own say, each with the options of its run."""
         made: dict[str, str] = {}
         for name in unknown:
-            # What is no record says nothing.
+            # A file that is no record says nothing.
             with suppress(OSError, ValueError, KeyError, TypeError):
                 record = read_record(self.results / name)
                 digests = {output: file_digest(self.results / output) for output in record.outputs}

@@ -22,7 +22,7 @@ LARGEST_FRACTION = 0.95
 
 
 def covers(run: Mapping, quantity: str, fraction: float) -> bool:
-    """Whether a promise covers one number of a run, a row of the measured table.
+    """Return True if a promise covers one number of a run, a row of the measured table.
 
     ``fraction`` : of |x_minus| that the left front covers at T_trans under a stress boundary.
     """
@@ -42,7 +42,7 @@ def covers(run: Mapping, quantity: str, fraction: float) -> bool:
 
 
 def _covers_stress(run: Mapping, quantity: str, fraction: float) -> bool:
-    """Whether a promise covers the largest velocity or the transition under a stress boundary."""
+    """Return True if a promise covers peak velocity or transition under a stress boundary."""
     if quantity == "largest_velocity":
         # Theory has the far-field pulse; between two fronts that run on, velocity grows.
         return run["left"] < 0.0 == run["right"] == run["beyond"]

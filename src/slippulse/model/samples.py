@@ -6,7 +6,7 @@ import numpy as np
 
 from .checks import as_numbers
 
-# What a sweep may keep: release and stick times, fields at the end, samples on the way.
+# Groups that a sweep may keep: release and stick times, fields at the end, samples on the way.
 RECORDS = ("fronts", "fields", "samples")
 
 

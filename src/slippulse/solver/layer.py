@@ -73,7 +73,7 @@ class LayerScene:
 
     @property
     def symmetric(self) -> bool:
-        """Whether the half x >= 0 is enough."""
+        """True where the half x >= 0 is enough."""
         return self.prestress.symmetric and self.coupling == 0.0
 
 

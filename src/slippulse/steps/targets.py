@@ -1,4 +1,4 @@
-"""What a run is asked for, what is in its way, and what it leaves behind."""
+"""Targets of a run, obstacles to it, and the summary that it leaves."""
 
 import os
 import sys

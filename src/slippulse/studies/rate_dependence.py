@@ -26,7 +26,7 @@ LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
 FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5)
 # Spacing over level, to which the width of a pulse is proportional.
 SPACING = 0.12
-# By such a step and order rounding, or the rest of the nucleation, ends the decay behind a crack.
+# Such a step and order leave rounding, or the nucleation, to end the decay behind a crack.
 ORDER, MAX_STEP = 8, 0.25
 # The trailing edge learns of the front at the rate by which that outruns the waves: it is steady
 # after so long.

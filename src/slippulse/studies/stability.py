@@ -64,7 +64,7 @@ def boundary(stable: Callable[[float], bool], lower: float, upper: float) -> flo
 def sound(
     profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float
 ) -> bool:
-    """Whether nothing sticks: velocities are positive until a growing mode makes one negative."""
+    """True if nothing sticks: velocities are positive until a growing mode makes one negative."""
     step = fraction * bound
     # A chain between walls turns back after a wave has crossed it.
     duration = min(STEPS * step, 0.8 * BLOCKS)

@@ -83,7 +83,7 @@ class Part:
         stick[covered] = np.nan_to_num(self.stick_time(positions[covered]), nan=np.inf)
         sliding = (time > release[number]) & (time < stick[number])
         stuck = (time >= stick[number]) & np.isfinite(release[number])
-        # What has stuck is computed once for each position.
+        # The part that has stuck is computed once for each position.
         ended = np.unique(number[stuck])
         for name, values in fields.items():
             values[sliding] = self.field(name, positions[number[sliding]], time[sliding])

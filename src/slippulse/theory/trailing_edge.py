@@ -277,7 +277,7 @@ class TrailingEdge:
         stuck = knots.kind != SLIDES
         if not stuck.any():
             return None
-        # Of several that stick first, the one nearest to x = 0 counts.
+        # The position nearest to x = 0 counts, of several that stick first.
         earliest = np.min(knots.stick[stuck])
         first = np.flatnonzero(stuck & (knots.stick <= earliest + 1e-10))
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])

@@ -99,7 +99,7 @@ class _Tail:
 
 
 def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) -> _Tail | None:
-    """What follows the weakening zone at a trial speed; None where the slip stops within it."""
+    """Tail behind the weakening zone at a trial speed; None where the slip stops in that zone."""
     b, k = beta * v, (v - 1.0) * (v + 1.0)
     zone, end = _weakening_zone(b, k, gamma, tau0, weakening)
     if end == -math.inf:

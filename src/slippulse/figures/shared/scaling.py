@@ -32,7 +32,7 @@ LEVEL = {
 OTHER = {"displacement": Coloured("gamma", r"$\gamma$"), "stress": Coloured("width", r"$W$")}
 # An inset draws lines of this many levels, or values of gamma or W.
 DRAWN = 3
-# Where an inset stands below the line of equality.
+# Place of an inset below the line of equality.
 BELOW: Box = (0.52, 0.12, 0.26, 0.29)
 SMALL = 7.0
 # Ticks of an axis that has less than this ratio of its ends are more than the powers of ten.
