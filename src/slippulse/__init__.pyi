@@ -3,6 +3,7 @@ from . import theory as theory
 from .configuration.accuracy import settings_for as settings_for
 from .data.points import point as point
 from .figures.run import plot as plot
+from .model.friction import friction as friction
 from .model.prestress import Prestress as Prestress
 from .model.samples import Samples as Samples
 from .model.scene import Scene as Scene

@@ -12,9 +12,11 @@ _HOMES = {
     "Fronts": ".fronts",
     "Layer": ".dimensional",
     "Limit": ".rupture",
+    "RatePulse": ".rate_dependent",
     "Rupture": ".rupture",
     "SteadyFront": ".front_motion",
     "SteadyPulse": ".pulse",
+    "WeakeningPulse": ".weakening",
     "admissibility_table": ".front_motion",
     "barrier_depth": ".barrier",
     "barrier_depth_estimate": ".barrier",
@@ -30,10 +32,15 @@ _HOMES = {
     "paper_transition_stress": ".pulse",
     "prestress_balance_position": "..model.balance",
     "prestress_for_speed": ".front_speeds",
+    "rate_pulse": ".rate_dependent",
     "slip_velocity": ".fronts",
     "steady_front": ".front_motion",
     "steady_pulse": ".front_speeds",
+    "undamped_weakening_slip": ".weakening",
     "uniform_transition_time": ".exact_transition",
+    "weakening_front_coefficient": ".weakening",
+    "weakening_front_speed": ".weakening",
+    "weakening_pulse": ".weakening",
 }
 __all__ = [*_HOMES]
 __dir__ = __all__.copy

@@ -1,0 +1,100 @@
+"""Steady pulses under friction that depends on slip rate, in the limit dx -> 0 at fixed beta/dx.
+
+Such a law is 0 at rest, so a front does not feel it. Behind a front of speed v, U(xi) obeys
+
+    (v^2 - 1) U'' + gamma U = tau_0 - f(V),   V = -v U',   U(0) = U'(0) = 0.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.checks import short_repr
+from ..model.friction_laws.law import Friction
+from .domains import check_domains
+from .front_speeds import front_speed
+
+# Half-periods of leaf springs behind the front in which slip must stop, or it creeps.
+FARTHEST = 12.0
+# Accuracy of the integration, and its steps in each half-period, so that no stop is missed.
+RELATIVE, ABSOLUTE, STEPS = 1e-10, 1e-12, 100
+
+
+@dataclass(frozen=True)
+class RatePulse:
+    """Steady pulse: speed, width, slip, peak velocity, and whether it sticks.
+
+    Lengths are in units of H, slip in units of U. A pulse that does not stick creeps on: its width
+    is infinite and its slip is tau_0/gamma.
+    """
+
+    tau0: float
+    gamma: float
+    speed: float
+    width: float
+    slip: float
+    peak_velocity: float
+    sticks: bool
+
+
+def rate_pulse(tau0: float, gamma: float, damping_ratio: float, friction: Friction) -> RatePulse:
+    """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
+
+    Parameters
+    ----------
+    tau0, gamma, damping_ratio : float
+        Pre-stress in (0, 1), elasticity ratio, > 0, and beta/dx, >= 0.
+    friction : Friction
+        Law that is 0 at rest and does not depend on slip.
+
+    Returns
+    -------
+    RatePulse
+
+    Raises
+    ------
+    ValueError
+        Outside the domain.
+
+    Notes
+    -----
+    Derived in the supplement, section on friction that depends on slip rate.
+
+    Examples
+    --------
+    >>> law = sp.friction("bounded_rate", limit=0.3, v_0=1.0)
+    >>> round(rate_pulse(0.5, 2 / 3, 0.1, law).slip, 4)
+    1.1605
+    """
+    # Slow to load.
+    from scipy.integrate import solve_ivp
+
+    check_domains(tau0=tau0, gamma=gamma)
+    constants = friction.constants
+    if friction.friction(0.0, 0.0, *constants) != 0.0:
+        allowed = "laws that depend on slip rate alone"
+        raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
+    v = float(front_speed(tau0, damping_ratio))
+    inertia = (v - 1.0) * (v + 1.0)
+    half_period = math.pi * math.sqrt(inertia / gamma)
+
+    def slopes(distance: float, state: np.ndarray) -> list[float]:
+        slip, strain = state
+        resistance = friction.friction(slip, v * strain, *constants)
+        return [strain, (tau0 - resistance - gamma * slip) / inertia]
+
+    def strain(distance: float, state: np.ndarray) -> float:
+        return state[1]
+
+    def curvature(distance: float, state: np.ndarray) -> float:
+        return slopes(distance, state)[1]
+
+    strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
+    accuracy = {"rtol": RELATIVE, "atol": ABSOLUTE, "max_step": half_period / STEPS}
+    span = (0.0, FARTHEST * half_period)
+    path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
+    peak = v * max(float(state[1]) for state in path.y_events[1])
+    if path.status != 1:
+        return RatePulse(tau0, gamma, v, math.inf, tau0 / gamma, peak, False)
+    return RatePulse(tau0, gamma, v, float(path.t[-1]), float(path.y[0, -1]), peak, True)
