@@ -60,7 +60,8 @@ class Rupture:
         where slip runs away
 
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a
-    front needs more than 20000 panels; of every method, if a position or a time is not finite.
+    front needs more than 20000 panels; of a search for sticks, if it would take more than 3 GB (a
+    minute); of every method, if a position or a time is not finite.
     Source: derived in the supplement; the lattice tends to it at first order in dx.
 
     Examples

@@ -12,6 +12,8 @@ from ..model.roots import roots_between
 LEAST = 0.01
 # Number of times that are computed together.
 BATCH = 8
+# The most times of samples, of all positions together: they take 3 GB.
+MOST_TIMES = 10**8
 # Two steps in time next to a minimum of du/dt are cut into this number of parts, twice.
 FINE = 24
 # Error of a root in time.
@@ -94,6 +96,10 @@ class StickSearch:
     def _times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
         """Times of the samples of each position: equal steps, and where waves come."""
         longest = self.until - np.min(release, initial=self.until)
+        count = release.size * (longest / self.step + BATCH + waves.shape[1])
+        if count > MOST_TIMES:
+            allowed = f"a time until which sticks are found from {MOST_TIMES:.0e} samples"
+            raise ValueError(f"duration: {self.until:g} takes {count:.2g}; allowed: {allowed}")
         steps = self.step * np.arange(1, BATCH * (longest // (BATCH * self.step) + 1) + 1)
         times = np.concatenate([release[:, None] + steps, waves], axis=1)
         # Right after the release du/dt is 0 to rounding.
