@@ -37,9 +37,8 @@ CLAIM = {
     "left_out": 0,
     "figure": "fig01_one",
 }
-CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": []}
-CLAIM |= dict.fromkeys(["held", "failed", "undecided", "ninety", "largest", "exponent"])
-CLAIM |= dict.fromkeys(["exponent_uncertainty", "tolerance_exponent"])
+CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": [], "at_earlier": ""}
+CLAIM |= dict.fromkeys(["held", "failed", "undecided", "ninety", "largest"])
 CLAIM |= dict.fromkeys(["exact_median", "exact_largest"])
 
 
@@ -79,9 +78,9 @@ def invented_claim(i: int, id: str, entry: dict, scale: float) -> dict:
         "figure": "fig05_scaling",
     }
     claim |= {"ninety": 1e-3 * i, "largest": 2e-3 * i}
-    claim |= {"exact_median": 1e-5 * i, "exact_largest": 2e-5 * i, "exponent_uncertainty": 0.002}
-    if "tolerance_exponent" in entry:
-        claim |= {"exponent": 1.01, "tolerance_exponent": entry["tolerance_exponent"]}
+    claim |= {"exact_median": 1e-5 * i, "exact_largest": 2e-5 * i}
+    if "earlier_tolerance" in entry:
+        claim |= {"earlier_tolerance": entry["earlier_tolerance"], "at_earlier": "inconclusive"}
     if entry["kind"] == "qualitative":
         claim |= {"held": i - 1, "failed": 0, "undecided": 3}
     return claim

@@ -18,11 +18,28 @@ import yaml
 from PIL import Image
 from report.conftest import read
 
-from slippulse.claims.reading import AS_PRINTED, WHY_NONE, claims_of, coverage
+from slippulse.claims.reading import (
+    AS_PRINTED,
+    CHECKS,
+    WHY_NONE,
+    Ledger,
+    claims_of,
+    coverage,
+    testing,
+)
 from slippulse.claims.rules import KINDS
 from slippulse.report.manuscript import DOCUMENTS, NAMED, Gallery
 from slippulse.report.tables import sticking
-from slippulse.report.texts import ERRATUM, PARTS, Caption, parameters, read_captions, read_errata
+from slippulse.report.texts import (
+    ERRATUM,
+    PARTS,
+    Caption,
+    answer,
+    judged_lines,
+    parameters,
+    read_captions,
+    read_errata,
+)
 
 WORDS = (
     r"four|five|six|seven|eight|nine|ten|eleven|twelve|thirteen|fourteen|fifteen|"
@@ -61,16 +78,17 @@ def mentioned(text: str) -> set[str]:
 
 @pytest.fixture(scope="module")
 def entries(manuscript) -> dict[str, dict]:
-    """Claims, algebra and findings."""
+    """Claims, checks and findings."""
     return read(manuscript / "claims.yaml")
 
 
 def test_every_claim_that_is_mentioned_is_in_the_ledger(source, manuscript, entries):
     names = mentioned(source)
     for entry in read_errata(manuscript / "errata.yaml"):
-        # What shows it may be algebra too.
+        # What shows it may be a check too.
         names |= mentioned(" ".join(entry.values()))
-        names |= set(re.findall(r"`(\w+)`", entry["shown"])) - set(entries["algebra"])
+        names |= set(re.findall(r"`(\w+)`", entry["shown"]))
+        names -= {id for part in CHECKS for id in entries[part]}
     summary = read(manuscript / "summary.yaml")
     for line in summary["verdict"]:
         names |= {*line["claims"], *mentioned(line["text"])}
@@ -79,13 +97,32 @@ def test_every_claim_that_is_mentioned_is_in_the_ledger(source, manuscript, entr
     assert names <= {*entries["claims"], *entries["findings"]}
 
 
+def test_page_one_answers_in_a_minute(manuscript):
+    """At most eight rows, and sentences of at most 25 words by the shipped verdicts."""
+    summary = read(manuscript / "summary.yaml")
+    shipped = read(manuscript / "shipped_verdicts.yaml")
+    claims = [{"id": id, "verdict": verdict} for id, verdict in shipped.items()]
+    lines = judged_lines(summary, Ledger(claims), lambda text: "")
+    assert len(lines) <= 8
+    sentences = answer(lines).removesuffix(".").split(". ")
+    assert sentences[0].startswith("**Yes**") and len(sentences) <= 3
+    assert max(len(sentence.split()) for sentence in sentences) <= 25
+    page = (
+        (manuscript / "replication.md")
+        .read_text(encoding="utf-8")
+        .partition("# What was claimed")[0]
+    )
+    assert page.index(r"$b=\beta/\Delta x$") < page.index("show(verdicts())")
+    assert page.count("claim.summary()") == 1 and "claim.count" not in page
+
+
 def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentence(
     manuscript, entries
 ):
     statements = read(manuscript / "statements.yaml")["statements"]
     ids = [sentence["id"] for sentence in statements]
     assert len(set(ids)) == len(ids)
-    tests = entries["claims"] | entries["algebra"]
+    tests = testing(entries)
     for sentence in statements:
         why = str(sentence.get("why_none", ""))
         assert bool(claims_of(tests, sentence)) != bool(why), sentence

@@ -6,9 +6,9 @@ from functools import cached_property
 from itertools import permutations
 from typing import Any, NamedTuple
 
-from ..data.numerals import percent, setting
+from ..data.numerals import number, percent, setting
 from . import rules
-from .kinds import ByNumber, Claim, Qualitative
+from .kinds import ByNumber, Claim, Qualitative, Scaling
 
 # Values of open choices, by name.
 Chosen = dict[str, float | str]
@@ -20,6 +20,7 @@ NAMES = {
     "release": "the release rule",
     "damping_ratio": r"the damping ratio $\beta/\Delta x$",
     "nucleation": "the nucleation",
+    "criterion": "the criterion of the transition",
 }
 
 
@@ -32,9 +33,9 @@ class Combination:
 
     @cached_property
     def result(self) -> dict[str, Any]:
-        """Deviation, exponent and verdict, and whether the claim holds, None if that is open."""
+        """Deviation and verdict, and whether the claim holds, None if that is open."""
         fields = self.claim.fields()
-        numbers = {name: fields.get(name) for name in ("deviation", "exponent", "verdict")}
+        numbers = {name: fields.get(name) for name in ("deviation", "verdict")}
         return numbers | {"holds": rules.HOLDS.get(fields["verdict"])}
 
 
@@ -92,7 +93,7 @@ class OverChoices(ByNumber):
     combinations: Sequence[Combination]
     shown: Claim
 
-    def verdict_at(self, tolerance: float) -> str:
+    def by_number(self, tolerance: float) -> str:
         claims = [one.claim for one in self.combinations if isinstance(one.claim, ByNumber)]
         return rules.over_choices([claim.verdict_at(tolerance) for claim in claims])
 
@@ -123,7 +124,9 @@ class OverChoices(ByNumber):
         sides = []
         for one in (change.before, change.after) if change else ():
             size = percent(one.result["deviation"], 3)
-            if isinstance(self.shown, Qualitative):
+            if isinstance(self.shown, Scaling):
+                size = f"exponent off by {number(one.result['deviation'], 2)}"
+            elif isinstance(self.shown, Qualitative):
                 size += " of the runs against"
             if name != "fraction" and one.choice.get("fraction") == LAST:
                 size += ", at the last release"

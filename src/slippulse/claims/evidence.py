@@ -49,31 +49,34 @@ def studied(tables: Levels, values: Sequence[float]) -> Known:
 
     With one table, the exact solution, the uncertainty is 0.
     """
-    if len(tables) == 1:
-        return values[0], 0.0
+    if len(tables) == 1 or tables[0].empty:
+        return values[0], 0.0 if len(tables) == 1 else NAN
     factors = [float(table["factor"].dropna().iloc[0]) for table in tables[1:]]
     study = grid_study(values, factors)
     return study.value, study.uncertainty
 
 
-def exponent(logs: np.ndarray) -> float:
+def slope(logs: np.ndarray) -> float:
     """Slope of a straight line through two logarithms, [2, run]; NaN with fewer than three runs."""
     x, y = logs[:, np.isfinite(logs).all(axis=0)]
     return straight_line(x, y)[0] if x.size > 2 else NAN
 
 
-def exponent_studied(tables: Levels, numbers: Sequence[np.ndarray], levels: Iterable[str]) -> Known:
-    """The exponent of measured over predicted, [2, run] of each table, with its uncertainty.
+def exponent(tables: Levels, measured: str, predicted: str, levels: Iterable[str]) -> Known:
+    """The exponent of measured over predicted, expressions over tables, with its uncertainty.
 
     The uncertainty is at least the change when the runs at one value of a level are left out.
     """
-    logs = [np.log(pair) for pair in numbers]
-    value, uncertainty = studied(tables, [exponent(pair) for pair in logs])
+    logs = []
+    for table in tables:
+        numbers = [evaluated(table, expression) for expression in (predicted, measured)]
+        logs.append(np.log(np.array(numbers, float)))
+    value, uncertainty = studied(tables, [slope(pair) for pair in logs])
     changes = []
     for name in levels:
         column = tables[0][name].to_numpy()
         for level in np.unique(column):
-            changes.append(abs(exponent(logs[0][:, column != level]) - value))
+            changes.append(abs(slope(logs[0][:, column != level]) - value))
     return value, max(uncertainty, max(changes, default=0.0))
 
 
@@ -143,28 +146,15 @@ class Evidence:
             uncertainty=evaluated(table, f"uncertainty_{quantity}").astype(float),
         )
 
-    def approximate(
-        self, id: str, tables: Levels, measured: str, predicted: str, levels: Iterable[str] = ()
-    ) -> Approximate:
-        """An estimate, from expressions over tables of lattices, or over one of exact solutions.
-
-        The uncertainty of its exponent covers leaving out the runs at one value of a level.
-        """
-        numbers = [
-            np.array([evaluated(table, predicted), evaluated(table, measured)], float)
-            for table in tables
-        ]
-        quotients = [pd.Series(pair[1] / pair[0]) for pair in numbers]
+    def approximate(self, id: str, tables: Levels, measured: str, predicted: str) -> Approximate:
+        """An estimate, from expressions over tables of lattices, or over one of exact solutions."""
+        quotients = [ratios(table, measured, predicted) for table in tables]
         deviations = [(series - 1.0).abs() for series in quotients]
         finest = deviations[0][np.isfinite(deviations[0])].to_numpy()
         left_out = len(deviations[0]) - finest.size
         claim = Approximate(tolerance=self.tolerance(id), deviations=finest, left_out=left_out)
         if not finest.size:
             return claim
-        allowed = self.entries[id].get("tolerance_exponent")
-        if allowed is not None:
-            slope = exponent_studied(tables, numbers, levels)
-            claim = replace(claim, exponent=slope, tolerance_exponent=float(allowed))
         median = studied(tables, [series.median() for series in deviations])
         ratio = studied(tables, [series.median() for series in quotients])
         return replace(claim, median=median, ratio=ratio)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 
 from ..data.prose import fill
 from . import transition
@@ -89,8 +90,16 @@ def duration_factor(evidence: Evidence) -> dict[str, float]:
     return {"factor": float(np.pi / np.sqrt(2.0))}
 
 
+def backward_threshold(evidence: Evidence) -> dict[str, float]:
+    """Runs in which blocks would slide back at the printed threshold, and the friction for none."""
+    runs = pd.concat([evidence.tables[name] for name in evidence.swept])
+    back, needed = (runs["min_stuck_stress"] <= -1.0).sum(), runs["friction_ratio_needed"].max()
+    return {"back": float(back), "runs": float(len(runs)), "needed": float(needed)}
+
+
 # Findings with numbers that are no expression over the columns of one table.
 COMPUTED: dict[str, Callable[[Evidence], dict]] = {
+    "backward_threshold": backward_threshold,
     "collapse_against_damping": collapse,
     "front_never_arrives": never_arrives,
     "published_figure_made_with": best_fit,

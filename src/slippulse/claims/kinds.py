@@ -1,7 +1,7 @@
 """Results about a claim of the paper: a dataclass for each kind of claim."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Self
 
@@ -76,31 +76,43 @@ class Qualitative(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Existence(Qualitative):
-    """A claim that there are runs of some cases: one of each is enough."""
+    """A claim that there are runs of some cases: one of each is enough.
 
-    cases: Mapping[str, int]
+    ``cases`` has by name the number of runs that show a case and of those that might have.
+    """
+
+    cases: Mapping[str, tuple[int, int]]
 
     @classmethod
-    def shown(cls, cases: Mapping[str, int], further: Mapping[str, float], **fields: Any) -> Self:
-        """The claim from the number of runs of each case."""
-        numbers = {name: float(value) for name, value in {**cases, **further}.items()}
-        return cls(held=sum(cases.values()), cases=cases, further=numbers, **fields)
+    def shown(cls, cases: Mapping[str, tuple[int, int]], **fields: Any) -> Self:
+        """The claim from the numbers of runs of each case."""
+        shown, runs = (sum(counts) for counts in zip(*cases.values(), strict=True))
+        return cls(held=shown, failed=runs - shown, cases=cases, **fields)
 
     def verdict(self) -> str:
-        if not all(self.cases.values()):
+        if not all(shown for shown, _ in self.cases.values()):
             return rules.INCONCLUSIVE
         return rules.CAVEAT if self.condition else rules.REPRODUCED
 
 
 @dataclass(frozen=True, kw_only=True)
 class ByNumber(Claim):
-    """A claim that compares a number with a tolerance."""
+    """A claim that compares a number with a tolerance.
+
+    ``besides`` is the verdict, at a tolerance, on what must hold besides.
+    """
 
     tolerance: float
+    besides: Callable[[float], str] | None = None
 
     @abstractmethod
+    def by_number(self, tolerance: float) -> str:
+        """The verdict on the number alone if the tolerance were this one."""
+
     def verdict_at(self, tolerance: float) -> str:
-        """The verdict on the number if the tolerance were this one."""
+        """The verdict if the tolerance were this one."""
+        verdicts = [self.by_number(tolerance)]
+        return rules.worst(verdicts + ([self.besides(tolerance)] if self.besides else []))
 
     def verdict(self) -> str:
         return self.verdict_at(self.tolerance)
@@ -113,42 +125,38 @@ class ByNumber(Claim):
 class Exact(ByNumber):
     """An equation, by the values of its runs at spacing 0; arrays are [run], NaN without a value.
 
-    A consequence of the equation may have to hold too.
+    ``counts`` has the numbers of runs of what must hold besides.
     """
 
     predicted: np.ndarray
     measured: np.ndarray
     uncertainty: np.ndarray
-    consequence: Qualitative | None = None
+    counts: Mapping[str, int] = field(default_factory=dict)
 
     def relative(self) -> tuple[np.ndarray, np.ndarray]:
         """Deviation and uncertainty over what is predicted, absolute where that is 0, [run]."""
         scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
         return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
 
-    def verdict_at(self, tolerance: float) -> str:
+    def by_number(self, tolerance: float) -> str:
         return rules.exact(*self.relative(), tolerance)[0]
-
-    def verdict(self) -> str:
-        parts = [self.verdict_at(self.tolerance)]
-        return rules.worst(parts + ([self.consequence.verdict()] if self.consequence else []))
 
     def fields(self) -> dict[str, Any]:
         """The numbers of the run that decides, and how many runs have numbers."""
         deviation, uncertainty = self.relative()
         usable = int(np.isfinite(deviation + uncertainty).sum())
-        out = self.consequence.fields() if self.consequence else {}
-        out |= {"verdict": self.verdict(), "runs": usable, "left_out": len(deviation) - usable}
+        out: dict[str, Any] = {"verdict": self.verdict(), "runs": usable}
+        out["left_out"] = len(deviation) - usable
         run = rules.exact(deviation, uncertainty, self.tolerance)[1]
         if run is not None:
             out |= {"predicted": float(self.predicted[run]), "measured": float(self.measured[run])}
             out |= {"uncertainty": float(self.uncertainty[run]), "deviation": float(deviation[run])}
-        return out
+        return out | dict(self.counts)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Approximate(ByNumber):
-    """An estimate, by the median deviation of its runs and, if one is claimed, by its exponent."""
+    """An estimate, by the median deviation of its runs."""
 
     # |measured/predicted - 1| of the runs that have numbers, on the finest lattice.
     deviations: np.ndarray
@@ -156,33 +164,41 @@ class Approximate(ByNumber):
     # The medians of the deviation and of measured/predicted, with numerical uncertainties.
     median: Known = (NAN, NAN)
     ratio: Known = (NAN, NAN)
-    exponent: Known | None = None
-    tolerance_exponent: float = 0.0
     # The median and largest deviation of runs at spacing 0 from the exact theory.
     from_exact: Known | None = None
-    # The verdict on what must hold besides.
-    besides: str = rules.REPRODUCED
 
-    def verdict_at(self, tolerance: float) -> str:
-        return rules.approximate(self.median, tolerance, self.exponent, self.tolerance_exponent)
-
-    def verdict(self) -> str:
-        return rules.worst([self.verdict_at(self.tolerance), self.besides])
+    def by_number(self, tolerance: float) -> str:
+        return rules.within(*self.median, tolerance)
 
     def fields(self) -> dict[str, Any]:
-        """The medians, the spread of the runs and the exponent; only counts without runs."""
+        """The medians and the spread of the runs; only counts without runs."""
         runs = self.deviations.size
         out = {"runs": runs, "left_out": self.left_out, "verdict": self.verdict()}
         if self.from_exact is not None:
             out["exact_median"], out["exact_largest"] = self.from_exact
         if runs:
-            if self.exponent is not None:
-                out["exponent"], out["exponent_uncertainty"] = self.exponent
             out["measured"], out["uncertainty"] = self.ratio
             out |= {"predicted": 1.0, "deviation": self.median[0]}
             out["ninety"] = float(np.percentile(self.deviations, 90.0))
             out["largest"] = float(self.deviations.max())
         return out
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scaling(ByNumber):
+    """A proportionality, by the exponent of measured over predicted, which should be 1."""
+
+    exponent: Known
+    runs: int
+
+    def by_number(self, tolerance: float) -> str:
+        return rules.within(abs(self.exponent[0] - 1.0), self.exponent[1], tolerance)
+
+    def fields(self) -> dict[str, Any]:
+        out: dict[str, Any] = {"verdict": self.verdict(), "runs": self.runs, "left_out": 0}
+        out["predicted"] = 1.0
+        out["measured"], out["uncertainty"] = self.exponent
+        return out | {"deviation": abs(self.exponent[0] - 1.0)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,24 +209,9 @@ class Reading(ByNumber):
     degrees_of_freedom: int
     p_value: float
 
-    def verdict_at(self, tolerance: float) -> str:
+    def by_number(self, tolerance: float) -> str:
         return rules.reading(self.p_value, self.degrees_of_freedom, tolerance)
 
     def fields(self) -> dict[str, Any]:
         out = {"verdict": self.verdict(), "predicted": float(self.degrees_of_freedom)}
         return out | {"measured": self.chi_square, "deviation": self.p_value}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Arithmetic(ByNumber):
-    """A printed formula, by its ratio to the derived one; only rounding is allowed for."""
-
-    ratio: float
-
-    def verdict_at(self, tolerance: float) -> str:
-        return rules.within(abs(self.ratio - 1.0), 0.0, tolerance)
-
-    def fields(self) -> dict[str, Any]:
-        out = {"verdict": self.verdict(), "predicted": 1.0, "measured": self.ratio}
-        rounding = 8.0 * float(np.finfo(float).eps)
-        return out | {"uncertainty": rounding, "deviation": abs(self.ratio - 1.0)}

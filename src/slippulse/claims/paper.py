@@ -8,7 +8,7 @@ from typing import Any
 
 from . import friction_laws, pulses, space_time_figure, transition
 from .evidence import Evidence
-from .kinds import Claim
+from .kinds import ByNumber, Claim
 from .reading import positions, why_text
 from .transition import DURATION, LENGTH
 
@@ -68,33 +68,34 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "L_trans_displacement": partial(transition.held_displacement, estimate=LENGTH),
     "T_trans_stress": partial(transition.held_stress, estimate=DURATION),
     "L_trans_stress": partial(transition.held_stress, estimate=LENGTH),
+    "transition_scaling_displacement": partial(transition.scaling, boundary="displacement"),
+    "transition_scaling_stress": partial(transition.scaling, boundary="stress"),
     "stress_front_speeds_near_one": transition.stress_front_speeds_near_one,
     "displacement_pulse_unique": pulses.displacement_pulse_unique,
     "perturbed_pulses_settle": pulses.perturbed_pulses_settle,
     "stress_pulse_not_unique": pulses.stress_pulse_not_unique,
     "stress_pulse_set_by_prestress": pulses.stress_pulse_set_by_prestress,
-    "no_weakening_needed": pulses.no_weakening_needed,
-    "only_positive_velocities": pulses.only_positive_velocities,
     "transition_diverges": transition.transition_diverges,
     "shorter_transition_low_prestress": transition.shorter_transition_low_prestress,
     "pulses_widen_with_prestress": transition.pulses_widen_with_prestress,
+    "thin_layer": pulses.thin_layer,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,
-    "damping_reduces_oscillations": pulses.damping_reduces_oscillations,
     "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
     "published_space_time_figure": space_time_figure.left,
+    "published_arrows": space_time_figure.arrows,
     "published_space_time_figure_right": space_time_figure.right,
-    "dimensional_peak_velocity": pulses.dimensional_peak_velocity,
     "pulses_for_many_friction_laws": friction_laws.pulses_for_many_friction_laws,
-    "pulses_whatever_friction": friction_laws.pulses_whatever_friction,
+    "stress_pulse_other_laws": friction_laws.stress_pulse_other_laws,
     "other_laws_change_pulses": friction_laws.other_laws_change_pulses,
 }
 # Fields of every claim in claims.json, where neither its text nor its result sets them.
 EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
 EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
-EMPTY |= {"flips_at": []} | dict.fromkeys(("predicted", "measured", "uncertainty", "deviation"))
-# Fields of an approximate claim: the spread of its runs, its exponent, and the exact theory.
-ESTIMATE = ("ninety", "largest", "exponent", "exponent_uncertainty")
-EXACT = ("exact_median", "exact_largest")
+EMPTY |= {"flips_at": [], "at_earlier": ""} | dict.fromkeys(
+    ("predicted", "measured", "uncertainty", "deviation")
+)
+# Fields of an approximate claim: the spread of its runs, and the exact theory.
+ESTIMATE = ("ninety", "largest", "exact_median", "exact_largest")
 
 
 def all_claims(evidence: Evidence, sentences: Sequence[Mapping]) -> list[dict]:
@@ -116,9 +117,11 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     """One claim with its text, as JSON has it."""
     out = EMPTY | {name: value for name, value in entry.items() if name != "sentences"}
     if entry["kind"] == "approximate":
-        out |= dict.fromkeys(ESTIMATE + EXACT)
+        out |= dict.fromkeys(ESTIMATE)
     out |= {"id": id} | claim.written()
     out |= {"figure_or_section": where, "counted": "follows_from" not in entry}
+    if "earlier_tolerance" in entry and isinstance(claim, ByNumber):
+        out["at_earlier"] = claim.verdict_at(float(entry["earlier_tolerance"]))
     out = finite(out)
     return out | {"why": why_text(SimpleNamespace(**out))}
 

@@ -14,9 +14,11 @@ from ..data.numerals import number, percent, rounded, setting, with_uncertainty
 from .rules import VERDICTS
 
 # Reasons for a sentence to have no claim; a repetition names the sentence that it repeats.
-WHY_NONE = ("background", "definition", "other work", "no model")
+WHY_NONE = ("background", "definition", "other work", "no model", "not asked")
 # The verdict on a tested sentence as it is printed, apart from that on its claim.
-AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold")
+AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold", "open")
+# What tests check beside the claims: algebra, and what the model imposes.
+CHECKS = ("algebra", "imposed")
 # A tolerance below this is for rounding alone.
 SLIGHT = 1e-6
 # A claim says at which tolerances its verdict changes, up to this factor from its own.
@@ -29,7 +31,7 @@ def read_text(path: str | Path):
 
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
-    """Claims, algebra and findings, with tolerances of the configuration.
+    """Claims, checks and findings, with tolerances of the configuration.
 
     A ValueError names an unknown claim.
     """
@@ -44,8 +46,13 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
     return texts
 
 
+def testing(texts: Mapping[str, Mapping]) -> dict[str, Mapping]:
+    """Everything that tests sentences: claims and checks, by id."""
+    return {id: entry for part in ("claims", *CHECKS) for id, entry in texts[part].items()}
+
+
 def claims_of(entries: Mapping[str, Mapping], sentence: Mapping) -> list[str]:
-    """The claims, and the algebra, that test a sentence."""
+    """The claims and checks that test a sentence."""
     return [id for id, entry in entries.items() if sentence["id"] in entry["sentences"]]
 
 
@@ -96,6 +103,10 @@ class Ledger:
         rows = (row["deviation"] for row in self(id).choices if chosen.items() <= row.items())
         return next(rows, None)
 
+    def further(self, id: str, words: str) -> float | None:
+        """The first further number of a claim whose name has these words; None without one."""
+        return next((value for name, value in self(id).further.items() if words in name), None)
+
     def listed(self, id: str, words: str) -> str:
         """The further numbers of a claim that are named "WORDS: NAME", each with its name."""
         parts = []
@@ -121,8 +132,7 @@ class Ledger:
             words = verdict.replace("depends", "depend") if count > 1 else verdict
             if count:
                 listed.append(f"{count} {words}")
-        rest = f" {self.following()} more follow from these." if self.following() else ""
-        return f"{self.count()} claims: {', '.join(listed)}.{rest}"
+        return f"{self.count()} claims: {', '.join(listed)}."
 
 
 def _known(what: str, id: str, entries: Mapping[str, Any]) -> Any:
@@ -151,8 +161,6 @@ def measured_text(claim: SimpleNamespace) -> str:
         return ", ".join([f"{claim.held} of {claim.held + claim.failed + claim.undecided}", *rest])
     if claim.kind == "reading":
         return f"\N{GREEK SMALL LETTER CHI}² = {number(claim.measured, 3)}"
-    if claim.kind == "arithmetic":
-        return number(claim.measured, 4)
     return with_uncertainty(claim.measured, claim.uncertainty)
 
 
@@ -167,15 +175,10 @@ def compared_text(claim: SimpleNamespace) -> str:
         return text
     if claim.kind == "reading":
         return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"
-    if claim.kind == "arithmetic" or claim.predicted == 0.0:
+    if claim.kind == "scaling" or claim.predicted == 0.0:
         return f"{number(claim.deviation, 2)}, tolerance {setting(claim.tolerance)}"
     text = f"{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
-    if claim.kind == "exact":
-        return text
-    if claim.exponent is not None:
-        exponent = with_uncertainty(claim.exponent, claim.exponent_uncertainty)
-        text += f"; exponent {exponent}, tolerance {setting(claim.tolerance_exponent)}"
-    return f"median {text}"
+    return text if claim.kind == "exact" else f"median {text}"
 
 
 def why_text(claim: SimpleNamespace) -> str:
@@ -191,8 +194,6 @@ def why_text(claim: SimpleNamespace) -> str:
             return f"It holds in {held} cases, with {rest}."
         text = "It needs a condition that the paper does not state"
         return f"{text}: {condition}." if condition else f"{text}."
-    if claim.kind == "arithmetic":
-        return f"The printed formula gives {measured_text(claim)} of the derived value."
     if claim.kind == "reading":
         return f"At the best fit {compared_text(claim)} is asked."
     return f"It is off by {compared_text(claim)}; its uncertainty is {uncertainty_text(claim)}."
@@ -202,14 +203,14 @@ def uncertainty_text(claim: SimpleNamespace) -> str:
     """The uncertainty in the unit of the deviation: relative, or absolute where 0 is predicted."""
     if not claim.predicted:
         return number(claim.uncertainty)
-    scale = 1.0 if claim.kind == "approximate" else abs(claim.predicted)
+    scale = abs(claim.predicted) if claim.kind == "exact" else 1.0
     return percent(claim.uncertainty / scale)
 
 
 def evidence_text(claim: SimpleNamespace) -> str:
     """The evidence for the verdict besides the numbers shown, as Markdown."""
     parts = [claim.note]
-    if claim.kind in ("exact", "approximate"):
+    if claim.kind in ("exact", "approximate", "scaling"):
         parts += spread_texts(claim)
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
     if claim.kind == "approximate" and claim.exact_largest is not None:
@@ -219,6 +220,9 @@ def evidence_text(claim: SimpleNamespace) -> str:
         side = "above" if flip["tolerance"] > claim.tolerance else "below"
         if 1.0 / BAND <= flip["tolerance"] / claim.tolerance <= BAND:
             parts.append(f"with a tolerance {side} {number(flip['tolerance'], 3)}: {flip[side]}")
+    if claim.at_earlier:
+        earlier = setting(claim.earlier_tolerance)
+        parts.append(f"at {earlier}, set before results were seen: {claim.at_earlier}")
     if claim.follows_from:
         names = ", ".join(f"`{id}`" for id in claim.follows_from)
         parts.append(f"follows from {names} and is not counted again")

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-KINDS = ("exact", "approximate", "qualitative", "reading", "arithmetic")
+KINDS = ("exact", "approximate", "scaling", "qualitative", "reading")
 REPRODUCED = "reproduced"
 CAVEAT = "reproduced with caveat"
 DEPENDS = "depends on an open choice"
@@ -19,8 +19,6 @@ HOLDS = {REPRODUCED: True, CAVEAT: True, FAILED: False}
 SCANNED, BISECTED = 41, 12
 # A qualitative claim stays open if a larger fraction of its runs is undecided.
 UNDECIDED = 0.1
-# Below this p the readings exclude every parameter, not only most.
-EXCLUDED = 0.003
 # A number and its uncertainty.
 Known = tuple[float, float]
 
@@ -59,19 +57,6 @@ def exact(
         return verdict, None
     deciding = [run for run in range(len(verdicts)) if verdicts[run] == verdict]
     return verdict, max(deciding, key=deviations.__getitem__)
-
-
-def approximate(
-    median: Known, tolerance: float, exponent: Known | None = None, allowed: float = 0.0
-) -> str:
-    """Verdict on an estimate: the worse of those on its median deviation and on its exponent.
-
-    The exponent, if one is claimed, may differ from 1 by ``allowed``.
-    """
-    verdict = within(*median, tolerance)
-    if exponent is None:
-        return verdict
-    return worst([verdict, within(abs(exponent[0] - 1.0), exponent[1], allowed)])
 
 
 def over_choices(verdicts: Sequence[str]) -> str:
@@ -118,7 +103,7 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
 
 
 def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
-    """Verdict on a figure read off, by p of the best fit.
+    """Verdict on a figure read off, by p of the best fit, which may not be below the tolerance.
 
     The degrees of freedom are the readings less the fitted parameters.
     """
@@ -126,6 +111,4 @@ def reading(p: float, degrees_of_freedom: int, tolerance: float) -> str:
         return NOT_TESTABLE
     if degrees_of_freedom < 2:
         return INCONCLUSIVE
-    if p < EXCLUDED:
-        return FAILED
-    return CAVEAT if p < tolerance else REPRODUCED
+    return REPRODUCED if p >= tolerance else FAILED

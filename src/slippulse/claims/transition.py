@@ -3,7 +3,7 @@
 Each is judged at every choice that the paper leaves open.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import NamedTuple, TypeVar
@@ -14,8 +14,8 @@ import pandas as pd
 from ..measurement.fronts import straight_line
 from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
-from .evidence import Evidence, agreeing, ratios, studied
-from .kinds import NAN, Approximate, Claim, Qualitative
+from .evidence import Evidence, agreeing, exponent, ratios, studied
+from .kinds import NAN, Approximate, Claim, Qualitative, Scaling
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
@@ -24,29 +24,36 @@ GAP = 1.0
 # Fraction of the way whose numbers stand with a claim.
 SHOWN = 0.95
 # Columns of the exact solution and of lattices, by their names in `arrests`.
-SOLVED = {
-    "paper_transition_time": "distance",
-    "transition_time": "time",
-    "transition_length": "length",
-}
-SIMULATED = {
-    "balance_distance": "distance",
-    "last_release_distance": "covered",
-    "last_release_time": "time",
-    "last_release_length": "length",
+SOLVED = {"transition_time": "time", "transition_length": "length"}
+SIMULATED = {"last_release_distance": "covered", "last_release_time": "time"}
+SIMULATED |= {"last_release_length": "length"}
+# The two readings of T_trans under a displacement boundary, and the columns that have them. At the
+# nucleation point the printed slip 2 tau/gamma is taken with the level tau_0.
+STICK, SLIP = "first stick", r"slip $2\tau_0/\gamma$"
+CRITERIA = {
+    STICK: {"transition_time": "time", "transition_length": "length"},
+    SLIP: {"slip_time_background": "time", "slip_length_background": "length"},
 }
 
 
 class Estimate(NamedTuple):
-    """A quantity of the transition, and the expression for it under held stress."""
+    """A quantity of the transition, its estimate under either boundary, and the arrow drawn of it.
+
+    Under held stress both are for the part of the way that the left front has covered.
+    """
 
     symbol: str
     quantity: str
-    predicted: str
+    displacement: str
+    stress: str
+    drawn: Mapping[str, str]
 
 
-DURATION = Estimate("T", "time", "distance")
-LENGTH = Estimate("L", "length", "2 * distance")
+DRAWN = {"displacement": "arrow_time", "stress": "arrow_time_stress"}
+DURATION = Estimate("T", "time", "paper_transition_time", "covered", DRAWN)
+LENGTH = Estimate(
+    "L", "length", "paper_transition_length", "2 * covered", {"displacement": "arrow_length"}
+)
 
 
 class Runs(NamedTuple):
@@ -86,13 +93,13 @@ def solved(evidence: Evidence, boundary: str) -> list[Runs]:
     if boundary == "stress":
         names += ["nucleation", "fraction"]
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r} and {INSIDE}")
-    # Under held stress the estimate of the time is for the whole way.
+    # Under held stress the paper's estimate of the time is the whole way.
     table = table.assign(covered=table["fraction"] * table["paper_transition_time"])
     combinations = []
     for values, rows in table.groupby(names):
         choice: Chosen = dict(zip(names, values, strict=True))
         combinations.append(Runs(choice | {"solution": "exact"}, [rows]))
-    ours = shared(evidence.lattices(f"scaling_{boundary}")) | {"fraction": SHOWN}
+    ours = shared([evidence.tables[f"scaling_{boundary}"]]) | {"fraction": SHOWN}
 
     def differs(runs: Runs) -> bool:
         return any(runs.choice.get(name, value) != value for name, value in ours.items())
@@ -100,9 +107,17 @@ def solved(evidence: Evidence, boundary: str) -> list[Runs]:
     return sorted(combinations, key=differs)
 
 
-def first_sticks(evidence: Evidence) -> list[Runs]:
-    """Runs with the transition at the first stick, under a displacement boundary."""
-    return simulated(evidence, "displacement") + solved(evidence, "displacement")
+@cache
+def transitions(evidence: Evidence) -> list[Runs]:
+    """Runs under a displacement boundary, by the first stick, and on lattices by the slip too."""
+    lattices = simulated(evidence, "displacement")
+    out = []
+    for criterion, names in CRITERIA.items():
+        of_criterion = lattices + (solved(evidence, "displacement") if criterion == STICK else [])
+        for choice, tables in of_criterion:
+            renamed = [table.rename(columns=names) for table in tables]
+            out.append(Runs(choice | {"criterion": criterion}, renamed))
+    return out
 
 
 @cache
@@ -110,14 +125,19 @@ def arrests(evidence: Evidence) -> list[Runs]:
     """Runs of the left front under held stress, with the same columns for theory and lattices.
 
     The exact solution is at several fractions of the way to x_minus, lattices at the last release.
-    Columns are distance (|x_minus|), covered, time and length (between the fronts).
+    Columns are covered (the part of |x_minus|), time and length (between the fronts). The width of
+    the nucleation is the only length, so that one run for each level is independent of the others.
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    out = []
-    for choice, (table,) in solved(evidence, "stress"):
-        out.append(Runs(choice, [table.rename(columns=SOLVED)]))
+    runs = [(choice, tables, SOLVED) for choice, tables in solved(evidence, "stress")]
     for choice, tables in simulated(evidence, "stress", INSIDE):
-        out.append(Runs(choice | last, [table.rename(columns=SIMULATED) for table in tables]))
+        runs.append((choice | last, tables, SIMULATED))
+    out = []
+    for choice, tables, names in runs:
+        widest = [
+            table.sort_values("width").drop_duplicates("left", keep="last") for table in tables
+        ]
+        out.append(Runs(choice, [table.rename(columns=names) for table in widest]))
     return out
 
 
@@ -133,7 +153,7 @@ def medians(evidence: Evidence, estimate: Estimate) -> dict[float, float]:
     out = {}
     for choice, tables in ours(arrests(evidence)):
         if choice["fraction"] != LAST:
-            ratio = ratios(tables[0], estimate.quantity, estimate.predicted)
+            ratio = ratios(tables[0], estimate.quantity, estimate.stress)
             out[float(choice["fraction"])] = float(ratio.median())
     return out
 
@@ -145,15 +165,49 @@ def judged(
     return [Combination(choice, judge(tables)) for choice, tables in combinations]
 
 
+def arrow(evidence: Evidence, boundary: str, estimate: Estimate) -> dict[str, float]:
+    """The arrow that the paper draws, and calls agreement, over the estimate in its scene."""
+    read = evidence.readings.get(estimate.drawn.get(boundary, ""))
+    if read is None:
+        return {}
+    scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
+    estimated = float(scene[f"paper_transition_{estimate.quantity}"])
+    return {"arrow of figure 4 over the estimate": read["value"] / estimated}
+
+
 def held_displacement(evidence: Evidence, id: str, estimate: Estimate) -> OverChoices:
-    """An estimate under a displacement boundary, at the first stick."""
-    quantity = f"transition_{estimate.quantity}"
+    """An estimate under a displacement boundary, by the first stick and by the slip."""
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        return evidence.approximate(id, tables, quantity, f"paper_{quantity}", ("left", "gamma"))
+        return evidence.approximate(id, tables, estimate.quantity, estimate.displacement)
 
-    exact = evidence.from_exact("scaling_displacement", quantity)
-    return over_choices(judged(first_sticks(evidence), judge), from_exact=exact)
+    slips = evidence.finest("scaling_displacement").rename(columns=CRITERIA[SLIP])
+    ratio = ratios(slips, estimate.quantity, estimate.displacement)
+    near = (ratio - 1.0).abs() <= evidence.tolerance(id)
+    further = {f"runs that reach the {SLIP}": float(ratio.count()), "in all": float(len(ratio))}
+    further |= {"of these within the tolerance": float(near.sum())}
+    further |= arrow(evidence, "displacement", estimate)
+    exact = evidence.from_exact("scaling_displacement", f"transition_{estimate.quantity}")
+    return over_choices(judged(transitions(evidence), judge), from_exact=exact, further=further)
+
+
+def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
+    """The exponents of T and L over their estimates; that which is farther from 1 counts."""
+    held = boundary == "displacement"
+    levels = ("left", "gamma") if held else ("left",)
+
+    def judge(tables: list[pd.DataFrame]) -> Scaling:
+        exponents = {}
+        for estimate in (DURATION, LENGTH):
+            predicted = estimate.displacement if held else estimate.stress
+            exponents[estimate.symbol] = exponent(tables, estimate.quantity, predicted, levels)
+        symbol = max(exponents, key=lambda name: abs(exponents[name][0] - 1.0))
+        note = rf"exponent of ${symbol}_\mathrm{{trans}}$, which is the farther from 1"
+        tolerance, runs = evidence.tolerance(id), len(tables[0])
+        return Scaling(tolerance=tolerance, exponent=exponents[symbol], runs=runs, note=note)
+
+    runs = transitions(evidence) if held else arrests(evidence)
+    return over_choices(judged(runs, judge))
 
 
 def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
@@ -169,18 +223,12 @@ def held_stress(evidence: Evidence, id: str, estimate: Estimate) -> OverChoices:
     """An estimate under a stress boundary, at each fraction of the way and at the last release."""
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        levels = ("left", "width")
-        return evidence.approximate(id, tables, estimate.quantity, estimate.predicted, levels)
+        return evidence.approximate(id, tables, estimate.quantity, estimate.stress)
 
     combinations = judged(arrests(evidence), judge)
     exact = evidence.from_exact("scaling_stress", f"transition_{estimate.quantity}")
-    further = fraction_medians(combinations)
-    fractions, ratio = zip(*sorted(medians(evidence, estimate).items()), strict=True)
-    excess = np.array(ratio) - 1.0
-    # NaN if the ratio is within the tolerance all the way, or never.
-    leaves = np.interp(evidence.tolerance(id), excess, fractions, left=NAN, right=NAN)
-    words = "fraction of the way at which the median ratio leaves the tolerance"
-    return over_choices(combinations, from_exact=exact, further=further | {words: float(leaves)})
+    further = arrow(evidence, "stress", estimate) | fraction_medians(combinations)
+    return over_choices(combinations, from_exact=exact, further=further)
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
@@ -197,29 +245,36 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
-    """T_trans is longer than |x_minus|, in every run."""
+    """The left front takes longer than at speed 1 for the part that it has covered, in each run."""
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        longer = [table["time"] > table["distance"] for table in tables[:2]]
+        longer = [table["time"] > table["covered"] for table in tables[:2]]
         return Qualitative.counted(agreeing(longer[0], longer[-1]))
 
-    return over_choices(judged(arrests(evidence), judge))
+    runs = arrests(evidence)
+    exact = [tables[0] for choice, tables in runs if choice["solution"] == "exact"]
+    least = min(float((table["time"] / table["covered"]).min()) for table in exact)
+    further = {"smallest ratio of the exact solution": least}
+    return over_choices(judged(runs, judge), further=further)
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     """The last release on the left over |x_minus|, for every profile and damping.
 
-    The distance between the two, in units of H, must be small besides.
+    Besides, the exponent must be near 1, and the distance between the two small in units of H.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     covered, predicted = "last_release_distance", "balance_distance"
+    allowed = float(evidence.entries[id]["tolerance_exponent"])
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        claim = evidence.approximate(id, tables, covered, predicted, ("left", "width"))
+        claim = evidence.approximate(id, tables, covered, predicted)
         gaps = [(table[predicted] - table[covered]).abs().median() for table in tables]
-        gap = studied(tables, gaps)
-        further = {"median gap in H, over all sweeps": gap[0]}
-        return replace(claim, besides=rules.within(*gap, GAP), further=further)
+        gap, power = studied(tables, gaps), exponent(tables, covered, predicted, ("left", "width"))
+        further = {"median gap in H, over all sweeps": gap[0], "exponent": power[0]}
+        conditions = [rules.within(*gap, GAP)]
+        conditions.append(rules.within(abs(power[0] - 1.0), power[1], allowed))
+        return replace(claim, besides=lambda _: rules.worst(conditions), further=further)
 
     tables = evidence.lattices(*sweeps, where=INSIDE)
     shown, ratio = judge(tables), ratios(tables[0], covered, predicted)
@@ -272,7 +327,7 @@ def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
     unsure = f"uncertainty_{quantity}"
     table = table.assign(**{unsure: table.get(unsure, 0.0)}).sort_values("left")
     decided: list[bool | None] = []
-    for _, rows in table.groupby("gamma"):
+    for _, rows in table.dropna(subset=quantity).groupby("gamma"):
         steps = rows[quantity].diff()[1:]
         uncertainties = rows[unsure].rolling(2).sum()[1:]
         for step, uncertainty in zip(steps, uncertainties, strict=True):
@@ -282,8 +337,7 @@ def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:
     """The transition gets longer with the pre-stress."""
-    lengths = judged(first_sticks(evidence), lambda tables: rises(tables[0], "transition_length"))
-    return over_choices(lengths)
+    return over_choices(judged(transitions(evidence), lambda tables: rises(tables[0], "length")))
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Qualitative:

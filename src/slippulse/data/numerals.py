@@ -28,14 +28,14 @@ def number(value: float | None, digits: int = 3) -> str:
     return _minus(f"{value:.{max(0, digits - 1 - magnitude)}f}")
 
 
-def setting(value: float) -> str:
+def setting(value: float | None) -> str:
     """Write a number of the configuration with all its digits and no more."""
-    return _power_of_ten(f"{value:g}")
+    return MISSING if value is None or math.isnan(value) else _power_of_ten(f"{value:g}")
 
 
 def rounded(value: float | None, digits: int = 4) -> str:
     """Write a number to some significant digits, without zeros at its end."""
-    return MISSING if value is None or math.isnan(value) else setting(float(f"{value:.{digits}g}"))
+    return setting(None if value is None else float(f"{value:.{digits}g}"))
 
 
 def percent(value: float | None, digits: int = 2) -> str:

@@ -11,6 +11,7 @@ from .style import (
     GREY,
     HALO,
     ORANGE,
+    PURPLE,
     Look,
     entry,
     legend_below,
@@ -19,7 +20,7 @@ from .style import (
 
 NEEDS = {"lists": ["results/claims.json"]}
 
-NUMERIC = ("exact", "approximate")
+NUMERIC = ("exact", "approximate", "scaling")
 # A deviation below this fraction of the tolerance is given as a bound.
 LEAST = 1e-2
 # A verdict in this band changes if the tolerance is larger or smaller by this factor.
@@ -27,6 +28,7 @@ BAND = 1.5
 LOOKS: dict[str, Look] = {
     "fraction": {"color": ORANGE, "label": "fraction that is arrest"},
     "damping_ratio": {"color": BLUE, "label": r"damping ratio $b$"},
+    "criterion": {"color": PURPLE, "label": "criterion of the transition"},
     "release": {"color": GREEN, "label": "release rule"},
     "": {"color": GREY, "label": "none is open"},
 }

@@ -1,4 +1,4 @@
-"""Friction linear in the slip rate: where pulses end, the pulses, maps of both sides, Gamma = 0."""
+"""Friction linear in slip rate: which pulses stick, their sizes, maps of both kinds, Gamma = 0."""
 
 import matplotlib
 import numpy as np
@@ -11,7 +11,7 @@ from .style import BLACK, BLUE, GREY, ORANGE, PAGE, VELOCITY_MAP, Look, as_given
 NEEDS = {"studies": ["rate_dependence"]}
 table = as_given
 
-REGIMES = {"pulse": (BLUE, "o"), "crack": (ORANGE, "s")}
+REGIMES = {"sticking pulse": (BLUE, "o"), "creeping pulse": (ORANGE, "s"), "crack": (GREY, "D")}
 LINES: Look = {"color": BLACK, "linewidth": 1.0}
 SMALL: Look = {"markersize": 4.0}
 OPEN: Look = SMALL | {"markerfacecolor": "white"}
@@ -50,14 +50,15 @@ def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
     axes.fill_betweenx(limit["level"], -limit["over"], limit["over"], **look)
     for sign, label in ((1.0, "exact"), (-1.0, None)):
         axes.plot(sign * limit["over"], limit["level"], label=label, **LINES)
-    flags = runs["run_flags"].notna()
+    flags = runs["run_flags"].astype(str).str.contains("reverse_sliding")
     for (regime, flagged), rows in runs.groupby(["regime", flags]):
         colour, marker = REGIMES[str(regime)]
         axes.plot(rows["over"], rows["level"], marker, color=colour, **OPEN if flagged else SMALL)
     for regime, (colour, marker) in REGIMES.items():
-        axes.plot([], [], marker, color=colour, label=f"{regime}, lattice", **SMALL)
+        if (runs["regime"] == regime).any():
+            axes.plot([], [], marker, color=colour, label=f"{regime}, lattice", **SMALL)
     if flags.any():
-        axes.plot([], [], "o", color=GREY, label="open: flagged or undecided", **OPEN)
+        axes.plot([], [], "o", color=GREY, label="open: would slide back", **OPEN)
     axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set(xlabel=RATE, ylabel=r"pre-stress $\tau_0$", ylim=(0.0, 0.95), xlim=(-2.0, 2.7))
     axes.set_title(r"$\Gamma = 1$", loc="right")
@@ -72,7 +73,9 @@ def _draw_maps(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
         grid = half.pivot(index="position", columns="time", values="slip_velocity")
         image = axes.pcolormesh(grid.columns, grid.index, grid.where(grid > 0.0), **look)
         name = rf"{regime}, {RATE[:-1]} = {half['over'].iloc[0]:.2f}$"
-        axes.text(0.04, 0.92 if regime == "crack" else 0.04, name, transform=axes.transAxes)
+        axes.text(
+            0.04, 0.92 if regime == "creeping pulse" else 0.04, name, transform=axes.transAxes
+        )
     axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
     axes.set(xlabel=r"time $t$", ylabel=r"position $x$")

@@ -32,9 +32,8 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     the last tenth of the duration, or no velocity above ``still`` of the largest one sampled. Else
     a side *runs* if its front keeps up with the waves over the last third, or, where neither does,
     if blocks on it slide at ``still`` or more of the largest velocity now. *Two-way*: both run;
-    *one-way*: one. *Crack-like*: the nucleation point slides at ``still`` or more of the largest
-    velocity; *pulse*: it does not. A one-way pulse is *growing*, *steady* or *decaying* by the
-    change of its largest velocity over the last third.
+    *one-way*: one. *Pulse*: by `is_pulse`; *crack-like*: else. A one-way pulse is *growing*,
+    *steady* or *decaying* by the change of its largest velocity over the last third.
     """
     times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
     before = np.max(velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))])
@@ -54,7 +53,7 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     at_rest = largest <= still * max(largest, float(np.max(velocity)))
     if at_rest or latest < 0.9 * run.attrs["duration"]:
         regime = "arrested"
-    elif centre >= still * largest:
+    elif not is_pulse(centre, largest, still):
         regime = f"crack-like, {ways}"
     else:
         regime = _pulse_regime(ways, change, steady_tolerance)
@@ -65,6 +64,15 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
         "late_front_speed_left": speeds["left"],
         "late_front_speed_right": speeds["right"],
     }
+
+
+def is_pulse(centre: float, largest: float, still: float) -> bool:
+    """The one definition of a pulse: its nucleation point is at rest, or nearly, while it runs.
+
+    A *sticking* pulse has come to rest there, a *creeping* one slides on below ``still`` of the
+    largest velocity.
+    """
+    return centre < still * largest
 
 
 def _late_speed(run: AnyRun, side: str) -> float:

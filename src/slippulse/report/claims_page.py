@@ -56,6 +56,7 @@ def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
     return {
         "html": markup_of(texts),
         "summary": ledger.summary(),
+        "following": ledger.following(),
         "groups": groups,
         "signs": SIGNS,
         "reading": reading,

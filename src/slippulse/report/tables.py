@@ -34,6 +34,7 @@ REASONS = {
     "definition": "definition or assumption",
     "other work": "is about other work",
     "no model": "no model here can tell",
+    "not asked": "a model could tell; not asked here",
     "all": "all",
 }
 # A long table stands between WIDE and CLOSE, on landscape pages, or between SMALL and CLOSE, in
@@ -121,6 +122,16 @@ def algebra_checked(algebra: Mapping[str, Mapping], sentences: Sequence[Mapping]
     return table("what the paper derives l60 | section l20 | id l20", rows)
 
 
+def imposed(checks: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
+    """What the model imposes, with its position in the paper and what checks it."""
+    where = positions(checks, sentences)
+    rows = [
+        (entry["statement"], where[id], entry["checked"], code([id]))
+        for id, entry in checks.items()
+    ]
+    return table("what is imposed l44 | section l16 | checked l22 | id l18", rows)
+
+
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
     """Numbers read off the published figure next to ours, with the reading error."""
     left = ledger("published_space_time_figure").further
@@ -147,7 +158,7 @@ def sentence_counts(sentences: Sequence[Mapping]) -> str:
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
-    """Every sentence that is tested, with its position in the paper, its claims and algebra."""
+    """Every sentence that is tested, with its position in the paper, its claims and checks."""
     paragraph = re.compile(r", paragraph (\d+), sentence (\d+)")
     rows = []
     for sentence in sentences:

@@ -14,11 +14,11 @@ ERRATUM = ("where", "printed", "right", "shown")
 FEW = 3
 # Words of the answer for one thing with a verdict, and for several.
 EXCEPTIONS = {
-    "not reproduced": ("is not reproduced", "are not reproduced"),
     "depends on an open choice": (
-        "depends on a choice that the paper leaves open",
+        "depends on choices that the paper leaves open",
         "depend on choices that the paper leaves open",
     ),
+    "not reproduced": ("is not reproduced", "are not reproduced"),
     "inconclusive": ("stays open", "stay open"),
     "not testable": ("is not tested in this run", "are not tested in this run"),
 }
@@ -130,13 +130,14 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
 
 
 def answer(lines: Sequence[Line]) -> str:
-    """One sentence of Markdown: whether the first line is reproduced, and which others are not."""
+    """Sentences of Markdown: whether the first line is reproduced, and which others are not."""
     first, *rest = lines
-    parts = []
+    start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
+    sentences = [f"**{start}**: {first.named}."]
     for verdict, (one, several) in EXCEPTIONS.items():
         named = [line.named for line in rest if line.claim.verdict == verdict]
         if named:
-            parts.append(f"{listed(named)} {several if len(named) > 1 else one}")
-    start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
-    exceptions = f", except that {', and '.join(parts)}" if parts else ""
-    return f"**{start}**, {first.named}{exceptions}."
+            words = listed(named)
+            verb = several if len(named) > 1 else one
+            sentences.append(f"{words[0].upper()}{words[1:]} {verb}.")
+    return " ".join(sentences)

@@ -1,4 +1,4 @@
-"""Friction that depends linearly on slip rate: where pulses end, with and without leaf springs."""
+"""Friction linear in slip rate: where pulses cease to stick, with and without leaf springs."""
 
 from functools import cache
 from itertools import product
@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ..measurement.regime import is_pulse
 from ..model.balance import prestress_balance_position
 from ..model.friction_laws.linear_rate import LinearRate
 from ..model.prestress import Prestress
@@ -18,7 +19,7 @@ from ..theory.front_speeds import front_speed
 from ..theory.pulse import critical_rate_strengthening, pulse_behind_front
 from ..theory.rupture import Rupture
 
-NEEDS = {}  # type: dict[str, list[str]]
+NEEDS = {"settings": ["measure"]}
 
 GAMMA, RATIO = 0.65, 0.1
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
@@ -31,12 +32,13 @@ ORDER, MAX_STEP = 8, 0.25
 # The trailing edge learns of the front at the rate by which that outruns the waves: it is steady
 # after so long.
 SHORTEST, MEMORIES = 30.0, 5.0
-# The sliding part of a crack grows by more than this over the second half of a run, or its velocity
-# decays below this fraction of the largest before it ends.
+# The sliding part behind a front that nothing follows grows by more than this over the second half
+# of a run, or its velocity decays below this fraction of the largest before it ends.
 GROWTH, QUIET = 1.1, 1e-9
+STICKING, CREEPING, CRACK = "sticking pulse", "creeping pulse", "crack"
 # Widths, slips and maps are shown at this level; the maps at these fractions, to this end.
 LEVEL, END = 0.5, 14.0
-MAPPED, MAP_SHAPE = {"pulse": 0.6, "crack": 1.5}, (57, 96)
+MAPPED, MAP_SHAPE = {STICKING: 0.6, CREEPING: 1.5}, (57, 96)
 # Without leaf springs: rate strengthening, pre-stress, spacings and times.
 ALPHAS, ARRESTING = (0.0, 0.5, 2.0), Prestress(-0.5, 0.0)
 SPACINGS, TIMES = (0.05, 0.025), np.geomspace(2.0, 100.0, 21)
@@ -65,7 +67,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for level, fraction in product(LEVELS, FRACTIONS):
         # Slip runs away beyond this: the model refuses it.
         if fraction * _front(level)[1] > -2.0 * np.sqrt(GAMMA):
-            lattices.append(_lattice(level, fraction))
+            lattices.append(_lattice(level, fraction, settings["measure"]["still"]))
     limit = [(level, _front(level)[1]) for level in np.linspace(0.05, 0.9, 60)]
     speed, critical = _front(LEVEL)
     alphas = critical * np.linspace(-0.97, 0.97, 80)
@@ -92,8 +94,8 @@ def _front(level: float) -> tuple[float, float]:
     return speed, critical_rate_strengthening(GAMMA, speed)
 
 
-def _lattice(level: float, fraction: float) -> LatticePulse:
-    """One run, its regime and its pulse; NaN for the numbers of a crack."""
+def _lattice(level: float, fraction: float, still: float) -> LatticePulse:
+    """One run, its regime and its pulse; NaN for the numbers of what does not stick."""
     speed, critical = _front(level)
     alpha, dx = fraction * critical, SPACING * level
     duration = SHORTEST + MEMORIES / (speed - 1.0)
@@ -108,9 +110,11 @@ def _lattice(level: float, fraction: float) -> LatticePulse:
     slowest = velocity[velocity > 0.0][0] / velocity.max()
     row = (level, alpha, fraction, dx)
     if now[1] - now[0] >= GROWTH * (halfway[1] - halfway[0]) or slowest <= QUIET:
-        return LatticePulse(*row, "crack", run.attrs["run_flags"], np.nan, np.nan)
+        centre = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
+        regime = CREEPING if is_pulse(centre, velocity.max(), still) else CRACK
+        return LatticePulse(*row, regime, run.attrs["run_flags"], np.nan, np.nan)
     slip = right["slip"].values[np.argmin(np.abs(right["x"].values - now[0]))]
-    return LatticePulse(*row, "pulse", run.attrs["run_flags"], now[1] - now[0], slip)
+    return LatticePulse(*row, STICKING, run.attrs["run_flags"], now[1] - now[0], slip)
 
 
 def _sliding_part(right: xr.Dataset, time: float) -> tuple[float, float]:
@@ -121,12 +125,12 @@ def _sliding_part(right: xr.Dataset, time: float) -> tuple[float, float]:
 
 
 def _map(regime: str, alpha: float) -> pd.DataFrame:
-    """The exact rupture; to the left the pulse, to the right the crack."""
+    """The exact rupture; to the left the sticking pulse, to the right the creeping one."""
     rupture = Rupture(Prestress(LEVEL, LEVEL), GAMMA, RATIO, duration=END, rate_strengthening=alpha)
     times = np.linspace(0.0, END, MAP_SHAPE[0])
     x = np.linspace(0.0, rupture.front_ends[0][1].x, MAP_SHAPE[1])
     velocity = rupture.map(times, x, ("slip_velocity",))["slip_velocity"]
-    axes = [("time", times), ("position", x if regime == "crack" else -x)]
+    axes = [("time", times), ("position", x if regime == CREEPING else -x)]
     rows = xr.DataArray(velocity, axes, name="slip_velocity").to_series().reset_index()
     return rows.assign(regime=regime, rate_strengthening=alpha, level=LEVEL)
 
