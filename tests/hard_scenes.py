@@ -149,7 +149,7 @@ class Answers:
         self.first = min(first.time if first else np.inf, rupture.duration) / size
 
 
-def faults(keys: Keys, other: Keys, positions: int = 40) -> list[str]:
+def faults(keys: Keys, other: Keys, positions: int = 16) -> list[str]:
     """Everything in which two solutions of a scene differ before either has a limit."""
     first, second = keys.rupture(), other.rupture()
     ends = [end.x for pair in first.front_ends for end in pair]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .curve import Curve
+from .curve import Curve, Point
 from .riemann import Past, Rest
 from .stick_search import StickSearch
 from .trailing_edge import FirstStick, TrailingEdge
@@ -20,6 +20,8 @@ SCALE_WITHOUT_SPRINGS = 5.0 / 64.0
 # The grid for the largest velocity has so many positions a knot, where these are farther apart than
 # a fraction of `Part.scale`.
 DENSER, SAME_GRID = 3, 0.01
+# Slip is checked at positions this far apart, in units of `Part.scale`, to this fraction of itself.
+CHECKED, FALL = 0.25, 1e-6
 
 
 class Points(NamedTuple):
@@ -111,6 +113,17 @@ class Part:
     def first_stick(self) -> FirstStick | None:
         """The first sticking."""
         return self.edge.first_stick()
+
+    def falling_slip(self, horizon: Callable[[np.ndarray], np.ndarray]) -> list[Point]:
+        """Releases after which slip would fall before the stick and the horizon, in samples."""
+        x = self.edge.knots.x
+        x = x[np.unique(np.floor(x / (CHECKED * self.scale)), return_index=True)[1]]
+        release = self.curve.arrival(x)
+        last = np.minimum(self.edge.about(x), horizon(x))
+        x, release, last = np.array([x, release, last])[:, last > release]
+        middle, end = (self.field("slip", x, t) for t in (0.5 * (release + last), last))
+        falls = np.minimum(middle, end - middle) < -FALL * np.max(end, initial=0.0)
+        return [Point(*point) for point in np.stack([x, release], axis=1)[falls].tolist()]
 
     def largest_velocity(self, end: float, horizon: Callable[[np.ndarray], np.ndarray]) -> float:
         """Largest slip velocity until an end and before a horizon, on a grid that is refined there.

@@ -8,7 +8,7 @@ is a free boundary (`slow_front`). The undamped equation behind the fronts has R
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -31,6 +31,8 @@ FIELDS = ("slip_velocity", "slip", "strain")
 # The largest map, which takes 100 bytes a point.
 MOST_POINTS = 10**7
 SLOW_EDGE = "the trailing edge is slower than the waves"
+FALLING_SLIP = "the slip would fall"
+STOPS_UNDER_LOAD = "a front stops where the pre-stress is positive"
 
 
 @dataclass(frozen=True)
@@ -361,6 +363,14 @@ class Rupture:
         if self.prestress.symmetric:
             limits += [Limit(-limit.x, limit.time, limit.reason) for limit in limits]
         limits += [Limit(*point, reason) for point, reason in self._unknown]
+        ends = [
+            s.ends[side] for s in self.stretches for side in s.ends if s.stopped[side] == "dead"
+        ]
+        loaded = [end for end in ends if self.prestress(end.x) > SAME]
+        limits += [Limit(*end, STOPS_UNDER_LOAD) for end in loaded]
+        for part in self._parts:
+            falling = part.falling_slip(partial(_horizon, limits))
+            limits += [Limit(*point, FALLING_SLIP) for point in falling]
         return [limit for limit in limits if limit.time <= self.duration * (1.0 + SAME)]
 
     @property
@@ -379,6 +389,9 @@ class Rupture:
         -------
         array, inf where there is no such time
         """
-        x = as_numbers("x", x)
-        horizons = [limit.time + np.abs(x - limit.x) for limit in self._limits]
-        return np.min(horizons, axis=0, initial=np.inf)
+        return _horizon(self._limits, as_numbers("x", x))
+
+
+def _horizon(limits: list[Limit], x: np.ndarray) -> np.ndarray:
+    horizons = [limit.time + np.abs(x - limit.x) for limit in limits]
+    return np.min(horizons, axis=0, initial=np.inf)

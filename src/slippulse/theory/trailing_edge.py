@@ -10,8 +10,9 @@ The edge is known at knots: at the panels of the curve and where waves from its 
 then halfway between knots as long as these do not predict what is found there.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -24,10 +25,10 @@ if TYPE_CHECKING:
 
 # Stick times halfway between knots are predicted to this fraction of the interval, and their slopes
 # to this.
-PREDICTED, PREDICTED_SLOPE = 1e-3, 0.05
+PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
 # The shortest interval that is halved, and that in which the edge reaches the end, or a front that
 # has stopped, in units of `Part.scale`.
-SHORTEST, AT_END = 1e-3, 0.1
+SHORTEST, AT_END = 1e-3, 0.01
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
 # that are cut into so many.
 LOCATED, CUTS = 1e-10, 8
@@ -139,9 +140,9 @@ class TrailingEdge:
         if x.size < 2:
             return knots
         knots = knots.joined(self._knots_at(self._landings(knots)))
-        todo = knots.x[:-1]
+        knots, todo = self._refined(knots, knots.x[:-1], self.part.search)
         while todo.size:
-            knots, todo = self._refined(knots, todo)
+            knots, todo = self._refined(knots, todo, partial(self._stick_time, knots))
         return knots
 
     def _knots_at(self, x: np.ndarray) -> Knots:
@@ -169,7 +170,7 @@ class TrailingEdge:
             k, mark = np.nonzero((phase[1:] * phase[:-1] < 0.0) & fast)
             before, after = phase[k, mark], phase[k + 1, mark]
             x = knots.x[k] + (knots.x[k + 1] - knots.x[k]) * before / (before - after)
-            for _ in range(4 if x.size else 0):
+            for _ in range(2 if x.size else 0):
                 time = arrival[mark] + side * (x - marks[mark])
                 past = self.part.past(x, time)
                 x = x - 0.5 * side * past.slip_velocity() / past.velocity_slopes()[side > 0.0]
@@ -177,7 +178,9 @@ class TrailingEdge:
             out.append(x)
         return np.unique(np.concatenate(out))
 
-    def _refined(self, knots: Knots, todo: np.ndarray) -> tuple[Knots, np.ndarray]:
+    def _refined(
+        self, knots: Knots, todo: np.ndarray, stick_time: Callable[[np.ndarray], np.ndarray]
+    ) -> tuple[Knots, np.ndarray]:
         """More knots in the intervals right of some, and the intervals that need still more."""
         k = np.searchsorted(knots.x, todo)
         # What lies in the future of a jump, wherever it is in its interval, needs no knots.
@@ -194,7 +197,8 @@ class TrailingEdge:
         smooth, rough = k[long & ~rough & ~ends], k[long & (rough | ends)]
         cuts = np.linspace(knots.x[rough], knots.x[rough + 1], CUTS + 1)[:-1]
         middle = 0.5 * (knots.x[smooth] + knots.x[smooth + 1])
-        found = self._knots_at(np.append(cuts[1:].ravel(), middle))
+        x = np.append(cuts[1:].ravel(), middle)
+        found = self._knots_of(x, stick_time(x))
         surprise = ~self._predicted(knots, smooth, found.at(slice(cuts[1:].size, None)))
         new = knots.joined(found)
         halves = np.append(knots.x[smooth[surprise]], middle[surprise])
@@ -222,12 +226,17 @@ class TrailingEdge:
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions; NaN where there is none before the end."""
-        knots, until = self.knots, self.part.until
+        return self._stick_time(self.knots, x)
+
+    def _stick_time(self, knots: Knots, x: np.ndarray) -> np.ndarray:
+        until = self.part.until
         if knots.x.size < 2:
             return self.part.search(x)
         k = np.clip(np.searchsorted(knots.x, x, side="right") - 1, 0, knots.x.size - 2)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        out = self._between_knots(x, k, inside & knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k))
+        out = self._between_knots(
+            knots, x, k, inside & knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
+        )
         # A position that slides at the end, as both knots do, has not stuck.
         slides = np.flatnonzero(inside & knots.of_kinds(k, SLIDES, SLIDES))
         slides = slides[self.part.velocity(x[slides], np.full(slides.size, until)) > 0.0]
@@ -235,9 +244,10 @@ class TrailingEdge:
         out[unknown] = self.part.search(x[unknown])
         return np.where(out <= until, out, np.nan)
 
-    def _between_knots(self, x: np.ndarray, k: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    def _between_knots(
+        self, knots: Knots, x: np.ndarray, k: np.ndarray, wanted: np.ndarray
+    ) -> np.ndarray:
         """Stick times by Newton's steps; NaN where not wanted, and where the steps go astray."""
-        knots = self.knots
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
         guess = knots.stick_between(k, x)
