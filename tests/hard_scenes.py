@@ -128,7 +128,7 @@ def scene(number: int) -> Keys:
     stress = family == "bumps under stress" or (family != "several bumps" and rng.random() < 0.2)
     gamma = 0.0 if stress else float(10.0 ** rng.uniform(-1.5, 0.0))
     ratio = float(rng.choice([0.0, 0.1, 10.0 ** rng.uniform(-2.0, 0.3)]))
-    duration = min(rng.uniform(0.8, 2.5) * np.pi / np.sqrt(gamma or 0.25), 25.0)
+    duration = min(rng.uniform(0.7, 1.8) * np.pi / np.sqrt(gamma or 0.25), 25.0)
     return Keys(
         FAMILIES[family](rng), gamma, ratio, str(rng.choice(["total", "elastic"])), duration
     )

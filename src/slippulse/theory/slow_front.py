@@ -23,6 +23,8 @@ from .prestress_pieces import analytic
 from .riemann import decay, kernel_of, partial_weights
 
 RESOLVED = 1e-11
+# The next chunk is at most so many times as long as one that was cut.
+GROWTH = 4.0
 # The shortest fraction of a panel of entries.
 SHORTEST = 1e-11
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
@@ -37,10 +39,14 @@ MOST_NEWTON_STEPS = 60
 
 
 class Advance(NamedTuple):
-    """The next panel of a slow front, and the reason why it is the last one."""
+    """The next panel of a slow front, the reason why it is the last one, and a length to try next.
+
+    The length is that of a chunk in its parameter.
+    """
 
     panel: Panel | None
     stop: str | None
+    longest: float = 2.0
 
 
 class Chunk(NamedTuple):
@@ -78,7 +84,13 @@ class Solution(NamedTuple):
 
 
 def advance(
-    curve: Curve, prestress: Prestress, level: float, gamma: float, mark: float, alpha: float = 0.0
+    curve: Curve,
+    prestress: Prestress,
+    level: float,
+    gamma: float,
+    mark: float,
+    alpha: float = 0.0,
+    longest: float = 2.0,
 ) -> Advance:
     """Continue the right end of a curve into negative pre-stress by one panel of entries at most.
 
@@ -91,7 +103,8 @@ def advance(
     entry = front.entry()
     if entry is None:
         return Advance(None, "unknown")
-    chunk, corrections = Chunk(*entry, -1.0), 0
+    panel, start = entry
+    chunk, corrections = Chunk(panel, start, max(start - longest, -1.0)), 0
     for _ in range(MOST_CHUNKS):
         if chunk.start - chunk.stop < SHORTEST:
             return front.straight(mark)
@@ -104,7 +117,8 @@ def advance(
         # A chunk that was shortened to end at an event is searched a little beyond its end.
         event = solution.first_event(mark, 1.2 if corrections else 1.0)
         if event is None:
-            return Advance(front.panel(chunk, solution), None)
+            length = GROWTH * (chunk.start - chunk.stop) if chunk.stop > -1.0 else 2.0
+            return Advance(front.panel(chunk, solution), None, length)
         s, stop = event
         if _at_end(s, corrections):
             end = mark if stop == "mark" else None

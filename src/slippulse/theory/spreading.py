@@ -37,6 +37,8 @@ class Stretch:
     # Positions where a slow front outran the waves again, and where two fronts met.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     joins: list[float] = field(default_factory=list)
+    # The longest chunk that a slow front tries next.
+    longest: dict[float, float] = field(default_factory=lambda: dict.fromkeys(SIDES, 2.0))
 
     def curve(self) -> Curve:
         """The panels as one curve."""
@@ -150,7 +152,9 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.limits[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
-    panel, stop = advance(curve, law.prestress, piece.level, law.gamma, mark, law.alpha)
+    panel, stop, stretch.longest[side] = advance(
+        curve, law.prestress, piece.level, law.gamma, mark, law.alpha, stretch.longest[side]
+    )
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     if stop in ("dead", *UNKNOWN):

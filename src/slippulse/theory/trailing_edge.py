@@ -29,6 +29,8 @@ PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
 # The shortest interval that is halved, and that in which the edge reaches the end, or a front that
 # has stopped, in units of `Part.scale`.
 SHORTEST, AT_END = 1e-3, 0.01
+# Panels of the curve give one knot at most in a cell of this length, in units of `Part.scale`.
+CELL = 0.1
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
 # that are cut into so many.
 LOCATED, CUTS = 1e-10, 8
@@ -133,7 +135,9 @@ class TrailingEdge:
         last = self.part.until * (1.0 - SAME)
         start = curve.edges[np.argmin(curve.edge_times)]
         fronts = [curve.front_at(last, start, side) for side in (-1.0, 1.0)]
-        x = np.unique([left, *curve.edges, *self.part.marks, *fronts])
+        cell = np.floor(curve.edges / (CELL * self.part.scale))
+        edges = curve.edges[np.diff(cell, prepend=-np.inf) > 0.0]
+        x = np.unique([left, *edges, *self.part.marks, *fronts])
         x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.part.until)]
         x = x[np.diff(x, append=np.inf) > SAME * (right - left)]
         knots = self._knots_at(x)
