@@ -69,7 +69,7 @@ def barrier_depth(
     # The depth is found at gamma = 1.
     stop = None
     while stop is None:
-        panel, stop = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
+        panel, stop, _ = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
         if panel is not None:
             panels.append(panel)
     if stop != "dead":

@@ -32,7 +32,6 @@ FIELDS = ("slip_velocity", "slip", "strain")
 MOST_POINTS = 10**7
 SLOW_EDGE = "the trailing edge is slower than the waves"
 FALLING_SLIP = "the slip would fall"
-STOPS_UNDER_LOAD = "a front stops where the pre-stress is positive"
 
 
 @dataclass(frozen=True)
@@ -210,8 +209,8 @@ class Rupture:
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None for none until ``duration``."""
-        known = [first for part in self._parts if (first := part.first_stick())]
-        first = min(known, default=None)
+        known = [part.first_stick() for part in self._parts]
+        first = min((first for first in known if first), default=None)
         # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
         last = min(self.duration, self.limit.time if self.limit else np.inf)
         if not first or first.time > last * (1.0 + SAME):
@@ -357,20 +356,14 @@ class Rupture:
     @cached_property
     def _limits(self) -> list[Limit]:
         """All points in whose future the construction says nothing."""
-        limits = []
+        limits = [Limit(*point, reason) for point, reason in self._unknown]
         for part in self._parts:
-            limits += [Limit(*point, SLOW_EDGE) for point in part.edge.violations()]
-        if self.prestress.symmetric:
-            limits += [Limit(-limit.x, limit.time, limit.reason) for limit in limits]
-        limits += [Limit(*point, reason) for point, reason in self._unknown]
-        ends = [
-            s.ends[side] for s in self.stretches for side in s.ends if s.stopped[side] == "dead"
-        ]
-        loaded = [end for end in ends if self.prestress(end.x) > SAME]
-        limits += [Limit(*end, STOPS_UNDER_LOAD) for end in loaded]
-        for part in self._parts:
-            falling = part.falling_slip(partial(_horizon, limits))
-            limits += [Limit(*point, FALLING_SLIP) for point in falling]
+            slow = [Limit(*point, SLOW_EDGE) for point in part.edge.violations()]
+            falling = part.falling_slip(partial(_horizon, limits + slow))
+            found = slow + [Limit(*point, FALLING_SLIP) for point in falling]
+            if self.prestress.symmetric:
+                found += [Limit(-limit.x, limit.time, limit.reason) for limit in found]
+            limits += found
         return [limit for limit in limits if limit.time <= self.duration * (1.0 + SAME)]
 
     @property

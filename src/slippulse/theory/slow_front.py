@@ -104,7 +104,12 @@ def advance(
     if entry is None:
         return Advance(None, "unknown")
     panel, start = entry
-    chunk, corrections = Chunk(panel, start, max(start - longest, -1.0)), 0
+    return _first_panel(front, Chunk(panel, start, max(start - longest, -1.0)), mark)
+
+
+def _first_panel(front: "SlowFront", chunk: Chunk, mark: float) -> Advance:
+    """The panel of a chunk, or of the part of it that is resolved and ends at an event."""
+    corrections = 0
     for _ in range(MOST_CHUNKS):
         if chunk.start - chunk.stop < SHORTEST:
             return front.straight(mark)

@@ -6,7 +6,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from ..model.roots import root_between
-from .curve import Curve, Panel, Point, seen_from
+from .curve import SAME, Curve, Panel, Point, seen_from
 from .fast_front import FastFront
 from .prestress_pieces import nucleations
 from .slow_front import advance
@@ -15,6 +15,7 @@ from .slow_front import advance
 UNKNOWN = {
     "unknown": "what decides on a slow front comes from another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
+    "loaded": "a front stops where the pre-stress is positive",
 }
 OVERRUN = "a front comes to where another one has stopped"
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
@@ -158,7 +159,8 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     if stop in ("dead", *UNKNOWN):
-        stretch.stopped[side] = stop
+        loaded = stop == "dead" and law.prestress(side * stretch.ends[side].x) > SAME
+        stretch.stopped[side] = "loaded" if loaded else stop
     elif stretch.ends[side].time >= until:
         stretch.stopped[side] = "duration"
     elif stop == "mark":

@@ -106,7 +106,7 @@ class Knots(NamedTuple):
         rise = stick[k + 1] - stick[k]
         return stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
 
-    def at(self, k: np.ndarray | slice) -> "Knots":
+    def those(self, k: np.ndarray | slice) -> "Knots":
         """Some knots."""
         return Knots._make(values[k] for values in self)
 
@@ -115,8 +115,8 @@ class Knots(NamedTuple):
         span = other.x - self.x
         fall, rise = (knots.by_eta - knots.by_xi for knots in (self, other))
         valley = (fall * span < 0.0) & (rise * span > 0.0)
-        at = (other.velocity - self.velocity - rise * span) / np.where(valley, fall - rise, 1.0)
-        return valley & (self.velocity + fall * at <= 0.0) & (self.velocity > ROUNDING)
+        way = (other.velocity - self.velocity - rise * span) / np.where(valley, fall - rise, 1.0)
+        return valley & (self.velocity + fall * way <= 0.0) & (self.velocity > ROUNDING)
 
 
 @dataclass
@@ -203,7 +203,7 @@ class TrailingEdge:
         middle = 0.5 * (knots.x[smooth] + knots.x[smooth + 1])
         x = np.append(cuts[1:].ravel(), middle)
         found = self._knots_of(x, stick_time(x))
-        surprise = ~self._predicted(knots, smooth, found.at(slice(cuts[1:].size, None)))
+        surprise = ~self._predicted(knots, smooth, found.those(slice(cuts[1:].size, None)))
         new = knots.joined(found)
         halves = np.append(knots.x[smooth[surprise]], middle[surprise])
         pieces = cuts.ravel()
@@ -218,7 +218,7 @@ class TrailingEdge:
         slope -= 0.25 * (knots.pace[k] + knots.pace[k + 1])
         near = np.abs(middle.stick - knots.stick_between(k, middle.x)) <= 2.0 * PREDICTED * half
         near &= np.abs(middle.pace - slope) <= PREDICTED_SLOPE
-        slides = ~middle.may_stick(knots.at(k)) & ~middle.may_stick(knots.at(k + 1))
+        slides = ~middle.may_stick(knots.those(k)) & ~middle.may_stick(knots.those(k + 1))
         return same & np.choose(middle.kind, [slides, near, True, True])
 
     def about(self, x: np.ndarray) -> np.ndarray:
@@ -281,8 +281,8 @@ class TrailingEdge:
         """Points of the trailing edge where it does not outrun the waves."""
         knots = self.knots
         ends, _ = knots.fast_ends(np.arange(knots.x.size - 1))
-        at = np.union1d(ends, np.flatnonzero(knots.kind == SLOW))
-        points = np.stack([knots.x, knots.stick], axis=1)[at].tolist()
+        slow = np.union1d(ends, np.flatnonzero(knots.kind == SLOW))
+        points = np.stack([knots.x, knots.stick], axis=1)[slow].tolist()
         return [Point(*point) for point in points]
 
     def first_stick(self) -> FirstStick | None:
