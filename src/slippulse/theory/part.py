@@ -10,7 +10,7 @@ import numpy as np
 from .curve import Curve, Point
 from .riemann import Past, Rest
 from .stick_search import StickSearch
-from .trailing_edge import FirstStick, TrailingEdge
+from .trailing_edge import TrailingEdge
 
 # Steps of a search in time, in units of `Part.scale`.
 SEARCH = 0.2
@@ -82,7 +82,7 @@ class Part:
             return
         release, stick = np.full((2, positions.size), np.inf)
         release[covered] = self.curve.arrival(positions[covered])
-        stick[covered] = np.nan_to_num(self.stick_time(positions[covered]), nan=np.inf)
+        stick[covered] = np.nan_to_num(self.edge.stick_time(positions[covered]), nan=np.inf)
         sliding = (time > release[number]) & (time < stick[number])
         stuck = (time >= stick[number]) & np.isfinite(release[number])
         # The part that has stuck is computed once for each position.
@@ -105,14 +105,6 @@ class Part:
     def edge(self) -> TrailingEdge:
         """The trailing edge."""
         return TrailingEdge(self)
-
-    def stick_time(self, x: np.ndarray) -> np.ndarray:
-        """Stick times at positions; NaN where there is none before the end."""
-        return self.edge.stick_time(x)
-
-    def first_stick(self) -> FirstStick | None:
-        """The first sticking."""
-        return self.edge.first_stick()
 
     def falling_slip(self, horizon: Callable[[np.ndarray], np.ndarray]) -> list[Point]:
         """Releases after which slip would fall before the stick and the horizon, in samples."""

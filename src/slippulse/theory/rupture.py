@@ -186,7 +186,7 @@ class Rupture:
         out = np.full(positions.shape, np.nan)
         for part in self._parts:
             on = part.curve.covers(positions)
-            out[on] = part.stick_time(positions[on])
+            out[on] = part.edge.stick_time(positions[on])
         return out[number]
 
     def final_slip(self, x) -> np.ndarray:
@@ -209,7 +209,7 @@ class Rupture:
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None for none until ``duration``."""
-        known = [part.first_stick() for part in self._parts]
+        known = [part.edge.first_stick() for part in self._parts]
         first = min((first for first in known if first), default=None)
         # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
         last = min(self.duration, self.limit.time if self.limit else np.inf)
