@@ -25,7 +25,7 @@ from slippulse.claims.reading import (
     Ledger,
     claims_of,
     coverage,
-    testing,
+    every_test,
 )
 from slippulse.claims.rules import KINDS
 from slippulse.report.manuscript import DOCUMENTS, NAMED, Gallery
@@ -122,7 +122,7 @@ def test_every_sentence_that_can_be_tested_has_a_claim_and_every_claim_a_sentenc
     statements = read(manuscript / "statements.yaml")["statements"]
     ids = [sentence["id"] for sentence in statements]
     assert len(set(ids)) == len(ids)
-    tests = testing(entries)
+    tests = every_test(entries)
     for sentence in statements:
         why = str(sentence.get("why_none", ""))
         assert bool(claims_of(tests, sentence)) != bool(why), sentence

@@ -46,7 +46,7 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
     return texts
 
 
-def testing(texts: Mapping[str, Mapping]) -> dict[str, Mapping]:
+def every_test(texts: Mapping[str, Mapping]) -> dict[str, Mapping]:
     """Everything that tests sentences: claims and checks, by id."""
     return {id: entry for part in ("claims", *CHECKS) for id, entry in texts[part].items()}
 
