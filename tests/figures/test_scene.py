@@ -94,6 +94,21 @@ def test_numbers_agree_with_theory_where_there_is_one(drawn):
     assert np.isfinite(numbers["theory"]["front_speed_left"])
 
 
+def test_each_side_has_the_line_of_its_own_steady_pulse(drawn):
+    scene = drawn["barrier"]
+    for axes in [
+        axes for axes in figure.plot(scene.table).axes if "at the end" in axes.get_ylabel()
+    ]:
+        left, right = (line for line in axes.lines if line.get_gid() == "steady")
+        assert max(left.get_xdata()) == 0.0 == min(right.get_xdata())
+        higher, lower = left.get_ydata()[0], right.get_ydata()[0]
+        # The pulse on the left, of a higher level, has passed its memory, and no barrier.
+        assert higher > lower
+        values = axes.lines[1].get_ydata()
+        assert values[axes.lines[1].get_xdata() < -5.0].max() == pytest.approx(higher, rel=0.05)
+    assert not drawn["stress"].table["role"].eq("steady").any()
+
+
 def test_a_number_is_written_to_its_uncertainty():
     assert figure.number_text(1.23456, 0.0123, 1.25) == "1.235(12) (theory 1.2500)"
     assert figure.number_text(-2.0, np.nan, np.nan) == "−2"

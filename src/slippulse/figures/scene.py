@@ -17,15 +17,18 @@ from .style import BLUE, GREY, ORANGE, PAGE, Look, new_figure, panel_letter
 # The number of blocks drawn of a profile.
 PROFILE_POINTS = 400
 FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
-# The quantity of a steady pulse that is the largest value of each field.
+# The size of a steady pulse that is the largest value of each field, and each side's prefix of it.
 LARGEST = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
+PREFIXES = {"left": "exact_left", "right": "exact"}
 
 
-def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
-    """Rows of a run with fields: the roles of `run_rows`, profile, number and title.
+def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str) -> pd.DataFrame:
+    """Rows of a run with fields: the roles of `run_rows`, profile, steady, number and title.
 
-    Role profile has a field at the end (series: the field), role number the rows of
+    Role profile has a field at the end (series: the field), role steady the largest value of the
+    exact steady pulse of each side (at the end of that side), role number the rows of
     `shared.numbers.scene_numbers` (series: the quantity), role title the text (in series).
+    ``theory`` is the row of measured and predicted numbers of the run.
     """
     lower, upper = space_time.limits(run)
     x = run["x"].values
@@ -37,6 +40,14 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, title: str) -> pd.DataFrame:
         kept = np.union1d(spaced, inside[np.argmax(values[inside])])
         rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
         parts.append(pd.DataFrame(rows))
+    ends = {"left": lower, "right": upper} if theory["pulse_state"] != "none" else {}
+    steady = [
+        {"series": name, "position": end, "value": theory[f"{PREFIXES[side]}_{LARGEST[name]}"]}
+        for name in FIELDS
+        for side, end in ends.items()
+    ]
+    columns = ["role", "series", "position", "value"]
+    parts.append(pd.DataFrame(steady, columns=columns).assign(role="steady").dropna())
     parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
     columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
     return pd.concat(parts, ignore_index=True).reindex(columns=columns)
@@ -58,7 +69,7 @@ def plot(table: pd.DataFrame) -> Figure:
     upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     draw_space_time(upper, roles)
     for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
-        draw_end(axes, roles["profile"], numbers, field)
+        draw_end(axes, roles["profile"], roles.get("steady", table.iloc[:0]), field)
         panel_letter(axes, letter)
     for index, row in enumerate(numbers.itertuples()):
         line = f"{with_symbols(row.label)}: {number_text(row.value, row.uncertainty, row.theory)}"
@@ -81,16 +92,18 @@ def draw_space_time(figure: SubFigure, roles: dict[str, pd.DataFrame]) -> None:
     figure.suptitle(f"{title}\n{parameters}", fontsize=9.0)
 
 
-def draw_end(axes: Axes, profile: pd.DataFrame, numbers: pd.DataFrame, field: str) -> None:
-    """Draw a field at the end, with exact theory for the right pulse where that is steady."""
+def draw_end(axes: Axes, profile: pd.DataFrame, steady: pd.DataFrame, field: str) -> None:
+    """Draw a field at the end, and on each side the largest value of its exact steady pulse."""
     rows = profile[profile["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
-    theory = numbers.loc[numbers["series"] == LARGEST[field], "theory"].dropna()
-    for value in theory:
-        look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": (0, (3, 1.5))}
-        axes.axhline(value, label="steady pulse, exact", **look)
-    if len(theory):
+    look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": (0, (3, 1.5)), "gid": "steady"}
+    look["label"] = "steady pulse of this side, exact"
+    for pulse in steady[steady["series"] == field].itertuples():
+        axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)
+        # One entry of the legend stands for both sides.
+        look["label"] = None
+    if len(axes.lines) > 2:
         axes.legend(loc="center")
     axes.set(xlabel=r"position $x$", ylabel=f"{FIELDS[field]} at the end")
     axes.set_xlim(rows["position"].min(), rows["position"].max())

@@ -121,7 +121,8 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         axes.annotate(setting(level), _end_in_panel(line), color=BLACK, fontsize=7.0, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
-    axes.set(xlim=(None, 1.28 * rows["time"].max()), ylim=(LEAST, None))
+    highest = rows["largest_velocity"].max()
+    axes.set(xlim=(None, 1.28 * rows["time"].max()), ylim=(LEAST, 2.5 * highest))
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before", loc="right")
     look = {"transform": axes.transAxes, "ha": "right", "va": "top", "fontsize": 8.0}
     axes.text(0.97, 0.96, r"$\tau$ beyond", **look)

@@ -1,4 +1,4 @@
-"""Right pulse of each run under a displacement boundary: the paper's, and the exact one."""
+"""Pulses of each run under a displacement boundary: the paper's, and the exact ones."""
 
 import numpy as np
 import pandas as pd
@@ -10,27 +10,35 @@ from .numbers import NAN, known, level
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """Columns paper_pulse_SIZE (no damping) and exact_pulse_SIZE.
+    """Columns paper_pulse_SIZE (no damping), exact_pulse_SIZE and exact_left_pulse_SIZE.
 
-    SIZE is width, slip, peak_velocity or acceleration.
+    SIZE is width, slip, peak_velocity or acceleration, on the left slip or peak_velocity.
     """
-    pairs = zip(scenes, exact_speeds(scenes, "right"), strict=True)
-    return pd.DataFrame([_pulse(scene, speed) for scene, speed in pairs])
+    speeds = [exact_speeds(scenes, side) for side in ("left", "right")]
+    return pd.DataFrame([_pulses(*row) for row in zip(scenes, *speeds, strict=True)])
 
 
-def _pulse(scene: Scene, speed: float) -> dict[str, float]:
+def _pulses(scene: Scene, left_speed: float, right_speed: float) -> dict[str, float]:
     ahead = level(scene, "right")
-    paper = exact = None
+    paper = None
     if scene.boundary == "displacement" and 0.0 < ahead < 1.0:
         paper = known(lambda: paper_pulse(ahead, scene.gamma))
-        if speed > 1.0:
-            exact = known(lambda: pulse_behind_front(ahead, scene.gamma, scene.beta, speed))
     row: dict[str, float] = {}
-    for kind, pulse in (("paper", paper), ("exact", exact)):
+    for kind, pulse in (("paper", paper), ("exact", _exact(scene, "right", right_speed))):
         for name in ("width", "slip", "peak_velocity"):
             row[f"{kind}_pulse_{name}"] = getattr(pulse, name, NAN)
         row[f"{kind}_pulse_acceleration"] = _acceleration(pulse) if pulse else NAN
+    left = _exact(scene, "left", left_speed)
+    for name in ("slip", "peak_velocity"):
+        row[f"exact_left_pulse_{name}"] = getattr(left, name, NAN)
     return row
+
+
+def _exact(scene: Scene, side: str, speed: float) -> SteadyPulse | None:
+    """Steady pulse on a side, where its front outruns the waves."""
+    if scene.boundary != "displacement" or not speed > 1.0:
+        return None
+    return known(lambda: pulse_behind_front(level(scene, side), scene.gamma, scene.beta, speed))
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

@@ -43,6 +43,8 @@ OPEN = '`````{{=html}}\n<div class="wide">\n`````\n\n`````{{=typst}}\n#{}[\n````
 WIDE, SMALL = map(OPEN, ("sideways", "small"))
 CLOSE = "`````{=typst}\n]\n`````\n\n`````{=html}\n</div>\n`````"
 FLUSH = "`````{=typst}\n#place.flush()\n`````"
+# Figures after BELOW stand at the bottom of a page, so that none cuts the table before it.
+BELOW = "`````{=typst}\n#show figure.where(kind: image): set figure(placement: bottom)\n`````"
 
 
 def table(head: str, rows: Iterable[Sequence[object]]) -> str:

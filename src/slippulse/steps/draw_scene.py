@@ -22,7 +22,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
     save_table(numbers, outputs["numbers"])
-    table = scene.table(data, numbers, title)
+    table = scene.table(data, numbers, row, title)
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
