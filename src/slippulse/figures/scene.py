@@ -40,7 +40,10 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str)
         kept = np.union1d(spaced, inside[np.argmax(values[inside])])
         rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
         parts.append(pd.DataFrame(rows))
-    ends = {"left": lower, "right": upper} if theory["pulse_state"] != "none" else {}
+    # The right pulse is measured; on the left there is one once blocks stick.
+    shown = {"left": math.isfinite(run.attrs["first_stick_time"])}
+    shown["right"] = theory["pulse_state"] != "none"
+    ends = {side: end for side, end in (("left", lower), ("right", upper)) if shown[side]}
     steady = [
         {"series": name, "position": end, "value": theory[f"{PREFIXES[side]}_{LARGEST[name]}"]}
         for name in FIELDS
@@ -103,7 +106,8 @@ def draw_end(axes: Axes, profile: pd.DataFrame, steady: pd.DataFrame, field: str
         axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)
         # One entry of the legend stands for both sides.
         look["label"] = None
-    if len(axes.lines) > 2:
+    # The velocity is 0 in the middle, and the legend is for both panels.
+    if len(axes.lines) > 2 and field == "slip_velocity":
         axes.legend(loc="center")
     axes.set(xlabel=r"position $x$", ylabel=f"{FIELDS[field]} at the end")
     axes.set_xlim(rows["position"].min(), rows["position"].max())
