@@ -43,7 +43,10 @@ def disagreements(number: int) -> list[str]:
 
 def _differences(name: str, exact: np.ndarray, runs: np.ndarray) -> list[str]:
     coarse, middle, fine = runs
-    extrapolated = (8.0 * fine - 6.0 * middle + coarse) / 3.0
+    # A step of the pre-stress between two blocks moves with dx, and an error that changes its sign
+    # cannot be extrapolated.
+    steady = (fine - middle) * (middle - coarse) >= 0.0
+    extrapolated = np.where(steady, (8.0 * fine - 6.0 * middle + coarse) / 3.0, fine)
     allowed = CHANGE * np.maximum(np.abs(fine - middle), np.abs(middle - coarse))
     wrong = np.argwhere(np.abs(extrapolated - exact) > allowed + BLOCKS * SPACINGS[-1])
     return [f"{name} {at}: {exact[tuple(at)]:.6g}, {runs[:, *at]}" for at in wrong]
