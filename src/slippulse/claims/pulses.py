@@ -157,10 +157,7 @@ def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
 
 
 def thin_layer(evidence: Evidence, id: str) -> Qualitative:
-    """Steady pulses are far wider than the layer, which is 1, by the factor that is the tolerance.
-
-    The extremes are of all levels.
-    """
+    """The thickness, which is 1, over the width of each steady pulse is below the tolerance."""
     table = evidence.finest("any_prestress")
     width, slowest = table["pulse_width"], table["front_speed_right"].min()
     further = {"narrowest pulse, in H": width.min(), "widest pulse": width.max()}
@@ -168,7 +165,7 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     why = (
         "The paper assumes it; by its own formula of the width it holds near static friction alone."
     )
-    return Qualitative.counted(width >= evidence.tolerance(id), further=further, why=why)
+    return Qualitative.counted(1.0 / width <= evidence.tolerance(id), further=further, why=why)
 
 
 # With the displacement held

@@ -171,7 +171,7 @@ def compared_text(claim: SimpleNamespace) -> str:
     if claim.kind == "qualitative":
         text = "no run may contradict"
         if claim.tolerance > SLIGHT:
-            text += f" (equal within {setting(100.0 * claim.tolerance)} %)"
+            text += f" (tolerance {setting(100.0 * claim.tolerance)} %)"
         return text
     if claim.kind == "reading":
         return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"
