@@ -56,7 +56,7 @@ def drawn(shipped, tmp_path_factory):
         measure.run(files, files, settings)
         predict.run({}, files, settings | shipped["measure"] | {"topics": predict.TOPICS})
         study_grid.run({"finest": files["measured"]}, files, settings)
-        draw_scene.run(files, outputs, {"scene": name, "title": TITLE})
+        draw_scene.run(files, outputs, {"scene": name, "title": TITLE, "altered": ""})
         numbers, table = load_table(outputs["numbers"]), load_table(outputs["csv"])
         run = point(load_dataset(files["data"]), 0)
         made[name] = SimpleNamespace(run=run, numbers=numbers, table=table, outputs=outputs)
