@@ -93,8 +93,9 @@ def duration_factor(evidence: Evidence) -> dict[str, float]:
 def backward_threshold(evidence: Evidence) -> dict[str, float]:
     """Runs in which blocks would slide back at the printed threshold, and the friction for none."""
     runs = pd.concat([evidence.tables[name] for name in evidence.swept])
-    back, needed = (runs["min_stuck_stress"] <= -1.0).sum(), runs["friction_ratio_needed"].max()
-    return {"back": float(back), "runs": float(len(runs)), "needed": float(needed)}
+    reverse = (runs["min_stuck_stress"] <= -1.0).sum()
+    needed = float(runs["friction_ratio_needed"].max())
+    return {"back": float(reverse), "runs": float(len(runs)), "needed": needed}
 
 
 # Findings with numbers that are no expression over the columns of one table.

@@ -28,7 +28,7 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Existence:
     fewest, most = two_way.min(), two_way.max()
     cases = {"with": (len(two_way), len(chain)), "without": (len(one_way), len(spike))}
     wide = len(two_way) > 0 and fewest > ABOUT_ONE
-    shown = " and ".join(f"{some} of {runs} runs {name}" for name, (some, runs) in cases.items())
+    shown = " and ".join(f"{count} of {runs} runs {name}" for name, (count, runs) in cases.items())
     why = f"There are pulses in {shown} leaf springs, the others arrest; they are "
     why += f"{number(fewest)} to {number(most)} blocks wide, not about one."
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}

@@ -24,10 +24,10 @@ def unlike(lock: str | Path) -> str:
         named.setdefault(name, set()).add(wanted)
     for name, wanted in named.items():
         try:
-            found = version(name)
+            installed = version(name)
         except PackageNotFoundError:
             continue
-        if found not in wanted:
+        if installed not in wanted:
             allowed = f"{' or '.join(sorted(wanted))}, as in requirements.lock"
-            return f"{name}: {found} is installed; allowed: {allowed} (rm -r .venv; make setup)"
+            return f"{name}: {installed} is installed; allowed: {allowed} (rm -r .venv; make setup)"
     return ""

@@ -17,7 +17,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
     Settings: scene (its name), title, altered (what differs from the shipped configuration).
     """
-    name, title, note = settings["scene"], settings["title"], settings["altered"]
+    title, note = settings["title"], settings["altered"]
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
@@ -26,5 +26,5 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
-    page = scene_page(name, title, outputs["png"], numbers, values, note)
+    page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note)
     write_text(page, outputs["html"])

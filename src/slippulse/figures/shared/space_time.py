@@ -161,8 +161,8 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     positions = np.concatenate([[-np.inf, x[0]], x, [x[-1], np.inf]])
     before = np.concatenate([[end, end], release, [end, end]])
     # The areas reach over the borders of the map, whose outer samples stand for half a cell more.
-    overhang, beyond = 0.01 * end, 0.1 * np.ptp(drawn)
-    positions = np.clip(positions, drawn.min() - beyond, drawn.max() + beyond)
+    overhang, margin = 0.01 * end, 0.1 * np.ptp(drawn)
+    positions = np.clip(positions, drawn.min() - margin, drawn.max() + margin)
     axes.fill_betweenx(positions, -overhang, before, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(release, x, color=BLACK, linewidth=0.8, zorder=2.0, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()
