@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ..data.prose import fill
-from . import transition
+from . import layer, transition
 from .evidence import Evidence, evaluated
 from .inference import inference
 
@@ -103,6 +103,7 @@ COMPUTED: dict[str, Callable[[Evidence], dict]] = {
     "backward_threshold": backward_threshold,
     "collapse_against_damping": collapse,
     "front_never_arrives": never_arrives,
+    "layer_in_plane": layer.layer_in_plane,
     "published_figure_made_with": best_fit,
     "duration_criterion": duration_factor,
 }
