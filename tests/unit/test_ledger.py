@@ -85,8 +85,8 @@ def estimated(
 
 # Measured of every run.
 OF_RUNS = ("regime",)
-# Studies that simulate lattices themselves.
-LATTICE_STUDIES = ("studies.rate_dependence",)
+# Studies that simulate by themselves.
+LATTICE_STUDIES = ("studies.rate_dependence", "studies.layer")
 # The length of the transition under leaf springs, as the exact theory has it.
 LENGTHS = [
     estimated("total", 0.1, 0.235),

@@ -7,8 +7,6 @@ from .evidence import Evidence
 from .kinds import Approximate, Qualitative
 
 QUANTITIES = ("speed", "pulse_width", "pulse_slip")
-# A pulse has settled if its speed and slip change by less than this between two stations.
-SETTLED = 0.02
 
 
 def last_station(evidence: Evidence) -> pd.DataFrame:
@@ -29,14 +27,14 @@ def change(runs: pd.DataFrame, part: str, quantity: str) -> pd.Series:
     return (finest(runs, part)[quantity] / finest(runs, part, 1)[quantity] - 1.0).abs()
 
 
-def layer_has_the_regimes(evidence: Evidence, id: str) -> Qualitative:
+def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     """Pulses that settle, a crack where the stress is held, and one side stopped by a barrier."""
     runs, study = last_station(evidence), evidence.tables["layer"]
     before = study[study["station"] == np.sort(study["station"].dropna().unique())[-2]]
     pulses = finest(runs, "pulse")
     moving = ["speed", "pulse_slip"]
     drift = pulses[moving] / finest(before, "pulse")[moving] - 1.0
-    settled = (drift.abs() < SETTLED).all(axis=1) & (pulses["pulse_width"] > 0.0)
+    settled = (drift.abs() < evidence.tolerance(id)).all(axis=1) & (pulses["pulse_width"] > 0.0)
     cracks = ~np.isfinite(finest(runs, "crack")["first_stick"])
     barriers = finest(runs, "barrier")
     left, right = (barriers.xs(side, level="side") for side in (-1.0, 1.0))

@@ -6,7 +6,7 @@ from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
-from . import friction_laws, pulses, space_time_figure, transition
+from . import friction_laws, layer, pulses, space_time_figure, transition
 from .evidence import Evidence
 from .kinds import ByNumber, Claim
 from .reading import positions, why_text
@@ -79,6 +79,8 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "shorter_transition_low_prestress": transition.shorter_transition_low_prestress,
     "pulses_widen_with_prestress": transition.pulses_widen_with_prestress,
     "thin_layer": pulses.thin_layer,
+    "layer_regimes": layer.layer_regimes,
+    "layer_width": layer.layer_width,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,
     "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
     "published_space_time_figure": space_time_figure.left,
