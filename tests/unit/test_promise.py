@@ -15,7 +15,11 @@ from slippulse.predict.comparison import measured_table
 from slippulse.report.scene_page import scene_page
 
 SHARE = 0.95
-COMMON = {"run_flags": "", "damping_ratio": 0.1}
+COMMON = {"run_flags": "", "damping_ratio": 0.1, "width": 1.0, "peak": 1.0, "dx": 0.1}
+COMMON |= {"steps_and_bumps": '{"steps": [], "bumps": []}', "end_time": 20.0}
+COMMON |= {"front_intercept_left": 0.0, "front_intercept_right": 0.0, "front_speed_left": 1.2}
+BARRIER = {"steps_and_bumps": '{"steps": [], "bumps": [[10.0, -0.6, 1.0]]}'}
+FAR_BARRIER = {"steps_and_bumps": '{"steps": [], "bumps": [[30.0, -0.6, 1.0]]}'}
 PULSE = COMMON | {"boundary": "displacement", "left": 0.5, "right": 0.5, "beyond": 0.5}
 PULSE |= {"front_speed_left": 1.2, "front_speed_right": 1.2, "transition_time": 3.0}
 PULSE |= {"pulse_state": "steady", "pulse_width": 2.0, "pulse_acceleration": 1.0}
@@ -57,7 +61,9 @@ COVERS = [
     (PULSE, {"pulse_state": "unsteady"}, [], ["pulse_width"]),
     (PULSE, {"pulse_width": math.nan}, [], ["pulse_width"]),
     (PULSE, {"left": -0.1}, ["front_speed_right"], ["front_speed_left"]),
-    (PULSE, {"beyond": 0.01}, [], ["front_speed_right"]),
+    (PULSE, BARRIER, ["front_speed_left"], ["front_speed_right", "transition_time", "pulse_width"]),
+    (PULSE, FAR_BARRIER, ["front_speed_right", "transition_time", "pulse_width"], []),
+    (PULSE, {"front_speed_left": math.nan}, ["front_speed_right"], ["transition_time"]),
     (CRACK, {}, ["transition_time", "largest_velocity"], ["front_speed_right"]),
     (CRACK, {"transition_state": "stalled"}, [], ["transition_time"]),
     (CRACK, {"damping_ratio": 0.0}, ["largest_velocity"], ["transition_time"]),
@@ -172,4 +178,7 @@ def test_without_an_order_the_spread_is_the_uncertainty_and_a_missing_value_leav
     result = grid_study((1.0, 1.1, 0.95), (2.0, 4.0))
     assert np.isnan(result.observed_order) and result.extrapolated == 1.0
     assert result.uncertainty == pytest.approx(0.15)
+    # Nearer spacings show less of the error: the lowest order, 1/2, scales what they show.
+    near = grid_study((1.0, 1.1, 0.95), (1.2, 1.44))
+    assert near.uncertainty == pytest.approx(0.15 / 0.2)
     assert np.isnan(grid_study((1.0, np.nan, 1.0), (2.0, 4.0)).uncertainty)

@@ -16,7 +16,7 @@ from ..model.checks import check_choice, check_kind, check_number, short_repr
 from ..model.friction import COULOMB, friction_from
 from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
-from ..model.stability import MARGIN, largest_step
+from ..model.stability import chosen_step
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import pulse_behind_front
 from .expand import promise_of, runs
@@ -136,7 +136,7 @@ def settings_for(
     demand = Demand(error, prestress, gamma, damping_ratio, release, fields)
     spacings = _spacings_with_springs(demand) if gamma else _spacings_without_springs(demand)
     dx = float(f"{min(1.0, *spacings):.3g}")
-    step = min(STEP, MARGIN * largest_step("localised", ORDER, damping_ratio, gamma * dx**2))
+    step = chosen_step("localised", ORDER, damping_ratio, gamma * dx**2, enough=STEP)
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx}
     settings |= {"max_step": step, "order": ORDER}
     # The scene refuses a wrong boundary, and a gamma that does not go with it.

@@ -13,7 +13,7 @@ from ..model.friction import COULOMB, Friction, friction_from
 from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
-from ..model.stability import MARGIN, largest_step
+from ..model.stability import MARGIN, chosen_step
 
 
 class Run(NamedTuple):
@@ -112,15 +112,14 @@ def _spacing(simulation: Mapping, run: Run, index: int) -> float:
 
 
 def _max_step(simulation: Mapping, run: Run, dx: float, beta: float) -> float:
-    """The simulation's own step, or the preset's, cut to a safe fraction of the stability bound."""
-    accuracy = simulation["accuracy"]
+    """The simulation's own step, or the preset's, cut where it is not stable or accurate."""
+    accuracy, scheme = simulation["accuracy"], simulation["scheme"]
     ratios = beta / dx, run.gamma * dx**2, run.friction.steepest * dx
-    enough = accuracy["max_step"] / MARGIN
-    bound = largest_step(simulation["scheme"], accuracy["order"], *ratios, enough=enough)
-    bound = min(bound, run.friction.longest_step / dx)
-    step = simulation.get("max_step", min(accuracy["max_step"], MARGIN * bound))
+    largest = accuracy["max_step"]
+    step = chosen_step(scheme, accuracy["order"], *ratios, enough=largest)
+    step = simulation.get("max_step", min(step, MARGIN * run.friction.longest_step / dx))
     if "promise" in accuracy:
-        step = min(step, accuracy["max_step"])
+        step = min(step, largest)
     if "fixed" in simulation["spacing"]:
         step *= simulation["coarser"]
     return step

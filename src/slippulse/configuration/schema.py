@@ -66,7 +66,6 @@ Distinct = Annotated[
 ]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
-AboveOne = Annotated[float, Field(gt=1.0)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
 Spacing = Annotated[float, Field(gt=0.0, le=1.0)]
 Ratio = Annotated[float, Field(ge=1e-6, le=1e6)]
@@ -96,6 +95,7 @@ TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
+FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G); left out under `stress` (paper: near 2/3)"
@@ -233,10 +233,18 @@ class Preset(Block):
     dx: Spacing = key("block spacing where a simulation does not scale it [H]")
     max_step: Positive = key("largest time step; strong damping may need less [dx]")
     order: int = key("order of the Taylor step", ge=3, le=8)
-    coarser: Annotated[Distinct[AboveOne], Field(min_length=2, max_length=2)] = key(
-        "factors of the spacing in the grid studies", words="two different factors > 1"
+    coarser: Annotated[Distinct[float], Field(min_length=2, max_length=2)] = key(
+        "factors of the spacing in the grid studies", words=FACTORS
     )
     whole: bool = key("whether studies, ledger and report are made without `everything`", True)
+
+    @model_validator(mode="after")
+    def _far_apart(self) -> Self:
+        # Between nearly equal spacings a number hardly changes, however large its error is.
+        first, second = sorted(self.coarser)
+        apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
+        require(apart, f"coarser: {self.coarser}", FACTORS)
+        return self
 
 
 class Model(Block):

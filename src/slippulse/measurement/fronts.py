@@ -20,6 +20,11 @@ def path(
     return time[start:][reached], x[start:][reached]
 
 
+# A front pauses where one wait between two blocks takes this fraction of a stretch of its path, and
+# this many times a block's part of it.
+PAUSE, PAUSE_BLOCKS = 0.2, 4.0
+
+
 def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
     """Distance from x = 0 of a front or trailing edge at given times; NaN before its first event.
 
@@ -48,13 +53,27 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
 def fit_front(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
     """Speed, intercept and standard error of the speed on the last fraction of a front's path.
 
-    They are those of `straight_line`; NaN with fewer than 4 blocks.
+    They are those of `straight_line`; NaN with fewer than 4 blocks. A front that outruns the waves
+    after a pause is measured after it.
     """
     times, distances = path(run, side)
     chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
     if chosen.sum() < 4:
         return np.nan, np.nan, np.nan
-    return straight_line(times[chosen], distances[chosen])
+    times, distances = times[chosen], distances[chosen]
+    start = end_of_last_pause(times)
+    if 0 < start <= times.size - 4:
+        line = straight_line(times[start:], distances[start:])
+        if line[0] > 1.0:
+            return line
+    return straight_line(times, distances)
+
+
+def end_of_last_pause(times: np.ndarray) -> int:
+    """Index of the first block after the last pause of a front; 0 if it did not pause."""
+    waits = np.diff(np.maximum.accumulate(times))
+    longest = max(PAUSE, PAUSE_BLOCKS / times.size) * np.sum(waits)
+    return int(np.max(np.flatnonzero(waits > longest) + 1, initial=0))
 
 
 def straight_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float, float]:

@@ -2,9 +2,12 @@
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 import pandas as pd
+
+from ..model.prestress import Prestress, prestress_from
 
 PULSE = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop")
 ALWAYS = ("front_speed_left", "front_speed_right", "transition_time", "transition_length")
@@ -13,8 +16,9 @@ COVERED = {
     "displacement": (*ALWAYS, "first_stick_time", *PULSE),
     "stress": (*ALWAYS, "largest_velocity"),
 }
-# A front into less pre-stress hardly outruns the waves: it lags by an order of 2/3 to 1 in dx.
-LOWEST_LEVEL = 0.05
+# A front that crosses less pre-stress hardly outruns the waves, and lags by an order of 2/3 to 1 in
+# dx; where the pre-stress is negative, three spacings can agree far from the limit.
+LOWEST_PRESTRESS = 0.05
 # With less damping the ringing of the lattice decides how long the left front stands still.
 LEAST_DAMPING = 0.05
 # The left front slows for ever: the time to cover more of its path needs a finer lattice.
@@ -29,16 +33,28 @@ def covers(run: Mapping, quantity: str, fraction: float) -> bool:
     known = quantity in COVERED[run["boundary"]] and math.isfinite(run[quantity])
     if not known or run["run_flags"]:
         return False
-    if quantity.startswith("front_speed"):
-        ahead = run[quantity.removeprefix("front_speed_")]
-        # A step of the pre-stress may be on either side.
-        lowest = ahead if run["beyond"] == run["right"] else min(ahead, run["beyond"])
-        return lowest >= LOWEST_LEVEL
-    if quantity.startswith("pulse"):
-        return run["pulse_state"] == "steady"
-    if run["boundary"] == "displacement":
-        return min(run["left"], run["right"]) >= LOWEST_LEVEL
-    return _covers_stress(run, quantity, fraction)
+    pulse, speed = quantity.startswith("pulse"), quantity.startswith("front_speed")
+    if pulse and run["pulse_state"] != "steady":
+        return False
+    if run["boundary"] == "stress" and not speed:
+        return _covers_stress(run, quantity, fraction)
+    sides = ["right"] if pulse else ["left", "right"]
+    sides = [side for side in sides if not speed or quantity.endswith(side)]
+    return all(lowest_crossed(run, side) >= LOWEST_PRESTRESS for side in sides)
+
+
+def lowest_crossed(run: Mapping, side: str) -> float:
+    """Lowest pre-stress that a front has crossed; NaN where its path is not known."""
+    reach = run[f"front_intercept_{side}"] + run[f"front_speed_{side}"] * run["end_time"]
+    if not math.isfinite(reach):
+        return math.nan
+    return _lowest(prestress_from(run), -reach if side == "left" else reach, run["dx"])
+
+
+@lru_cache(maxsize=64)
+def _lowest(prestress: Prestress, end: float, dx: float) -> float:
+    """Lowest pre-stress from x = 0 to an end, looked at where blocks of a spacing are."""
+    return float(np.min(prestress(np.linspace(0.0, end, int(abs(end) / dx) + 2))))
 
 
 def _covers_stress(run: Mapping, quantity: str, fraction: float) -> bool:

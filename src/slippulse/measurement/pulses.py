@@ -8,6 +8,8 @@ from ..data.points import AnyRun
 from .fronts import fit_front, path
 
 NAN = float("nan")
+# Blocks slower than this fraction of the leading pulse are remains of the nucleation, not a pulse.
+REMAINS = 0.05
 
 
 class LeadingPulse(NamedTuple):
@@ -19,16 +21,25 @@ class LeadingPulse(NamedTuple):
     peak_velocity: float  # largest slip velocity, from a parabola through three blocks
     peak_distance: float
     slip: float  # of the blocks that stuck last, in the half of the way next to the trailing edge
+    count: int = 1  # of pulses on the right; 0 where the front has stopped
 
 
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     """Measure the pulse of a run; its speed is that on the last fraction ``window`` of its path."""
-    end = run.attrs["end_time"]
+    end, dx = run.attrs["end_time"], run.attrs["dx"]
     speed, _, _ = fit_front(run, window)
     release, distance = path(run)
-    front = float(distance[-1] + speed * (end - release[-1])) if distance.size else NAN
     start = np.searchsorted(run["x"], 0.0)
     r, velocity, slip = (np.asarray(run[name])[start:] for name in ("x", "slip_velocity", "slip"))
+    front, stopped = NAN, False
+    if distance.size:
+        # The next block is at rest, so the front is at most one block beyond the last release.
+        ahead = float(speed * (end - release[-1]))
+        at_rest = not velocity[np.searchsorted(r, distance[-1])] > 0.0
+        stopped = at_rest and not 0.0 <= ahead <= dx
+        front = float(distance[-1]) + (0.0 if stopped else min(max(ahead, 0.0), dx))
+    pulses = [] if stopped else sliding_stretches(velocity)
+    velocity = np.where(np.arange(r.size) >= pulses[-1].start, velocity, 0.0) if pulses else 0.0 * r
     peak, peak_distance = parabola_peak(r, velocity)
 
     stick, stuck = path(run, edge="stick_time")
@@ -39,11 +50,22 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         last, late = stuck[followed][-4:], end - stick[followed][-4:]
         trailing = float(np.mean(last + speed * late))
         width = front - trailing
-        settled = (r > 0.5 * trailing) & (r < trailing - 2.0 * run.attrs["dx"]) & (velocity <= 0.0)
+        settled = (r > 0.5 * trailing) & (r < trailing - 2.0 * dx) & (velocity <= 0.0)
         if settled.any():
-            near = r > r[settled].max() - max(0.5 * width, 4.0 * run.attrs["dx"])
+            near = r > r[settled].max() - max(0.5 * width, 4.0 * dx)
             final = float(np.mean(slip[settled & near]))
-    return LeadingPulse(front, speed, width, peak, peak_distance, final)
+    return LeadingPulse(front, speed, width, peak, peak_distance, final, len(pulses))
+
+
+def sliding_stretches(velocity: np.ndarray) -> list[slice]:
+    """Contiguous blocks that slide, but for those slower than a fraction of the fastest.
+
+    The last one, which is the leading pulse, counts however slow it is.
+    """
+    edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False))
+    stretches = list(map(slice, edges[0::2].tolist(), edges[1::2].tolist()))
+    least = REMAINS * np.max(velocity[stretches[-1]]) if stretches else 0.0
+    return [part for part in stretches if np.max(velocity[part]) >= least]
 
 
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:

@@ -64,8 +64,13 @@ def transition(run: AnyRun, fraction: float) -> dict:
     left, right = run.attrs["left"], run.attrs["right"]
     if run.attrs["boundary"] == "displacement":
         return transition_displacement(run) if left == right > 0.0 else {}
-    one_way = left < 0.0 == right and not prestress_from(run.attrs).steps
-    return transition_stress(run, fraction) if one_way else {}
+    if not left < 0.0 == right or prestress_from(run.attrs).steps:
+        return {}
+    try:
+        return transition_stress(run, fraction)
+    except ArithmeticError:
+        # A barrier on the right can leave nothing that is balanced on the left.
+        return {}
 
 
 def pulse_numbers(run: AnyRun, pulse: LeadingPulse) -> dict[str, float]:
@@ -89,7 +94,8 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """Breadth of slip velocity at half its peak, on the right; NaN without a half on both sides."""
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
-    top, half = int(np.argmax(velocity)), 0.5 * float(np.max(velocity))
+    top = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
+    half = 0.5 * float(velocity[top])
     below = velocity < half
     before, after = np.flatnonzero(below[:top]), np.flatnonzero(below[top:])
     if not before.size or not after.size:

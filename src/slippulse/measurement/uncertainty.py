@@ -19,13 +19,14 @@ class GridStudy(NamedTuple):
     value: float  # at the finest spacing
     extrapolated: float  # at spacing 0, by the observed order; the finest value where there is none
     observed_order: float  # NaN where the three values do not follow a power of the spacing
-    uncertainty: float  # |value - extrapolated|, or the spread of the three where there is no order
+    uncertainty: float  # |value - extrapolated|, or of the lowest order where there is none
 
 
 def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     """Observed order, extrapolation and uncertainty from three spacings.
 
-    They are dx, c_1 dx and c_2 dx, with factors 1 < c_1 < c_2.
+    They are dx, c_1 dx and c_2 dx, with factors 1 < c_1 < c_2. Where there is no order, the spread
+    of the three values is that of the lowest order.
 
     Source: f(h) = f_0 + C h^p through the three values (Richardson).
     """
@@ -41,7 +42,7 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     low, high = ORDERS
     alike = spread <= 1e-14 * max(1.0, abs(finest))
     if alike or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
-        return GridStudy(finest, finest, np.nan, spread)
+        return GridStudy(finest, finest, np.nan, spread / (factors[1] ** low - 1.0))
     order = float(root_between(mismatch, low, high))
     extrapolated = finest - first / (factors[0] ** order - 1.0)
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))

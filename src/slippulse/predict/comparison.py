@@ -58,11 +58,17 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     steady : the width is that of the steady pulse at the measured speed, and the slip is uniform
     unsteady : one of them is not so, or the pulse is slower than the waves
     thick_front : the damped layer is not thin compared with the pulse
+    several : it is one of several on the right
+    stopped : the right front has stopped
     none : no pulse, or a stress boundary
 
     Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
     """
-    if run.attrs["boundary"] != "displacement" or not np.isfinite([pulse.width, pulse.speed]).all():
+    if run.attrs["boundary"] != "displacement":
+        return "none"
+    if np.isfinite(pulse.front) and pulse.count != 1:
+        return "several" if pulse.count else "stopped"
+    if not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
     if friction_of(run.attrs) != COULOMB:
         return "none"

@@ -14,7 +14,7 @@ from ..measurement.fronts import path
 from ..measurement.table import measure_run
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..model.stability import MARGIN, largest_step
+from ..model.stability import chosen_step
 from ..predict.comparison import pulse_state
 from ..simulation.sweep import simulate_on_lattice
 from ..solver.lattice import UnstableRun
@@ -79,8 +79,8 @@ class Setup:
         right = self.level if self.right is None else self.right
         profile = Prestress(self.level, right, self.width, self.peak, bumps=self.bumps)
         boundary = "displacement" if self.gamma > 0.0 else "stress"
-        bound = largest_step("localised", 4, self.ratio, self.gamma * self.dx**2)
-        other = {"max_step": min(0.5, MARGIN * bound)} | self.other
+        step = chosen_step("localised", 4, self.ratio, self.gamma * self.dx**2, enough=0.5)
+        other = {"max_step": step} | self.other
         beta = self.ratio * self.dx
         return Scene(boundary, profile, self.duration, self.dx, self.gamma, beta, **other)
 
