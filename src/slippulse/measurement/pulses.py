@@ -21,7 +21,7 @@ class LeadingPulse(NamedTuple):
     peak_velocity: float  # largest slip velocity, from a parabola through three blocks
     peak_distance: float
     slip: float  # of the blocks that stuck last, in the half of the way next to the trailing edge
-    count: int = 1  # of pulses on the right; 0 where the front has stopped
+    pulses: int = 1  # their number on the right; 0 where the front has stopped
 
 
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:

@@ -66,8 +66,8 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
-    if np.isfinite(pulse.front) and pulse.count != 1:
-        return "several" if pulse.count else "stopped"
+    if np.isfinite(pulse.front) and pulse.pulses != 1:
+        return "several" if pulse.pulses else "stopped"
     if not np.isfinite([pulse.width, pulse.speed]).all():
         return "none"
     if friction_of(run.attrs) != COULOMB:
