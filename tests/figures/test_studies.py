@@ -282,3 +282,30 @@ def test_one_dimension_stays_away_from_the_plane_as_pulses_become_wide(draw):
     assert field["velocity"].abs().max() > 1.0
     assert select(field, y=1.0)["velocity"].abs().max() == 0.0
     assert field.query("x > time + 2.1")["velocity"].abs().max() < 0.01
+
+
+def test_weak_or_slowly_weakening_friction_ends_pulses_that_stick(draw):
+    table = draw("study_friction_laws").table
+    plane = select(table, role="plane")
+    assert (select(plane, law="rate_weakening")["regime"] == "sticks").all()
+    # A little strengthening leaves the pulse, and much of it does not.
+    grown = select(plane, law="bounded_rate")
+    assert (grown[grown["strength"] < 0.55]["regime"] == "sticks").all()
+    assert "sticks" not in {*grown[grown["strength"] > 0.85]["regime"]}
+    # Exponential weakening costs d_c, more than tau_0^2/(2 gamma) is never paid for.
+    costly = select(plane, law="exponential_weakening").query("strength > 0.7")
+    assert {*costly["regime"]} == {"none"}
+    assert "none" not in {*select(plane, law="slip_weakening")["regime"]}
+
+
+def test_resolved_slip_weakening_selects_the_exact_front_speed(draw):
+    table = draw("study_friction_laws").table
+    runs = select(table, role="selection").dropna(subset=["exact_speed"])
+    error = deviation(runs, "speed", "exact_speed")
+    assert error[runs["d_c"] >= 3.9 * runs["dx"]].max() < 0.01
+    assert error[runs["dx"] == runs["dx"].min()].max() < 1e-3
+    cases = select(table, role="case").merge(
+        select(table, role="theory"), on=["law", "level", "strength"], suffixes=("", "_exact")
+    )
+    finest = select(cases, dx=0.02, regime="sticks")
+    assert len(finest) == 4 and deviation(finest, "pulse_slip", "pulse_slip_exact").max() < 0.006

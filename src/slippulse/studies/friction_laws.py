@@ -1,0 +1,189 @@
+"""Other laws of friction: which make pulses that stick or creep, and what selects front speeds."""
+
+from collections.abc import Iterator
+from functools import cache
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from ..model.friction_laws.bounded_rate import BoundedRate
+from ..model.friction_laws.exponential_weakening import ExponentialWeakening
+from ..model.friction_laws.law import Friction
+from ..model.friction_laws.rate_weakening import RateWeakening
+from ..model.friction_laws.slip_weakening import SlipWeakening
+from ..model.prestress import Prestress
+from ..model.samples import Samples
+from ..model.scene import Scene
+from ..simulation.simulate import simulate
+from ..theory.rate_dependent import RatePulse, rate_pulse
+from ..theory.weakening import WeakeningPulse, weakening_pulse
+
+NEEDS = {}  # type: dict[str, list[str]]
+
+GAMMA, RATIO, BETA = 2.0 / 3.0, 0.1, 0.05
+LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
+# The limit F of laws of slip rate over the pre-stress; v_0 of strengthening, a of weakening.
+LIMITS, V_0, SLOPE = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3), 0.1, 1.5
+# d_c of slip weakening over tau_0^2/gamma, beyond which its fracture energy stops any rupture.
+DISTANCES = (0.1, 0.2, 0.4, 0.6, 0.8, 0.95)
+# Friction is 0 within this distance of x = 0: it nucleates the rupture.
+NUCLEATION = 2.0
+DX, DURATION = 0.08, 40.0
+# Steps over dx. Fronts of laws of slip rate, which are sharp, lock to a fraction of dx over a step.
+STEP, FINE_STEP = 0.1, 0.0127
+# A pulse sticks where slip overshoots tau_0/gamma by this factor. Else the wake of the nucleation,
+# which outlives a decaying tail, makes blocks stick at odd times.
+OVERSHOOT = 1.01
+# What slides faster than STILL times the fastest grows by more than this over the second half of a
+# run where it is no pulse.
+GROWTH, STILL = 1.1, 0.05
+# Front speed against d_c/dx at fixed beta: levels, spacings, and distances.
+SELECTED, SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
+RESOLUTIONS = (1.0, 2.0, 4.0, 8.0)
+# Cases with exact numbers, on lattices of these spacings.
+CASES: tuple[tuple[float, Friction], ...] = (
+    (0.5, BoundedRate(0.3, 1.0)),
+    (0.5, RateWeakening(1.5, 0.3)),
+    (0.8, SlipWeakening(0.1, NUCLEATION)),
+    (0.5, SlipWeakening(0.2, NUCLEATION)),
+    (0.5, SlipWeakening(0.3, NUCLEATION)),
+)
+
+
+class LawRun(NamedTuple):
+    """One run on a lattice: strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2."""
+
+    law: str
+    level: float
+    strength: float
+    dx: float
+    beta: float
+    regime: str
+    speed: float
+    pulse_width: float
+    pulse_slip: float
+    energy_residual: float
+    run_flags: str
+
+
+def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+    """Role: plane, selection (with d_c and exact_speed) and case (LawRun each), and theory (law,
+    level, strength, speed, pulse_width, pulse_slip, of each case).
+    """
+    plane = [_run(*chosen, DX, STEP) for chosen in _plane()]
+    selection = [_selected(*chosen) for chosen in product(SELECTED, SPACINGS, RESOLUTIONS)]
+    cases = [
+        _run(level, law, dx, STEP if isinstance(law, SlipWeakening) else FINE_STEP)
+        for (level, law), dx in product(CASES, SPACINGS)
+    ]
+    parts = {
+        "plane": pd.DataFrame(plane),
+        "selection": pd.DataFrame(selection),
+        "case": pd.DataFrame(cases),
+        "theory": pd.DataFrame([_theory(level, law) for level, law in CASES]),
+    }
+    rows = [rows.assign(role=role) for role, rows in parts.items()]
+    return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA)
+
+
+def _plane() -> Iterator[tuple[float, Friction]]:
+    """Level and law of each run of the planes."""
+    for level in LEVELS:
+        for limit in LIMITS:
+            yield level, BoundedRate(limit * level, V_0)
+            yield level, RateWeakening(SLOPE, limit * level)
+        for distance, law in product(DISTANCES, (SlipWeakening, ExponentialWeakening)):
+            yield level, law(distance * level**2 / GAMMA, NUCLEATION)
+
+
+def _damping(law: Friction, dx: float) -> float:
+    """Damping: under slip weakening beta is fixed, else beta/dx, for either has a limit dx -> 0."""
+    return BETA if isinstance(law, SlipWeakening) else RATIO * dx
+
+
+def _strength(level: float, law: Friction) -> float:
+    parameters = law.mapping()
+    if "d_c" in parameters:
+        return parameters["d_c"] * GAMMA / level**2
+    sign = -1.0 if isinstance(law, RateWeakening) else 1.0
+    return sign * parameters["limit"] / level
+
+
+def _run(level: float, law: Friction, dx: float, step: float) -> LawRun:
+    """One run, its regime and its pulse; width and slip are NaN where nothing sticks."""
+    step = min(step, 0.9 * law.longest_step / dx)
+    beta = _damping(law, dx)
+    profile = Prestress(level, level)
+    values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}
+    scene = Scene("displacement", profile, DURATION, dx, GAMMA, beta, **values)
+    extent = 3.0 * DURATION
+    positions = np.arange(0.5, extent, 2.0 * dx)
+    run = simulate(scene, Samples(np.array([0.5, 1.0]) * DURATION, positions))
+    right = run.isel(x=run["x"].values > 0.5 * dx)
+    regime = _regime(right, positions, level / GAMMA)
+    width = slip = np.nan
+    if regime == "sticks":
+        width, slip = _pulse(right)
+    numbers = run.attrs["energy_residual"], run.attrs["run_flags"]
+    row = law.law, level, _strength(level, law), dx, beta, regime
+    return LawRun(*row, _speed(right), width, slip, *numbers)
+
+
+def _regime(right: xr.Dataset, positions: np.ndarray, rest: float) -> str:
+    """Classify a rupture whose slip comes to rest at ``rest``: none, sticks, creeps or crack."""
+    before, after = (_sliding_part(right, time) for time in right["sample_time"].values)
+    if after[1] <= NUCLEATION + GROWTH * (before[1] - NUCLEATION):
+        return "none"
+    if after[0] > GROWTH * before[0] and _pulse(right)[1] > OVERSHOOT * rest:
+        return "sticks"
+    velocity = right["sample_velocity"].values
+    halfway, end = (np.ptp(positions[row > STILL * row.max()]) for row in velocity)
+    return "creeps" if end < GROWTH * halfway else "crack"
+
+
+def _pulse(right: xr.Dataset) -> tuple[float, float]:
+    """Width of the sliding part at the end, and slip behind it."""
+    stuck, front = _sliding_part(right, DURATION)
+    return front - stuck, float(right["slip"].values[np.argmin(np.abs(right["x"].values - stuck))])
+
+
+def _sliding_part(right: xr.Dataset, time: float) -> tuple[float, float]:
+    """The outermost blocks on the right that have stuck and that have been released by a time."""
+    x = right["x"].values
+    stuck = x[right["stick_time"].values <= time].max(initial=0.0)
+    return stuck, x[right["release_time"].values <= time].max(initial=0.0)
+
+
+def _speed(right: xr.Dataset) -> float:
+    """Speed of the front over the last third of a run."""
+    time, x = right["release_time"].values, right["x"].values
+    late = time > 2.0 / 3.0 * DURATION
+    return float(np.polyfit(time[late], x[late], 1)[0]) if late.sum() > 2 else np.nan
+
+
+def _theory(level: float, law: Friction) -> dict:
+    """Exact numbers of a case."""
+    pulse: WeakeningPulse | RatePulse
+    if isinstance(law, SlipWeakening):
+        pulse = weakening_pulse(level, GAMMA, BETA, law.d_c)
+    else:
+        pulse = rate_pulse(level, GAMMA, RATIO, law)
+    row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
+    sizes = {"pulse_width": pulse.width, "pulse_slip": pulse.slip} if pulse.sticks else {}
+    return row | sizes
+
+
+def _selected(level: float, dx: float, resolution: float) -> dict:
+    """One run with d_c of so many spacings, and the exact speed where there is a rupture."""
+    d_c = resolution * dx
+    law = SlipWeakening(d_c, NUCLEATION)
+    exact = _exact_speed(level, d_c) if _strength(level, law) < 1.0 else np.nan
+    return _run(level, law, dx, STEP)._asdict() | {"d_c": d_c, "exact_speed": exact}
+
+
+@cache
+def _exact_speed(level: float, d_c: float) -> float:
+    return weakening_pulse(level, GAMMA, BETA, d_c).speed

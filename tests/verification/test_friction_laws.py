@@ -1,0 +1,130 @@
+"""Other laws of friction on lattices: energy, healing, and the steady ruptures of theory."""
+
+import numpy as np
+import pytest
+
+import slippulse as sp
+from slippulse import theory
+from slippulse.model.friction import LAWS
+
+GAMMA, BETA = 2.0 / 3.0, 0.05
+SPACINGS = (0.08, 0.04, 0.02)
+# Work against friction is summed to second order in the step.
+ENERGY = 1e-5
+EXAMPLES = {
+    "coulomb": {},
+    "linear_rate": {"alpha": 0.4},
+    "bounded_rate": {"limit": 0.3, "v_0": 1.0},
+    "rate_weakening": {"slope": 1.5, "limit": 0.3},
+    "slip_weakening": {"d_c": 0.1, "nucleation": 2.0},
+    "exponential_weakening": {"d_c": 0.05, "nucleation": 2.0},
+}
+
+
+def run(law, dx, level=0.5, duration=40.0, beta=BETA, step=0.1, **values):
+    values = {"scheme": "fixed_step", "max_step": step, "beta": beta} | values
+    profile = sp.Prestress(level, level)
+    return sp.simulate(
+        sp.Scene("displacement", profile, duration, dx, GAMMA, friction=law, **values)
+    )
+
+
+def test_every_law_has_an_example():
+    assert {*EXAMPLES} == {law.law for law in LAWS}
+
+
+@pytest.mark.parametrize("law", EXAMPLES)
+@pytest.mark.parametrize("half", [True, False])
+def test_the_energy_balance_closes_with_the_work_against_friction(law, half):
+    friction = sp.friction(law, **EXAMPLES[law])
+    coarse, fine = (
+        run(friction, 0.05, 0.7, 15.0, step=step, half_lattice=half).attrs for step in (0.04, 0.02)
+    )
+    if law in ("coulomb", "linear_rate"):
+        assert fine["friction_loss"] == 0.0
+        return
+    assert fine["energy_residual"] < ENERGY
+    assert fine["energy_residual"] < 0.4 * coarse["energy_residual"]
+    assert np.sign(fine["friction_loss"]) == (-1.0 if law == "rate_weakening" else 1.0)
+
+
+@pytest.mark.parametrize("law", ["slip_weakening", "exponential_weakening"])
+def test_the_work_against_friction_is_the_fracture_energy_of_the_path(law):
+    """Exponential weakening by 50 d_c and more pays d_c a length, linear weakening d_c/2."""
+    data = run(sp.friction(law, d_c=0.02, nucleation=2.0), 0.02, 0.8, 12.0, step=0.05)
+    x = data["x"].values
+    done = (np.abs(x) >= 2.0) & (data["slip"].values > 0.0)
+    per_length = 0.02 if law == "exponential_weakening" else 0.01
+    # Blocks at the fronts are on their way.
+    assert data.attrs["friction_loss"] == pytest.approx(per_length * 0.02 * done.sum(), rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("level", "d_c", "sticks"), [(0.8, 0.1, True), (0.5, 0.2, True), (0.5, 0.3, False)]
+)
+def test_slip_weakening_selects_the_speed_of_theory_as_the_spacing_falls(level, d_c, sticks):
+    exact = theory.weakening_pulse(level, GAMMA, BETA, d_c)
+    law = sp.friction("slip_weakening", d_c=d_c, nucleation=2.0)
+    measured = [sp.measure(run(law, dx, level)) for dx in SPACINGS]
+    speeds = np.array([numbers["front_speed_right"] for numbers in measured])
+    errors = np.abs(speeds / exact.speed - 1.0)
+    assert errors[0] > errors[1] > errors[2] and errors[2] < 5e-4
+    assert exact.sticks == sticks
+    if sticks:
+        slips = np.array([numbers["pulse_slip"] for numbers in measured])
+        deviations = np.abs(slips / exact.slip - 1.0)
+        assert deviations[0] > deviations[1] and deviations[2] < 5e-4
+        assert measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
+
+
+@pytest.mark.parametrize(("law", "ratio"), [("bounded_rate", 0.1), ("rate_weakening", 0.0)])
+def test_lattices_tend_to_the_steady_pulse_of_a_bounded_law_of_slip_rate(law, ratio):
+    friction = sp.friction(law, **EXAMPLES[law])
+    exact = theory.rate_pulse(0.5, GAMMA, ratio, friction)
+    step = 0.0213
+    measured = [
+        sp.measure(run(friction, dx, duration=25.0, beta=ratio * dx, step=step)) for dx in SPACINGS
+    ]
+    errors = [abs(numbers["pulse_slip"] / exact.slip - 1.0) for numbers in measured]
+    assert errors[0] >= errors[1] >= errors[2] and errors[2] < 5e-3
+    # Fronts of this scheme lock to a whole number of steps a block.
+    if ratio:
+        assert measured[2]["front_speed_right"] == pytest.approx(exact.speed, rel=0.01)
+        assert measured[2]["pulse_peak_velocity"] == pytest.approx(exact.peak_velocity, rel=0.01)
+
+
+def test_a_block_heals_when_it_sticks():
+    """It needs a stress of 1 again: no block slides back and forth behind a pulse."""
+    data = run(sp.friction("slip_weakening", d_c=0.1, nucleation=2.0), 0.05, 0.8, 30.0)
+    assert data.attrs["re_releases"] == 0 and data.attrs["sticks"] > 100
+
+
+def test_without_nucleation_slip_weakening_starts_nothing():
+    data = run(sp.friction("slip_weakening", d_c=0.1, nucleation=0.0), 0.05)
+    assert np.isfinite(data["release_time"].values).sum() == 1
+    assert float(data["slip"].max()) == 0.0
+
+
+@pytest.mark.parametrize("law", ["bounded_rate", "rate_weakening", "slip_weakening"])
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+def test_schemes_that_do_not_solve_a_law_refuse_it(law, scheme):
+    refusal = rf"scheme: '{scheme}'; allowed: fixed_step, with friction law '{law}'"
+    with pytest.raises(ValueError, match=refusal):
+        run(sp.friction(law, **EXAMPLES[law]), 0.05, scheme=scheme)
+
+
+@pytest.mark.parametrize(
+    ("law", "parameters", "refusal"),
+    [
+        ("velocity", {}, "law: 'velocity'; allowed: coulomb, linear_rate"),
+        ("coulomb", {"alpha": 0.1}, "alpha: 0.1; allowed: law 'coulomb' with nothing"),
+        ("slip_weakening", {"d_c": 0.1}, "nucleation: missing; allowed: law 'slip_weakening' with"),
+        ("slip_weakening", {"d_c": 0.0, "nucleation": 1.0}, "d_c: 0.0; allowed: a finite number"),
+        ("rate_weakening", {"slope": -1.0, "limit": 1.0}, "slope: -1.0; allowed: a finite number"),
+        ("linear_rate", {"alpha": np.nan}, "alpha: nan; allowed: a finite number"),
+    ],
+)
+def test_bad_laws_are_refused_in_one_line(law, parameters, refusal):
+    with pytest.raises(ValueError) as error:
+        sp.friction(law, **parameters)
+    assert str(error.value).startswith(refusal) and "\n" not in str(error.value)
