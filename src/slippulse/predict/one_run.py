@@ -35,9 +35,10 @@ def measure(run: xr.Dataset) -> dict[str, Any]:
         Numbers by the names in docs/columns.md, in units of H and of H over the wave speed, among
         them ``transition_time`` and ``transition_length`` (T_trans and L_trans; NaN where the paper
         defines none, or before they are reached), ``front_speed_left`` and ``front_speed_right``,
-        ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the right pulse at the end,
-        ``pulse_state``, ``run_flags`` ("" or a comma-separated list), and the parameters of the
-        scene. A number whose data were not recorded is not in it.
+        ``pulse_width``, ``pulse_slip`` and ``pulse_peak_velocity`` of the leading pulse on the
+        right at the end, ``pulse_state`` (steady, or several, stopped, ... : what was measured),
+        ``run_flags`` ("" or a comma-separated list), and the parameters of the scene. A number
+        whose data were not recorded is not in it.
 
     Raises
     ------
