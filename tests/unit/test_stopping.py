@@ -17,7 +17,7 @@ LONG = (
     "import sys, slippulse as sp\n"
     "level = sp.Prestress(0.5, 0.5)\n"
     "fast = {'gamma': 0.65, 'order': 8, 'max_step': 0.9}\n"
-    "scene = sp.Scene('displacement', level, 1e6, 0.01, **fast)\n"
+    "scene = sp.Scene('displacement', level, 3e4, 0.01, **fast)\n"
     "sp.simulate(sp.Scene('displacement', level, 1.0, 0.1, gamma=0.65))\n"
     "sys.stdout.write('started\\n'); sys.stdout.flush()\n"
 )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from numba.extending import register_jitable
 
-from ..model.friction import COULOMB, LAWS
+from ..model.friction import LAWS
 from ..model.friction_laws.law import Friction
 from .jit import inner
 from .stencils import blocks
@@ -15,7 +15,7 @@ from .stencils import blocks
 
 def constants_of(friction: Friction) -> tuple[float, int, float, float]:
     """The constants alpha, law, first and second of `Medium`."""
-    if friction.linear_rate or friction == COULOMB:
+    if "localised" in friction.schemes:
         return float(friction.linear_rate), 0, 0.0, 0.0
     first, second = friction.constants
     return 0.0, LAWS.index(type(friction)), float(first), float(second)
