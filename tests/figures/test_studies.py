@@ -287,15 +287,15 @@ def test_one_dimension_stays_away_from_the_plane_as_pulses_become_wide(draw):
 def test_weak_or_slowly_weakening_friction_ends_pulses_that_stick(draw):
     table = draw("study_friction_laws").table
     plane = select(table, role="plane")
-    assert (select(plane, law="rate_weakening")["regime"] == "sticks").all()
+    assert (select(plane, law="rate_weakening")["regime"] == "sticking pulse").all()
     # A little strengthening leaves the pulse, and much of it does not.
     grown = select(plane, law="bounded_rate")
-    assert (grown[grown["strength"] < 0.55]["regime"] == "sticks").all()
-    assert "sticks" not in {*grown[grown["strength"] > 0.85]["regime"]}
+    assert (grown[grown["strength"] < 0.55]["regime"] == "sticking pulse").all()
+    assert "sticking pulse" not in {*grown[grown["strength"] > 0.85]["regime"]}
     # Exponential weakening costs d_c, more than tau_0^2/(2 gamma) is never paid for.
     costly = select(plane, law="exponential_weakening").query("strength > 0.7")
-    assert {*costly["regime"]} == {"none"}
-    assert "none" not in {*select(plane, law="slip_weakening")["regime"]}
+    assert {*costly["regime"]} == {"no rupture"}
+    assert "no rupture" not in {*select(plane, law="slip_weakening")["regime"]}
 
 
 def test_resolved_slip_weakening_selects_the_exact_front_speed(draw):
@@ -307,5 +307,5 @@ def test_resolved_slip_weakening_selects_the_exact_front_speed(draw):
     cases = select(table, role="case").merge(
         select(table, role="theory"), on=["law", "level", "strength"], suffixes=("", "_exact")
     )
-    finest = select(cases, dx=0.02, regime="sticks")
+    finest = select(cases, dx=0.02, regime="sticking pulse")
     assert len(finest) == 4 and deviation(finest, "pulse_slip", "pulse_slip_exact").max() < 0.006

@@ -5,7 +5,7 @@ from slippulse.data.provenance import source_files
 
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 CLAIM_STUDIES = (
-    "derivations layer open_choices published_figure published_scheme rate_dependence".split()
+    "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence".split()
 )
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [

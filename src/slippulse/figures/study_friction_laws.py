@@ -24,10 +24,10 @@ NEEDS = {"studies": ["friction_laws"]}
 table = as_given
 
 REGIMES = {
-    "sticks": ("pulse that sticks", BLUE, "o"),
-    "creeps": ("pulse that creeps", GREEN, "^"),
-    "crack": ("still spreading", ORANGE, "s"),
-    "none": ("no rupture", GREY, "x"),
+    "sticking pulse": ("sticking pulse", BLUE, "o"),
+    "creeping pulse": ("creeping pulse", GREEN, "^"),
+    "crack": ("crack", ORANGE, "s"),
+    "no rupture": ("no rupture", GREY, "x"),
 }
 PLANES = {
     ("rate_weakening", "bounded_rate"): (

@@ -9,19 +9,20 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from ..measurement.regime import is_pulse
 from ..model.friction_laws.bounded_rate import BoundedRate
 from ..model.friction_laws.exponential_weakening import ExponentialWeakening
 from ..model.friction_laws.law import Friction
 from ..model.friction_laws.rate_weakening import RateWeakening
 from ..model.friction_laws.slip_weakening import SlipWeakening
 from ..model.prestress import Prestress
-from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.simulate import simulate
 from ..theory.rate_dependent import RatePulse, rate_pulse
 from ..theory.weakening import WeakeningPulse, weakening_pulse
+from .rate_dependence import CRACK, CREEPING, STICKING
 
-NEEDS = {}  # type: dict[str, list[str]]
+NEEDS = {"settings": ["measure"]}
 
 GAMMA, RATIO, BETA = 2.0 / 3.0, 0.1, 0.05
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
@@ -37,9 +38,8 @@ STEP, FINE_STEP = 0.1, 0.0127
 # A pulse sticks where slip overshoots tau_0/gamma by this factor. Else the wake of the nucleation,
 # which outlives a decaying tail, makes blocks stick at odd times.
 OVERSHOOT = 1.01
-# What slides faster than STILL times the fastest grows by more than this over the second half of a
-# run where it is no pulse.
-GROWTH, STILL = 1.1, 0.05
+# Front and trailing edge advance by more than this factor over the second half of a run.
+GROWTH, NONE = 1.1, "no rupture"
 # Front speed against d_c/dx at fixed beta: levels, spacings, and distances.
 SELECTED, SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
 RESOLUTIONS = (1.0, 2.0, 4.0, 8.0)
@@ -73,10 +73,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Role: plane, selection (with d_c and exact_speed) and case (LawRun each), and theory (law,
     level, strength, speed, pulse_width, pulse_slip, of each case).
     """
-    plane = [_run(*chosen, DX, STEP) for chosen in _plane()]
-    selection = [_selected(*chosen) for chosen in product(SELECTED, SPACINGS, RESOLUTIONS)]
+    still = settings["measure"]["still"]
+    plane = [_run(*chosen, DX, STEP, still) for chosen in _plane()]
+    chosen = product(SELECTED, SPACINGS, RESOLUTIONS)
+    selection = [_selected(*each, still) for each in chosen]
     cases = [
-        _run(level, law, dx, STEP if isinstance(law, SlipWeakening) else FINE_STEP)
+        _run(level, law, dx, STEP if isinstance(law, SlipWeakening) else FINE_STEP, still)
         for (level, law), dx in product(CASES, SPACINGS)
     ]
     parts = {
@@ -112,36 +114,33 @@ def _strength(level: float, law: Friction) -> float:
     return sign * parameters["limit"] / level
 
 
-def _run(level: float, law: Friction, dx: float, step: float) -> LawRun:
+def _run(level: float, law: Friction, dx: float, step: float, still: float) -> LawRun:
     """One run, its regime and its pulse; width and slip are NaN where nothing sticks."""
     step = min(step, 0.9 * law.longest_step / dx)
     beta = _damping(law, dx)
     profile = Prestress(level, level)
     values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}
     scene = Scene("displacement", profile, DURATION, dx, GAMMA, beta, **values)
-    extent = 3.0 * DURATION
-    positions = np.arange(0.5, extent, 2.0 * dx)
-    run = simulate(scene, Samples(np.array([0.5, 1.0]) * DURATION, positions))
+    run = simulate(scene)
     right = run.isel(x=run["x"].values > 0.5 * dx)
-    regime = _regime(right, positions, level / GAMMA)
+    regime = _regime(right, level / GAMMA, still)
     width = slip = np.nan
-    if regime == "sticks":
+    if regime == STICKING:
         width, slip = _pulse(right)
     numbers = run.attrs["energy_residual"], run.attrs["run_flags"]
     row = law.law, level, _strength(level, law), dx, beta, regime
     return LawRun(*row, _speed(right), width, slip, *numbers)
 
 
-def _regime(right: xr.Dataset, positions: np.ndarray, rest: float) -> str:
-    """Classify a rupture whose slip comes to rest at ``rest``: none, sticks, creeps or crack."""
-    before, after = (_sliding_part(right, time) for time in right["sample_time"].values)
+def _regime(right: xr.Dataset, rest: float, still: float) -> str:
+    """Classify a rupture, whose slip comes to rest at ``rest`` where it overshoots nothing."""
+    before, after = (_sliding_part(right, time) for time in (0.5 * DURATION, DURATION))
     if after[1] <= NUCLEATION + GROWTH * (before[1] - NUCLEATION):
-        return "none"
+        return NONE
     if after[0] > GROWTH * before[0] and _pulse(right)[1] > OVERSHOOT * rest:
-        return "sticks"
-    velocity = right["sample_velocity"].values
-    halfway, end = (np.ptp(positions[row > STILL * row.max()]) for row in velocity)
-    return "creeps" if end < GROWTH * halfway else "crack"
+        return STICKING
+    velocity = right["slip_velocity"].values
+    return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still) else CRACK
 
 
 def _pulse(right: xr.Dataset) -> tuple[float, float]:
@@ -176,12 +175,12 @@ def _theory(level: float, law: Friction) -> dict:
     return row | sizes
 
 
-def _selected(level: float, dx: float, resolution: float) -> dict:
+def _selected(level: float, dx: float, resolution: float, still: float) -> dict:
     """One run with d_c of so many spacings, and the exact speed where there is a rupture."""
     d_c = resolution * dx
     law = SlipWeakening(d_c, NUCLEATION)
     exact = _exact_speed(level, d_c) if _strength(level, law) < 1.0 else np.nan
-    return _run(level, law, dx, STEP)._asdict() | {"d_c": d_c, "exact_speed": exact}
+    return _run(level, law, dx, STEP, still)._asdict() | {"d_c": d_c, "exact_speed": exact}
 
 
 @cache
