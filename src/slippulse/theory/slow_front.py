@@ -63,6 +63,10 @@ class Chunk(NamedTuple):
         """Parameters of the entries at the nodes."""
         return self.start + 0.5 * (self.stop - self.start) * (1.0 + NODES)
 
+    def half(self) -> "Chunk":
+        """The first half."""
+        return self._replace(stop=0.5 * (self.start + self.stop))
+
 
 class Solution(NamedTuple):
     """Positions of a front at the nodes of a chunk, and their derivative by its parameter."""
@@ -76,6 +80,10 @@ class Solution(NamedTuple):
         if np.isfinite(mark):
             events += [(s, "mark") for s in _roots_on(self.x - mark, limit)]
         return min(events, key=lambda event: event[0], default=None)
+
+    def rises_from(self, start: float) -> bool:
+        """Tell whether the front goes on from a position, node by node."""
+        return bool(np.all(np.diff(self.x, prepend=start) > 0.0))
 
     def goes_back(self) -> bool:
         """Tell whether the front would go back from the start of the chunk on."""
@@ -114,13 +122,19 @@ def _first_panel(front: "SlowFront", chunk: Chunk, mark: float) -> Advance:
         if chunk.start - chunk.stop < SHORTEST:
             return front.straight(mark)
         solution = front.solve(chunk)
-        if solution is None:
-            chunk, corrections = chunk._replace(stop=0.5 * (chunk.start + chunk.stop)), 0
+        back = solution is not None and solution.goes_back()
+        # This close to a mark rounding may send a front back.
+        if solution is None or (back and mark - front.x0 < NEAR_MARK * front.size):
+            chunk, corrections = chunk.half(), 0
             continue
-        if solution.goes_back():
+        if back:
             return Advance(None, "dead")
         # A chunk that was shortened to end at an event is searched a little beyond its end.
         event = solution.first_event(mark, 1.2 if corrections else 1.0)
+        # Where the equation hardly depends on the front rounding may put it behind its start.
+        if (event is None or _at_end(event[0], corrections)) and not solution.rises_from(front.x0):
+            chunk, corrections = chunk.half(), 0
+            continue
         if event is None:
             length = GROWTH * (chunk.start - chunk.stop) if chunk.stop > -1.0 else 2.0
             return Advance(front.panel(chunk, solution), None, length)
