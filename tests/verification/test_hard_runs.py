@@ -83,6 +83,27 @@ def strong_damping_has_a_step_that_its_front_allows():
                     assert numbers["front_speed_right"] == pytest.approx(exact, rel=1e-3)
 
 
+def a_rough_chain_that_a_long_step_moves_is_flagged():
+    """Near the stability bound slip was up to 61 per cent off, and the energy balance closed."""
+    centres = [*range(-15, 0), *range(1, 16)]
+    for seed in (9, 12, 13):
+        heights = np.random.default_rng(seed).uniform(-0.6, 0.4, 30).tolist()
+        bumps = tuple((float(x), height, 0.25) for x, height in zip(centres, heights, strict=True))
+        layer = sp.Prestress(0.4, 0.4, 1.0, 1.01, (), bumps)
+        slips = []
+        for order, step, flags in ((8, 0.02, ""), (5, 0.6, ""), (5, 1.33, "long_step")):
+            scene = sp.Scene(
+                "displacement", layer, 12.0, 1.0, 0.3, 0.1, max_step=step, order=order,
+                resolved_blocks=1,
+            )  # fmt: skip
+            run = sp.simulate(scene)
+            assert run.attrs["run_flags"] == flags
+            slips.append(run["slip"])
+        exact, fine, long = slips
+        assert float(abs(fine - exact).max()) < 0.02 * float(exact.max())
+        assert float(abs(long - exact).max()) > 0.02 * float(exact.max())
+
+
 def a_front_that_stopped_is_not_extrapolated():
     """It was said to be at 30 and to have the patch as its pulse."""
     for pulses in ((), ((2.0, 3.0, 3.0),)):
@@ -109,6 +130,7 @@ CASES = [
     a_promise_looks_at_the_prestress_that_fronts_cross,
     an_undone_first_stick_is_flagged,
     strong_damping_has_a_step_that_its_front_allows,
+    a_rough_chain_that_a_long_step_moves_is_flagged,
     a_front_that_stopped_is_not_extrapolated,
     the_leading_one_of_two_pulses_is_measured,
     a_front_is_measured_after_its_pause,
