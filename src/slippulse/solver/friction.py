@@ -48,8 +48,8 @@ def resist(medium, motion, sliding, dt):
     """
     if medium.law == 0:
         return 0.0
-    slip, velocity, force = motion.w[0], motion.w[1], motion.w[2]
-    work = 0.0
+    slip, velocity = motion.w[0], motion.w[1]
+    force, work = motion.w[2], 0.0
     for i in range(1, slip.shape[0] - 1):
         if not sliding[i]:
             continue

@@ -24,10 +24,13 @@ from .rate_dependence import CRACK, CREEPING, STICKING
 
 NEEDS = {"settings": ["measure"]}
 
-GAMMA, RATIO, BETA = 2.0 / 3.0, 0.1, 0.05
+GAMMA = 2.0 / 3.0
+# Damping beta/dx of laws of slip rate, and beta of slip weakening.
+RATIO, BETA = 0.1, 0.05
 LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
 # The limit F of laws of slip rate over the pre-stress; v_0 of strengthening, a of weakening.
-LIMITS, V_0, SLOPE = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3), 0.1, 1.5
+LIMITS = (0.1, 0.3, 0.4, 0.5, 0.6, 0.9, 1.3)
+V_0, SLOPE = 0.1, 1.5
 # d_c of slip weakening over tau_0^2/gamma, beyond which its fracture energy stops any rupture.
 DISTANCES = (0.1, 0.2, 0.4, 0.6, 0.8, 0.95)
 # Friction is 0 within this distance of x = 0: it nucleates the rupture.
@@ -74,11 +77,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     level, strength, speed, pulse_width, pulse_slip, of each case).
     """
     still = settings["measure"]["still"]
-    plane = [_run(*chosen, DX, STEP, still) for chosen in _plane()]
-    chosen = product(SELECTED, SPACINGS, RESOLUTIONS)
-    selection = [_selected(*each, still) for each in chosen]
+    plane = [_run(level, law, DX, STEP, still) for level, law in _plane()]
+    scenes = product(SELECTED, SPACINGS, RESOLUTIONS)
+    selection = [_selected(*scene, still) for scene in scenes]
     cases = [
-        _run(level, law, dx, STEP if isinstance(law, SlipWeakening) else FINE_STEP, still)
+        _run(level, law, dx, _case_step(law), still)
         for (level, law), dx in product(CASES, SPACINGS)
     ]
     parts = {
@@ -106,6 +109,10 @@ def _damping(law: Friction, dx: float) -> float:
     return BETA if isinstance(law, SlipWeakening) else RATIO * dx
 
 
+def _case_step(law: Friction) -> float:
+    return STEP if isinstance(law, SlipWeakening) else FINE_STEP
+
+
 def _strength(level: float, law: Friction) -> float:
     parameters = law.mapping()
     if "d_c" in parameters:
@@ -127,9 +134,8 @@ def _run(level: float, law: Friction, dx: float, step: float, still: float) -> L
     width = slip = np.nan
     if regime == STICKING:
         width, slip = _pulse(right)
-    numbers = run.attrs["energy_residual"], run.attrs["run_flags"]
-    row = law.law, level, _strength(level, law), dx, beta, regime
-    return LawRun(*row, _speed(right), width, slip, *numbers)
+    row = law.law, level, _strength(level, law), dx, beta, regime, _speed(right), width, slip
+    return LawRun(*row, run.attrs["energy_residual"], run.attrs["run_flags"])
 
 
 def _regime(right: xr.Dataset, rest: float, still: float) -> str:

@@ -17,8 +17,10 @@ from .front_speeds import front_speed
 
 # Half-periods of leaf springs behind the front in which slip must stop, or it creeps.
 FARTHEST = 12.0
-# Accuracy of the integration, and its steps in each half-period, so that no stop is missed.
-RELATIVE, ABSOLUTE, STEPS = 1e-10, 1e-12, 100
+# Accuracy of the integration.
+RELATIVE, ABSOLUTE = 1e-10, 1e-12
+# Steps in each half-period, so that no stop is missed.
+STEPS = 100
 
 
 @dataclass(frozen=True)
