@@ -10,6 +10,8 @@ import pandas as pd
 from ..model.prestress import Prestress, prestress_from
 
 PULSE = ("pulse_width", "pulse_peak_velocity", "pulse_slip", "pulse_stress_drop")
+# Numbers that belong to one front; the others belong to both.
+FRONTS = dict.fromkeys((*PULSE, "front_speed_right"), ("right",)) | {"front_speed_left": ("left",)}
 ALWAYS = ("front_speed_left", "front_speed_right", "transition_time", "transition_length")
 # Numbers that `accuracy` promises, where `covers` has nothing against the run.
 COVERED = {
@@ -33,13 +35,11 @@ def covers(run: Mapping, quantity: str, fraction: float) -> bool:
     known = quantity in COVERED[run["boundary"]] and math.isfinite(run[quantity])
     if not known or run["run_flags"]:
         return False
-    pulse, speed = quantity.startswith("pulse"), quantity.startswith("front_speed")
-    if pulse and run["pulse_state"] != "steady":
+    if quantity in PULSE and run["pulse_state"] != "steady":
         return False
-    if run["boundary"] == "stress" and not speed:
+    if run["boundary"] == "stress" and not quantity.startswith("front_speed"):
         return _covers_stress(run, quantity, fraction)
-    sides = ["right"] if pulse else ["left", "right"]
-    sides = [side for side in sides if not speed or quantity.endswith(side)]
+    sides = FRONTS.get(quantity, ("left", "right"))
     return all(lowest_crossed(run, side) >= LOWEST_PRESTRESS for side in sides)
 
 

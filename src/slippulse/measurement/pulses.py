@@ -28,24 +28,19 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     """Measure the pulse of a run; its speed is that on the last fraction ``window`` of its path."""
     end, dx = run.attrs["end_time"], run.attrs["dx"]
     speed, _, _ = fit_front(run, window)
-    release, distance = path(run)
     start = np.searchsorted(run["x"], 0.0)
     r, velocity, slip = (np.asarray(run[name])[start:] for name in ("x", "slip_velocity", "slip"))
-    front, stopped = NAN, False
-    if distance.size:
-        # The next block is at rest, so the front is at most one block beyond the last release.
-        ahead = float(speed * (end - release[-1]))
-        at_rest = not velocity[np.searchsorted(r, distance[-1])] > 0.0
-        stopped = at_rest and not 0.0 <= ahead <= dx
-        front = float(distance[-1]) + (0.0 if stopped else min(max(ahead, 0.0), dx))
+    front, stopped = front_at_end(run, r, velocity, speed)
     pulses = [] if stopped else sliding_stretches(velocity)
-    velocity = np.where(np.arange(r.size) >= pulses[-1].start, velocity, 0.0) if pulses else 0.0 * r
-    peak, peak_distance = parabola_peak(r, velocity)
+    leading = np.zeros(r.size)
+    for pulse in pulses[-1:]:
+        leading[pulse] = velocity[pulse]
+    peak, peak_distance = parabola_peak(r, leading)
 
     stick, stuck = path(run, edge="stick_time")
     width, final = NAN, NAN
     followed = stuck < peak_distance
-    if np.count_nonzero(followed) >= 4 and distance.size and np.any(velocity > 0.0):
+    if np.count_nonzero(followed) >= 4 and pulses:
         # The trailing edge runs as fast as the front, from the blocks that stuck last.
         last, late = stuck[followed][-4:], end - stick[followed][-4:]
         trailing = float(np.mean(last + speed * late))
@@ -57,11 +52,23 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     return LeadingPulse(front, speed, width, peak, peak_distance, final, len(pulses))
 
 
-def sliding_stretches(velocity: np.ndarray) -> list[slice]:
-    """Contiguous blocks that slide, but for those slower than a fraction of the fastest.
+def front_at_end(
+    run: AnyRun, r: np.ndarray, velocity: np.ndarray, speed: float
+) -> tuple[float, bool]:
+    """Distance of the right front at the end, NaN without a release, and whether it has stopped."""
+    release, distance = path(run)
+    if not distance.size:
+        return NAN, False
+    # The next block is at rest, so the front is at most one block beyond the last release.
+    ahead, dx = float(speed * (run.attrs["end_time"] - release[-1])), run.attrs["dx"]
+    at_rest = not velocity[np.searchsorted(r, distance[-1])] > 0.0
+    if at_rest and not 0.0 <= ahead <= dx:
+        return float(distance[-1]), True
+    return float(distance[-1]) + min(max(ahead, 0.0), dx), False
 
-    The last one, which is the leading pulse, counts however slow it is.
-    """
+
+def sliding_stretches(velocity: np.ndarray) -> list[slice]:
+    """Pulses on the right from left to right; the last is the leading one, however slow."""
     edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False))
     stretches = list(map(slice, edges[0::2].tolist(), edges[1::2].tolist()))
     least = REMAINS * np.max(velocity[stretches[-1]]) if stretches else 0.0
