@@ -4,7 +4,9 @@ from slippulse.data.alterations import changes
 from slippulse.data.provenance import source_files
 
 CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
-CLAIM_STUDIES = "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence".split()
+CLAIM_STUDIES = (
+    "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence"
+).split()
 DOCUMENTS = declared("report.manuscript", "DOCUMENTS")
 RESULTS = [
     # The claims are first here, and so in Snakemake's report.

@@ -42,7 +42,7 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str)
         parts.append(pd.DataFrame(rows))
     # The right pulse is measured; on the left there is one once blocks stick.
     shown = {"left": math.isfinite(run.attrs["first_stick_time"])}
-    shown["right"] = theory["pulse_state"] != "none"
+    shown["right"] = theory["pulse_state"] not in ("none", "stopped")
     ends = {side: end for side, end in (("left", lower), ("right", upper)) if shown[side]}
     steady = [
         {"series": name, "position": end, "value": theory[f"{PREFIXES[side]}_{LARGEST[name]}"]}
