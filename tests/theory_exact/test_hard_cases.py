@@ -29,7 +29,8 @@ def slip_is_never_negative_before_a_limit():
         assert rupture.limit.time == pytest.approx(92.196663, abs=1e-5)
         assert np.isnan(rupture.slip(-79.5, 110.0))
         x = np.linspace(*(end.x for end in rupture.front_ends[0]), 200)
-        assert np.nanmin(rupture.slip(x, 110.0)) >= 0.0
+        # Slip is of the order of 20, and 0 at the ends but for rounding.
+        assert np.nanmin(rupture.slip(x, 110.0)) >= -1e-9
 
 
 def the_first_stick_is_the_first():

@@ -27,6 +27,8 @@ RESOLVED = 1e-11
 GROWTH = 4.0
 # The shortest fraction of a panel of entries.
 SHORTEST = 1e-11
+# A rest of a panel that is left to the next one.
+REST = 1e-8
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
 # continued at their speed.
 NEAR_MARK = 1e-5
@@ -248,7 +250,11 @@ class SlowFront:
         end = self.curve.ends[1, self.curve.row("early", entries.panel)][1]
         if abs(end - xi) < 10.0 * look:
             return panel, 1.0
-        return panel, float(entries.s[int(entries.panel[0] != panel)])
+        parameter = float(entries.s[int(entries.panel[0] != panel)])
+        # A rest of a panel that is near rounding cannot be resolved: the next one takes it over.
+        if parameter + 1.0 < REST and panel > 0:
+            return panel - 1, 1.0
+        return panel, parameter
 
     def equation(self, chunk: Chunk) -> FreeBoundary:
         """The equation that the positions of the front solve."""
