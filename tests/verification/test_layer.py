@@ -86,6 +86,30 @@ def test_pulses_converge_with_the_grid():
     assert abs(slips[2] - slips[1]) < 0.01 * slips[2]
 
 
+def at_twelve(run):
+    """Front speed, width and slip of what passes 12 H, averaged over 2 H."""
+    near = np.abs(run.x - 12.0) <= 1.0
+    speed = 1.0 / np.polyfit(run.x[near], run.release_time[near], 1)[0]
+    width = speed * (run.stick_time - run.release_time)[near].mean()
+    return speed, width, run.slip[near].mean()
+
+
+@pytest.mark.parametrize("cells", [40, 80, pytest.param(160, marks=pytest.mark.slow)])
+def test_a_pulse_has_the_same_numbers_on_three_grids(cells):
+    numbers = at_twelve(simulate_layer(replace(PULSE, duration=17.0, cells=cells)))
+    assert numbers == pytest.approx((0.970, 1.62, 1.820), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("cells", "tolerance"),
+    [(40, 0.02), (80, 0.01), pytest.param(160, 0.015, marks=pytest.mark.slow)],
+)
+def test_a_pulse_below_a_top_that_may_rise_converges(cells, tolerance):
+    scene = replace(PULSE, prestress=Prestress(0.5, 0.5, 1.0, 0.5), weakening=0.225, top="free")
+    numbers = at_twelve(simulate_layer(replace(scene, duration=24.0, cells=cells)))
+    assert numbers == pytest.approx((0.640, 1.17, 0.953), rel=tolerance)
+
+
 @pytest.mark.parametrize(
     ("key", "value"),
     [("gamma", 1.0), ("weakening", 0.0), ("bottom", "loose"), ("cells", 3), ("coupling", -0.1)],
