@@ -94,7 +94,7 @@ class Drawings:
             data, tables = self.inputs(needs)
             save_table(module.table(data, tables, settings), self.folder / f"{name}.csv")
             table = load_table(self.folder / f"{name}.csv")
-            figure = module.plot(table)
+            figure = module.draw(table)
             self.drawn[name] = SimpleNamespace(
                 table=table, figure=figure, measured=tables, module=module
             )

@@ -68,7 +68,7 @@ def test_equal_tables_give_equal_bytes(draw, tmp_path, name):
     with matplotlib.rc_context({"figure.dpi": 50}):
         for take in ("first", "again"):
             paths = [tmp_path / f"{take}.{ending}" for ending in ("png", "pdf")]
-            save_figure(drawn.module.plot(drawn.table), *paths)
+            save_figure(drawn.module.draw(drawn.table), *paths)
             takes.append([path.read_bytes() for path in paths])
     assert takes[0] == takes[1]
 
@@ -107,7 +107,7 @@ def test_runs_are_filled_where_they_end_as_theory_says_and_crossed_out_where_fla
     drawn = draw("fig02_phase_diagram")
     runs = drawn.table[drawn.table["role"] == "run"].copy()
     runs.loc[runs.index[0], "run_flags"] = "energy"
-    out = drawn.module.plot(pd.concat([drawn.table[drawn.table["role"] != "run"], runs]))
+    out = drawn.module.draw(pd.concat([drawn.table[drawn.table["role"] != "run"], runs]))
     marks = [line for axes in out.axes for line in axes.lines if line.get_gid() == "run"]
     assert len(marks) == len(runs)
     assert [mark.get_marker() for mark in marks].count("x") == runs["run_flags"].notna().sum() > 0
@@ -266,7 +266,7 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
 @pytest.mark.parametrize("name", DRAWN)
 def test_no_two_texts_overlap(draw, name):
     """At the width of the journal; the labels of two axes may meet in their corner."""
-    figure = draw(name).module.plot(draw(name).table)
+    figure = draw(name).module.draw(draw(name).table)
     FigureCanvasAgg(figure).draw()
     ticks, unseen = set(), set()
     for axis in figure.findobj(Axis):

@@ -69,7 +69,7 @@ def test_samples_reach_beyond_the_fronts_and_the_figure_shows_them(drawn, name):
     slipped = run["x"].values[np.isfinite(run["release_time"].values)]
     first, last = run["sample_position"].values[[0, -1]]
     assert first < slipped[0] and last > slipped[-1]
-    drawing = figure.plot(scene.table)
+    drawing = figure.draw(scene.table)
     assert scene.outputs["png"].stat().st_size > 20_000
     labels = [axes.get_xlabel() + axes.get_ylabel() for axes in drawing.axes]
     assert sum(map(bool, labels)) >= 4
@@ -97,7 +97,7 @@ def test_numbers_agree_with_theory_where_there_is_one(drawn):
 @pytest.mark.parametrize(("name", "sides"), [("displacement", 2), ("barrier", 1), ("stress", 0)])
 def test_each_side_with_a_pulse_has_the_line_of_its_own_steady_pulse(drawn, name, sides):
     """The barrier stops the right pulse, and no theory is that of a pulse under a held stress."""
-    panels = [axes for axes in figure.plot(drawn[name].table).axes if "end" in axes.get_ylabel()]
+    panels = [axes for axes in figure.draw(drawn[name].table).axes if "end" in axes.get_ylabel()]
     for axes in panels:
         lines = [line for line in axes.lines if line.get_gid() == "steady"]
         assert len(lines) == sides
@@ -158,7 +158,7 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     predicted = predict.predictions(predict.TOPICS, scenes, config["measure"])
     table = user_defined_sweep.table({}, {name: measured.join(predicted)}, {})
     save_table(table, tmp_path / "sweep.csv")
-    drawn = user_defined_sweep.plot(load_table(tmp_path / "sweep.csv"))
+    drawn = user_defined_sweep.draw(load_table(tmp_path / "sweep.csv"))
     speeds = drawn.axes[0]
     # Each line has theory, and markers full and open.
     assert len(speeds.lines) == 3 * lines

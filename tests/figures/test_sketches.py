@@ -28,7 +28,7 @@ def test_only_one_top_is_held_and_the_reductions_are_those_of_the_paper():
     """The mean displacement is the slip under a stress, and half of the slip under a held top."""
     table = fig01_system_sketch.table({}, {}, {"thickness": 2.0, "strip_width": 0.1})
     assert table["strip_width"].iloc[0] == 0.2 and table["y"].max() == 2.0
-    stress, held = fig01_system_sketch.plot(table).axes
+    stress, held = fig01_system_sketch.draw(table).axes
     assert named(stress, "imposed stress") and not named(stress, "held top")
     assert named(held, "held top") and not named(held, "imposed stress")
     for axes, mean in ((stress, 1.0), (held, 0.5)):
@@ -48,7 +48,7 @@ def zone():
     ratios = {"stiffness_ratios": SPAN, "thickness_ratios": THICKNESSES}
     settings = {"figures": {"fig07_damage_zone": ratios}}
     table = fig07_damage_zone.table({}, {"damage_zone": damage_zone.table({}, {}, settings)}, {})
-    return fig07_damage_zone.plot(table).axes
+    return fig07_damage_zone.draw(table).axes
 
 
 def test_one_stress_goes_through_both_layers_of_the_damage_zone(zone):
@@ -93,7 +93,7 @@ def drawn():
     loaded = Scene("stress", Prestress(-0.7, 0.0), 12.0, **LATTICE)
     data = {"burridge_knopoff_displacement": sweep(held), "burridge_knopoff_stress": sweep(loaded)}
     rows = figure.table(data, {}, {})
-    axes = figure.plot(rows).axes
+    axes = figure.draw(rows).axes
     panels = dict(zip(figure.PITCH, (axes[:2], axes[2:4]), strict=True))
     return data, rows, panels
 

@@ -1,1 +1,1 @@
-"""Figures, one a module: `table` makes a figure's numbers from its NEEDS, `plot` draws them."""
+"""Figures, one a module: `table` makes a table from its NEEDS, `draw` the figure from the table."""

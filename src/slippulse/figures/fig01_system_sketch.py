@@ -41,7 +41,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return rows
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw two panels, one a boundary condition."""
     figure, panels = new_panels(COLUMN, 3.4, 2, 1)
     # All lengths are drawn in thicknesses.

@@ -59,7 +59,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw the plane of tau_0 and gamma, one for each boundary, and numbered velocity profiles."""
     figure = new_figure(PAGE, 5.0)
     left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat

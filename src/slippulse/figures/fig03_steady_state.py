@@ -20,7 +20,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw the displacement boundary on the left and the stress boundary on the right."""
     figure, panels = new_panels(PAGE, 3.3, 1, 2)
     for axes, name, widths in zip(panels, ("displacement", "stress"), (6.0, 5.0), strict=True):

@@ -68,7 +68,7 @@ def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=COLUMNS)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure; a legend entry that is in one panel alone names the panel."""
     figure = new_figure(PAGE, 3.3)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)

@@ -17,7 +17,7 @@ table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw the collapse, a row a quantity and a column a boundary; insets have the ratio."""
     figure, panels = new_panels(PAGE, 5.6, 2, 2)
     for column, (boundary, title) in enumerate(BOUNDARIES.items()):

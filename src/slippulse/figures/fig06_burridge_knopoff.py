@@ -106,7 +106,7 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     return [(name, sample) for sample, name in sorted(names.items())]
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw a panel a boundary condition: pre-stress, and rows of blocks with time downwards."""
     counts = table.groupby("panel")["row"].nunique()
     heights = [UNIT * (PITCH[name] * counts[name] + 0.12) for name in PITCH]

@@ -18,7 +18,7 @@ WIDTH, ORIGIN = 4.2, 1.95
 MUTED = "0.25"
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw the sketch above, and below it the stress drop against G/G_r with its limit."""
     figure, (above, axes) = new_panels(COLUMN, 4.6, 2, 1, height_ratios=[1.15, 1.0])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])

@@ -2,7 +2,7 @@
 
 from .shared.pulses import plot_fields, pulse_table
 
-plot, table = plot_fields, pulse_table
+draw, table = plot_fields, pulse_table
 NEEDS = {
     "data": ["steady_displacement"],
     "measured": ["steady_displacement"],

@@ -2,7 +2,7 @@
 
 from .shared.scaling import damping_figure, transition_table
 
-plot, table = damping_figure, transition_table
+draw, table = damping_figure, transition_table
 NEEDS = {
     "measured": ["damping_displacement"],
     "predicted": {"damping_displacement": ["transition"]},

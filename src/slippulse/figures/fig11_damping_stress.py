@@ -2,5 +2,5 @@
 
 from .shared.scaling import damping_figure, transition_table
 
-plot, table = damping_figure, transition_table
+draw, table = damping_figure, transition_table
 NEEDS = {"measured": ["damping_stress"], "predicted": {"damping_stress": ["transition"]}}

@@ -62,7 +62,7 @@ def number_text(value: float, uncertainty: float, theory: float) -> str:
     return f"{text} (theory {number(theory, MOST)})" if math.isfinite(theory) else text
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure from its table."""
     roles = space_time.rows_by_role(table)
     numbers = roles.get("number", table.iloc[:0])

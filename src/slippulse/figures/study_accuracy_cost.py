@@ -49,7 +49,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)[[*columns, "preset", "front_speed", "exact"]]
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw three errors against the work, and the speed of the front against the step."""
     figure, axes = new_panels(PAGE, 5.0, 2, 2)
     for panel, (name, title) in zip(axes, PANELS.items(), strict=False):

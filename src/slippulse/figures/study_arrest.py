@@ -49,7 +49,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the rest of the way, (b) the times of the fraction and of the last release."""
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, 1, 2)
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08

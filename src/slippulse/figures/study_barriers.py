@@ -69,7 +69,7 @@ def _weights(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.linalg.solve(by_node.T, by_point.T).T
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw maps without and with damping above; below curves with the estimate, and convergence."""
     figure, (*maps, curve_axes, convergence_axes) = new_panels(PAGE, 5.4, 2, 2)
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))

@@ -18,7 +18,7 @@ SCENES = {"exact_displacement": BLUE, "exact_asymmetric": ORANGE, "exact_stress"
 MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
     figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(PAGE, 5.4, 2, 2)
     _draw_map(figure, map_axes, table[table["scene"] == next(iter(SCENES))])

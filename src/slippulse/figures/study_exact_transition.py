@@ -38,7 +38,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) distributions of errors, (c) refined lattices, (d) exact T_trans alone."""
     figure, (*distributions, refined_axes, last) = style.new_panels(PAGE, 5.0, 2, 2)
     for axes, quantity in zip(distributions, QUANTITIES, strict=True):

@@ -40,7 +40,7 @@ PLANES = {
 MARKERS, COLOURS = ("o", "s", "^"), (SKY, BLUE)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes (a) of bounded laws of slip rate, (b, c) of slip weakening; (d) front speeds."""
     figure, (*planes, speeds) = new_panels(PAGE, 5.2, 2, 2)
     runs = table[table["role"] == "plane"]

@@ -68,7 +68,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat([runs, lines], ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
     figure, grid = new_panels(PAGE, 5.2, 2, 2)
     panels = dict(list(table.groupby("panel")))

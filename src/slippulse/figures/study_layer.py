@@ -61,7 +61,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the velocity over the layer, (b-e) ratios of one dimension to the plane."""
     figure = new_figure(PAGE, 3.9)
     panels = figure.subplot_mosaic("aaaa;bcde", height_ratios=(1.0, 2.9))

@@ -57,7 +57,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw deviation over tolerance, a claim a row, the largest deviation above."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()

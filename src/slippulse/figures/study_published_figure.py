@@ -47,7 +47,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat([*parts, pd.DataFrame([ours])], ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw chi-square and regions over the damping ratio above, and residuals below."""
     figure = new_figure(PAGE, 4.7)
     axes = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.8))

@@ -42,7 +42,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
     figure, (*grid, refined_axes) = new_panels(PAGE, 4.6, 2, 2)
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):

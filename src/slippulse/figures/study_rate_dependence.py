@@ -18,7 +18,7 @@ OPEN: Look = SMALL | {"markerfacecolor": "white"}
 RATE = r"$\alpha/\sqrt{\gamma}$"
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) regimes, (b) width and slip of pulses, (c) maps of both regimes, (d) Gamma = 0."""
     figure, (plane, pulses, maps, arrest) = new_panels(PAGE, 5.4, 2, 2)
     table = table.assign(over=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))

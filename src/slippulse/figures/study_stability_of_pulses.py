@@ -63,7 +63,7 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     return rows.assign(role="velocity", level=level, before=run.attrs["right"], step=position)
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) slip across the step, (b) its distance from the new steady slip, (c) velocity."""
     figure, (slip_axes, rest_axes, velocity_axes) = new_panels(PAGE, 3.2, 1, 3)
     slip = table[table["role"].isin(["exact", "lattice"])]

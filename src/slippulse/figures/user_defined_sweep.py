@@ -61,7 +61,7 @@ def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-def plot(table: pd.DataFrame) -> Figure:
+def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel a quantity; markers are runs (open: flagged), lines exact theory."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
     quantities = list(dict.fromkeys(table["quantity"]))[:PANELS]

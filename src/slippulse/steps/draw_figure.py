@@ -16,4 +16,4 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     table = module.table(*given(files), settings["values"])
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
     drawn = load_table(outputs["csv"]).drop(columns="altered", errors="ignore")
-    save_figure(module.plot(drawn), outputs["png"], outputs["pdf"], note)
+    save_figure(module.draw(drawn), outputs["png"], outputs["pdf"], note)

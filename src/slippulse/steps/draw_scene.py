@@ -24,7 +24,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     save_table(numbers, outputs["numbers"])
     table = scene.table(data, numbers, row, title)
     save_table(table.assign(altered=note) if note else table, outputs["csv"])
-    save_figure(scene.plot(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
+    save_figure(scene.draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"], note)
     values = data.attrs | {"pulse_state": row["pulse_state"]}
     page = scene_page(settings["scene"], title, outputs["png"], numbers, values, note)
     write_text(page, outputs["html"])
