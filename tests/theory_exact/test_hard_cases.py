@@ -1,5 +1,7 @@
 """Scenes off the beaten path that once gave wrong answers without a flag: right now, or flagged."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,7 +46,24 @@ def the_first_stick_is_the_first():
         assert rupture.first_stick.time <= rupture.limit.time
 
 
+def mirrored_parts_that_have_not_met():
+    """A scene that misses symmetry by less than rounding is solved on both sides."""
+    profile = Prestress(-0.3, -0.3, bumps=((10.0, 1.5, 1.0), (-10.0, 1.5, 1.0)))
+    other = replace(profile, bumps=(*profile.bumps, (50.0, 1e-14, 1.0)))
+    x = np.linspace(-14.0, 14.0, 57)
+    for duration in (2.0, 5.0):
+        one, two = (Rupture(tau, 0.65, 0.1, duration=duration) for tau in (profile, other))
+        assert len(one.front_ends) == 3
+        assert (one.limit is None) == (two.limit is None)
+        assert one.largest_velocity == pytest.approx(two.largest_velocity, rel=SAME)
+        assert one.transition == pytest.approx(two.transition, rel=SAME, nan_ok=True)
+        assert one.stick_time(x) == pytest.approx(two.stick_time(x), abs=SAME, nan_ok=True)
+        for name, values in one.map([0.7 * duration, duration], x).items():
+            assert values == pytest.approx(two.map([0.7 * duration, duration], x)[name], abs=SAME)
+
+
 CASES = [
+    mirrored_parts_that_have_not_met,
     a_front_that_rests_goes_on,
     slip_is_never_negative_before_a_limit,
     the_first_stick_is_the_first,

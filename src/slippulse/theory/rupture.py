@@ -95,6 +95,9 @@ class Rupture:
         spreading = spread(self.law, until)
         self.stretches, self._unknown = spreading.stretches, spreading.unknown
         self._parts = [self._part(stretch, until) for stretch in self.stretches]
+        # A symmetric scene is solved at x >= 0.
+        one_side = prestress.symmetric
+        self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0 or not one_side]
 
     def _part(self, stretch: Stretch, until: float) -> Part:
         kinks = [piece.right for piece in self.law.pieces if np.isfinite(piece.right)]
@@ -184,7 +187,7 @@ class Rupture:
         """Stick times, also a little beyond the end and beyond the horizon; NaN for none."""
         positions, number = self._distinct(x)
         out = np.full(positions.shape, np.nan)
-        for part in self._parts:
+        for part in self._solved:
             on = part.curve.covers(positions)
             out[on] = part.edge.stick_time(positions[on])
         return out[number]
@@ -209,7 +212,7 @@ class Rupture:
     @cached_property
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None for none until ``duration``."""
-        known = [part.edge.first_stick() for part in self._parts]
+        known = [part.edge.first_stick() for part in self._solved]
         first = min((first for first in known if first), default=None)
         # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
         last = min(self.duration, self.limit.time if self.limit else np.inf)
@@ -254,7 +257,7 @@ class Rupture:
     @cached_property
     def largest_velocity(self) -> float:
         """Largest slip velocity until ``duration``, where the construction holds."""
-        return max(part.largest_velocity(self.duration, self.horizon) for part in self._parts)
+        return max(part.largest_velocity(self.duration, self.horizon) for part in self._solved)
 
     def slip_velocity(self, x, time) -> np.ndarray:
         """du/dt at points.
@@ -331,7 +334,7 @@ class Rupture:
         time = np.minimum(time, self.duration)
         points = Points(*self._distinct(x), time)
         out = {name: np.zeros(x.shape) for name in fields}
-        for part in self._parts:
+        for part in self._solved:
             part.fill(out, points)
         if "strain" in out and self.prestress.symmetric:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
@@ -357,7 +360,7 @@ class Rupture:
     def _limits(self) -> list[Limit]:
         """All points in whose future the construction says nothing."""
         limits = [Limit(*point, reason) for point, reason in self._unknown]
-        for part in self._parts:
+        for part in self._solved:
             slow = [Limit(*point, SLOW_EDGE) for point in part.edge.violations()]
             falling = part.falling_slip(partial(_horizon, limits + slow))
             found = slow + [Limit(*point, FALLING_SLIP) for point in falling]
