@@ -11,6 +11,7 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES
 from .curve import COUNT, CUMULATIVE, NODES, TO_SERIES, WEIGHTS, Panel, Point
 from .prestress_pieces import EXTENT, Piece, analytic, gaussians, pieces
+from .riemann import kernel_rate
 from .slowness import LARGEST_RATIO, slowness
 
 # Largest last Legendre coefficients of 1/v and tau on a panel, times its length.
@@ -64,15 +65,14 @@ class FastFront:
         self.damping_ratio = float(damping_ratio)
         self.release = release
         self.refinement = int(refinement)
-        # The fastest rate at which a kernel changes.
-        self.rate = max(float(np.sqrt(self.gamma)), 0.5 * abs(self.alpha))
+        self.kernel_rate = kernel_rate(self.gamma, self.alpha)
         # An edge of a panel stands at each feature, so that none falls between two nodes.
-        centres = [centre + width * FEATURES for centre, width in gaussians(prestress)]
-        self.features = np.unique(np.concatenate(centres))
-        # Features of the Gaussians that a front crosses within a fraction of a period of the waves.
-        shapes = gaussians(prestress)
-        narrow = [c + w * FEATURES for c, w in shapes if w * self.rate < NARROW or not self.rate]
-        self.narrow = np.concatenate([*narrow, []])
+        centre, width = np.array(gaussians(prestress)).T[..., None]
+        features = centre + width * FEATURES
+        self.features = np.unique(features)
+        # Those of the Gaussians that a front crosses within a fraction of a period of the waves.
+        narrow = (width[:, 0] * self.kernel_rate < NARROW) | (self.kernel_rate == 0.0)
+        self.narrow_features = features[narrow].ravel()
         levels = (prestress.left, prestress.right, *(level for _, level in prestress.steps))
         lowest = float(np.min(prestress(self.features), initial=min(levels)))
         check_number("lowest prestress", lowest, at_least=LOWEST)
@@ -98,11 +98,12 @@ class FastFront:
 
     def longest(self, level: float) -> float:
         """Length of the longest panel, along which the phase of the springs changes by LONGEST."""
-        if self.rate == 0.0:
+        if self.kernel_rate == 0.0:
             return LONGEST_WITHOUT_SPRINGS / self.refinement
-        rate = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
-        proper = float(np.sqrt(1.0 - rate**2)) if level > 0.0 else 1.0
-        return min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST) / self.rate / self.refinement
+        slowness = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
+        proper = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
+        longest = min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST)
+        return longest / self.kernel_rate / self.refinement
 
     def rightwards(self, start: Point, stop: float, until: float) -> Path:
         """The path from a point towards stop, as long as tau >= 0 and T < until."""
@@ -116,10 +117,10 @@ class FastFront:
             end = min(stop, piece.right)
             if np.isinf(end) and x >= last_feature:
                 # The pre-stress is uniform from here on.
-                rate = float(self.slowness(np.array(piece.level)))
-                end = x + (until - time) / rate * (1.0 + 1e-9) + 1e-9
+                slowness = float(self.slowness(np.array(piece.level)))
+                end = x + (until - time) / slowness * (1.0 + 1e-9) + 1e-9
             elif np.isinf(end):
-                end = max(last_feature, np.nextafter(x, np.inf))
+                end = last_feature
             panels += self.between(piece.level, Point(x, time), end)
             x, time = end, panels[-1].time_ends[1]
         return Path(panels, Point(x, time))
@@ -131,8 +132,8 @@ class FastFront:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
             tau = analytic(self.prestress, level, x)
-            rate = self.slowness(tau)
-            tails = np.abs(np.stack([rate, tau]) @ TO_SERIES[-2:].T).max(axis=(0, 2))
+            slowness = self.slowness(tau)
+            tails = np.abs(np.stack([slowness, tau]) @ TO_SERIES[-2:].T).max(axis=(0, 2))
             size = 2.0 * half[:, 0]
             split = (tails * size > RESOLVED) & (size > NARROWEST)
             if not split.any():
@@ -140,8 +141,8 @@ class FastFront:
             if edges.size > MOST_PANELS:
                 raise self._too_many(level, end - start.x)
             edges = np.sort(np.concatenate([edges, 0.5 * (edges[:-1] + edges[1:])[split]]))
-        times = start.time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (rate @ WEIGHTS))])
-        within = times[:-1, None] + (half * rate) @ CUMULATIVE.T
+        times = start.time + np.concatenate([[0.0], np.cumsum(half[:, 0] * (slowness @ WEIGHTS))])
+        within = times[:-1, None] + (half * slowness) @ CUMULATIVE.T
         columns = x, within, tau * half, pairwise(edges), pairwise(times)
         return [Panel(*row) for row in zip(*columns, strict=True)]
 

@@ -5,8 +5,8 @@ import numpy as np
 from ..model.checks import as_numbers, check_choice, check_kind, check_number
 from ..model.prestress import Prestress
 from .curve import Curve, Point, seen_from
-from .domains import broadcast_numbers
-from .fast_front import NARROWEST, FastFront
+from .domains import broadcast_numbers, check_domains
+from .fast_front import FastFront
 from .prestress_pieces import nucleations
 from .riemann import Past
 
@@ -40,7 +40,7 @@ class Fronts:
         gamma: float = 0.0,
     ) -> None:
         law = FastFront(prestress, gamma, damping_ratio, release)
-        check_number("reach", reach, at_least=NARROWEST)
+        check_domains(reach=reach)
         check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
         starts = nucleations(prestress)
         if len(starts) > 1 or starts[0][0] != starts[0][1]:
@@ -49,36 +49,16 @@ class Fronts:
         left = right
         if not prestress.symmetric:
             left = law.mirrored().rightwards(Point(0.0, 0.0), float(reach), np.inf)
-        self.ends = {-1.0: left.end.x, 1.0: right.end.x}
-        for side, x in self.ends.items():
-            if x >= reach:
-                self.ends[side] = np.inf
+        ends = {-1.0: left.end.x, 1.0: right.end.x}
+        self.ends = {side: x if x < reach else np.inf for side, x in ends.items()}
         self.curve = Curve(seen_from(-1.0, left.panels) + right.panels)
 
     def arrival(self, x) -> np.ndarray:
-        """T(x): when the front reaches x.
-
-        Parameters
-        ----------
-        x : float or array, positions, finite
-
-        Returns
-        -------
-        array, NaN beyond where the front outruns the waves
-        """
+        """T(x): when the front reaches x, an array; NaN beyond where it outruns the waves."""
         return self.curve.arrival(as_numbers("x", x))
 
     def reached(self, time: float, sign: float) -> float:
-        """Distance from x = 0 of one front.
-
-        Parameters
-        ----------
-        time, sign : a time >= 0, before the front is at ``reach``; +1 (right) or -1 (left)
-
-        Returns
-        -------
-        float, >= 0
-        """
+        """Distance from x = 0 of the right (sign +1) or left (-1) front, before its ``reach``."""
         check_choice("sign", sign, (-1, 1))
         last = 0 if sign < 0.0 else -1
         check_number("time", time, at_least=0.0, below=float(self.curve.edge_times[last]))

@@ -254,7 +254,7 @@ class Past:
         kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
         values = integrand(Sources(d_xi, d_eta, kernel, panels))
         if self.alpha:
-            values = values * decay(self.alpha, d_xi + d_eta)
+            values = values * decay(self.alpha, d_xi, d_eta)
         boxes = values.reshape(*components, low.size, -1, COUNT)
         here = np.arange(last - first)
         inside = (here >= low[:, None]) & (here < high[:, None])
@@ -269,9 +269,14 @@ def partial_weights(s: np.ndarray) -> np.ndarray:
     return np.vander(s, COUNT + 1, increasing=True) @ PARTIAL
 
 
-def decay(alpha: float, twice: np.ndarray) -> np.ndarray:
-    """E = exp(-alpha (t - T)/2), from twice t - T."""
-    return np.exp(np.minimum(-0.25 * alpha * twice, LARGEST_EXPONENT))
+def kernel_rate(gamma: float, alpha: float) -> float:
+    """The fastest rate at which the kernel E K changes."""
+    return max(float(np.sqrt(gamma)), 0.5 * abs(alpha))
+
+
+def decay(alpha: float, d_xi: np.ndarray, d_eta: np.ndarray) -> np.ndarray:
+    """E = exp(-alpha (t - T)/2), where d_xi + d_eta = 2 (t - T)."""
+    return np.exp(np.minimum(-0.25 * alpha * (d_xi + d_eta), LARGEST_EXPONENT))
 
 
 def kernel_of(stiffness: float, z: np.ndarray, cut: np.ndarray) -> Callable:

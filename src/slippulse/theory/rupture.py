@@ -16,10 +16,10 @@ from ..model.checks import as_numbers, check_choice, check_number, short_repr
 from ..model.prestress import Prestress
 from ..model.roots import root_between
 from .curve import SAME
-from .domains import broadcast_numbers
+from .domains import broadcast_numbers, check_domains
 from .exact_transition import ExactTransition
-from .fast_front import NARROWEST, FastFront
-from .part import Part, Points
+from .fast_front import FastFront
+from .solved_part import SolvedPart
 from .spreading import LEFT, RIGHT, Stretch, spread
 from .trailing_edge import FirstStick
 
@@ -60,6 +60,9 @@ class Rupture:
     rate_strengthening : float, alpha of a term -alpha du/dt, at most 600/duration; above the value
         where slip runs away
 
+    Methods take positions x and times up to ``duration``, numbers or arrays, and return arrays of
+    their shape, NaN where nothing is known: beyond `horizon`, and for what has not come until
+    ``duration``.
     Raises ValueError: if a value is outside its domain, the pre-stress nowhere reaches 1, or a
     front needs more than 20000 panels; of a search for sticks, if it would take more than 3 GB (a
     minute); of every method, if a position or a time is not finite.
@@ -82,7 +85,7 @@ class Rupture:
         refinement: int = 1,
         rate_strengthening: float = 0.0,
     ) -> None:
-        check_number("duration", duration, at_least=NARROWEST)
+        check_domains(duration=duration)
         self.law = FastFront(
             prestress, gamma, damping_ratio, release, refinement, rate_strengthening
         )
@@ -91,6 +94,8 @@ class Rupture:
         self.gamma = self.law.gamma
         self.rate_strengthening = self.law.alpha
         self.duration = float(duration)
+        # A time up to here is the duration but for rounding.
+        self._last = self.duration * (1.0 + SAME)
         until = self.duration * (1.0 + BEYOND)
         spreading = spread(self.law, until)
         self.stretches, self._unknown = spreading.stretches, spreading.unknown
@@ -99,13 +104,13 @@ class Rupture:
         one_side = prestress.symmetric
         self._solved = [part for part in self._parts if part.curve.edges[-1] > 0.0 or not one_side]
 
-    def _part(self, stretch: Stretch, until: float) -> Part:
+    def _part(self, stretch: Stretch, until: float) -> SolvedPart:
         kinks = [piece.right for piece in self.law.pieces if np.isfinite(piece.right)]
         restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
         ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
         curve = stretch.curve()
-        marks = np.array([0.0, *kinks, *restarts, *stretch.joins, *ends, *self.law.narrow])
-        return Part(
+        marks = np.array([0.0, *kinks, *restarts, *stretch.joins, *ends, *self.law.narrow_features])
+        return SolvedPart(
             curve,
             self.gamma,
             until,
@@ -121,9 +126,9 @@ class Rupture:
         pairs = zip(self._parts, self.stretches, strict=True)
         return [(self._front_end(*pair, LEFT), self._front_end(*pair, RIGHT)) for pair in pairs]
 
-    def _front_end(self, part: Part, stretch: Stretch, side: float) -> FrontEnd:
+    def _front_end(self, part: SolvedPart, stretch: Stretch, side: float) -> FrontEnd:
         (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
-        if reason != "duration" and time <= self.duration * (1.0 + SAME):
+        if reason != "duration" and time <= self._last:
             reason = "stops" if reason == "dead" else reason
             return FrontEnd(float(x), float(min(time, self.duration)), reason)
         edges = part.curve.edges[part.curve.edge_times <= self.duration]
@@ -131,31 +136,13 @@ class Rupture:
         return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
-        """T(x): when the first front reaches x.
-
-        Parameters
-        ----------
-        x : float or array, positions
-
-        Returns
-        -------
-        array, NaN where no front arrives until ``duration``
-        """
+        """T(x): when the first front reaches x."""
         x = as_numbers("x", x)
         times = [part.curve.arrival(x) for part in self._parts]
         return self._until_end(x, np.fmin.reduce(times))
 
     def fronts_at(self, time: float, x: float = 0.0) -> tuple[float, float]:
-        """Positions of the two fronts of the connected part that holds x.
-
-        Parameters
-        ----------
-        time, x : a time in (0, duration], and a position that has slipped by then, or ValueError
-
-        Returns
-        -------
-        tuple of float, left and right
-        """
+        """Left and right front of the connected part that holds x, which must slip by then."""
         time = self._time(time)
         check_number("x", x)
         for part in self._parts:
@@ -164,45 +151,24 @@ class Rupture:
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
-        """Time at which x sticks.
-
-        Parameters
-        ----------
-        x : float or array, positions
-
-        Returns
-        -------
-        array, NaN where x does not stick until ``duration``, or beyond the horizon
-        """
+        """Time at which x sticks."""
         x = as_numbers("x", x)
         return self._until_end(x, self._stick(x))
 
     def _distinct(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Distinct positions (of one side, if symmetric), and the number of each x in them."""
+        """Distinct positions (of one side, if symmetric), and the index of each x in them."""
         x = np.abs(x) if self.prestress.symmetric else x
-        positions, number = np.unique(x, return_inverse=True)
-        return positions, number.reshape(x.shape)
+        positions, index = np.unique(x, return_inverse=True)
+        return positions, index.reshape(x.shape)
 
     def _stick(self, x: np.ndarray) -> np.ndarray:
         """Stick times, also a little beyond the end and beyond the horizon; NaN for none."""
-        positions, number = self._distinct(x)
-        out = np.full(positions.shape, np.nan)
-        for part in self._solved:
-            on = part.curve.covers(positions)
-            out[on] = part.edge.stick_time(positions[on])
-        return out[number]
+        positions, index = self._distinct(x)
+        times = [part.stick_time(positions) for part in self._solved]
+        return np.fmin.reduce(times)[index]
 
     def final_slip(self, x) -> np.ndarray:
-        """Slip at x after sticking.
-
-        Parameters
-        ----------
-        x : float or array, positions
-
-        Returns
-        -------
-        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``
-        """
+        """Slip at x after sticking, 0 where nothing has slipped."""
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
@@ -215,8 +181,8 @@ class Rupture:
         known = [part.edge.first_stick() for part in self._solved]
         first = min((first for first in known if first), default=None)
         # Something may have stuck elsewhere, after a limit; at a limit the edge is still known.
-        last = min(self.duration, self.limit.time if self.limit else np.inf)
-        if not first or first.time > last * (1.0 + SAME):
+        last = self.limit.time * (1.0 + SAME) if self.limit else np.inf
+        if not first or first.time > min(last, self._last):
             return None
         return FirstStick(min(first.time, self.duration), first.x)
 
@@ -229,16 +195,7 @@ class Rupture:
         return ExactTransition(self.first_stick.time, right - left)
 
     def pulse_width(self, time: float, side: str = "right") -> float:
-        """Distance between a front and the trailing edge behind it.
-
-        Parameters
-        ----------
-        time, side : a time in (0, duration]; "right" or "left"
-
-        Returns
-        -------
-        float, NaN before anything sticks
-        """
+        """Distance between the "right" or "left" front and the trailing edge behind it."""
         check_choice("side", side, ("right", "left"))
         time = self._time(time)
         if not self.first_stick or time <= self.first_stick.time * (1.0 + SAME):
@@ -260,97 +217,57 @@ class Rupture:
         return max(part.largest_velocity(self.duration, self.horizon) for part in self._solved)
 
     def slip_velocity(self, x, time) -> np.ndarray:
-        """du/dt at points.
-
-        Parameters
-        ----------
-        x, time : float or array, positions and times up to ``duration``, broadcast
-
-        Returns
-        -------
-        array, NaN beyond the horizon
-        """
+        """du/dt at points."""
         return self._points(("slip_velocity",), x, time)["slip_velocity"]
 
     def slip(self, x, time) -> np.ndarray:
-        """u at points.
-
-        Parameters
-        ----------
-        x, time : float or array, as for `slip_velocity`
-
-        Returns
-        -------
-        array, NaN beyond the horizon
-        """
+        """u at points."""
         return self._points(("slip",), x, time)["slip"]
 
     def strain(self, x, time) -> np.ndarray:
-        """du/dx at points.
-
-        Parameters
-        ----------
-        x, time : float or array, as for `slip_velocity`
-
-        Returns
-        -------
-        array, NaN beyond the horizon
-        """
+        """du/dx at points."""
         return self._points(("strain",), x, time)["strain"]
 
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-        """Fields on a grid of times and positions.
-
-        Parameters
-        ----------
-        times, positions : arrays of one dimension, together at most 1e7 points
-        fields : tuple of str, some of "slip_velocity", "slip" and "strain"
-
-        Returns
-        -------
-        dict of arrays [time, position], NaN beyond the horizon
-        """
+        """Some of FIELDS on a grid of at most 1e7 points, by name: arrays [time, position]."""
         if not isinstance(fields, Sequence) or isinstance(fields, str):
-            raise ValueError(
-                f"fields: {short_repr(fields)}; allowed: a list of {', '.join(FIELDS)}"
-            )
+            allowed = f"a list of {', '.join(FIELDS)}"
+            raise ValueError(f"fields: {short_repr(fields)}; allowed: {allowed}")
         for name in fields:
             check_choice("fields", name, FIELDS)
         x, time = as_numbers("positions", positions), as_numbers("times", times)
         if x.ndim != 1 or time.ndim != 1:
-            raise ValueError(
-                "times, positions: not one-dimensional; allowed: one-dimensional arrays"
-            )
+            given = f"arrays of {time.ndim} and {x.ndim} dimensions"
+            raise ValueError(f"times, positions: {given}; allowed: one dimension")
         check_number("times and positions", x.size * time.size, at_most=MOST_POINTS)
         return self._points(tuple(fields), x[None, :], time[:, None])
 
     def _points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:
         """Fields at points, broadcast."""
         x, time = broadcast_numbers(x=x, time=time)
-        if np.any(time > self.duration * (1.0 + SAME)):
-            raise ValueError(
-                f"time: {float(np.max(time))!r}; allowed: <= duration = {self.duration:g}"
-            )
-        time = np.minimum(time, self.duration)
-        points = Points(*self._distinct(x), time)
+        time = self._until_duration(time)
+        positions, index = self._distinct(x)
         out = {name: np.zeros(x.shape) for name in fields}
         for part in self._solved:
-            part.fill(out, points)
+            part.fill(out, positions, index, time)
         if "strain" in out and self.prestress.symmetric:
             out["strain"] *= np.where(x < 0.0, -1.0, 1.0)
         unknown = self._is_beyond_horizon(x, time)
         return {name: np.where(unknown, np.nan, values) for name, values in out.items()}
 
     def _time(self, time: float) -> float:
-        """A time until the duration, which is the duration if only rounding tells them apart."""
         check_number("time", time, above=0.0)
-        time = min(float(time), self.duration) if time <= self.duration * (1.0 + SAME) else time
-        check_number("time", time, at_most=self.duration)
-        return time
+        return float(self._until_duration(np.array(time)))
+
+    def _until_duration(self, time: np.ndarray) -> np.ndarray:
+        if np.any(time > self._last):
+            latest = float(np.max(time))
+            raise ValueError(f"time: {latest!r}; allowed: <= duration = {self.duration:g}")
+        return np.minimum(time, self.duration)
 
     def _until_end(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Times of events; NaN where they are not known to come until the duration."""
-        known = (time <= self.duration * (1.0 + SAME)) & ~self._is_beyond_horizon(x, time)
+        known = (time <= self._last) & ~self._is_beyond_horizon(x, time)
         return np.where(known, np.minimum(time, self.duration), np.nan)
 
     def _is_beyond_horizon(self, x: np.ndarray, time: np.ndarray | float) -> np.ndarray:
@@ -361,13 +278,13 @@ class Rupture:
         """All points in whose future the construction says nothing."""
         limits = [Limit(*point, reason) for point, reason in self._unknown]
         for part in self._solved:
-            slow = [Limit(*point, SLOW_EDGE) for point in part.edge.violations()]
+            slow = [Limit(*point, SLOW_EDGE) for point in part.edge.slow_points()]
             falling = part.falling_slip(partial(_horizon, limits + slow))
             found = slow + [Limit(*point, FALLING_SLIP) for point in falling]
             if self.prestress.symmetric:
                 found += [Limit(-limit.x, limit.time, limit.reason) for limit in found]
             limits += found
-        return [limit for limit in limits if limit.time <= self.duration * (1.0 + SAME)]
+        return [limit for limit in limits if limit.time <= self._last]
 
     @property
     def limit(self) -> Limit | None:
@@ -375,16 +292,7 @@ class Rupture:
         return min(self._limits, key=lambda limit: limit.time, default=None)
 
     def horizon(self, x) -> np.ndarray:
-        """Time from which on the construction says nothing at x: everything then is NaN.
-
-        Parameters
-        ----------
-        x : float or array, positions
-
-        Returns
-        -------
-        array, inf where there is no such time
-        """
+        """Time from which on the construction says nothing at x; inf for none."""
         return _horizon(self._limits, as_numbers("x", x))
 
 

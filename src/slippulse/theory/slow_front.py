@@ -190,7 +190,7 @@ class FreeBoundary:
         d_eta = eta[:, None] - np.append(self.late, eta)
         z = self.stiffness * self.d_xi * d_eta
         kernel = kernel_of(self.stiffness, z, z)
-        lasting = decay(self.alpha, self.d_xi + d_eta) if self.alpha else 1.0
+        lasting = decay(self.alpha, self.d_xi, d_eta) if self.alpha else 1.0
         value = lasting * kernel(0)
         slope = 2.0 * self.stiffness * lasting * kernel(1) * self.d_xi - 0.5 * self.alpha * value
         return value, slope

@@ -13,15 +13,13 @@ then halfway between knots as long as these do not predict what is found there.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..model.roots import root_between
 from .curve import SAME, Point
-
-if TYPE_CHECKING:
-    from .part import Part
+from .part import Part
 
 # Stick times halfway between knots are predicted to this fraction of the interval, and their slopes
 # to this.
@@ -34,8 +32,9 @@ CELL = 0.1
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
 # that are cut into so many.
 LOCATED, CUTS = 1e-10, 8
-# Error of Newton's last step to a stick time.
-STEP = 1e-11
+# Size of Newton's last step to a stick time, and of the next one, about the product of the last
+# two, in units of the interval.
+STEP, NEXT_STEP = 1e-11, 1e-14
 # Stick times that differ by less are equal, and slip velocities below this are 0.
 ROUNDING = 1e-12
 # Kinds of a knot: it slides at the end; it has stuck, where the edge outruns the waves or not; or
@@ -53,7 +52,10 @@ class FirstStick(NamedTuple):
 
 
 class Knots(NamedTuple):
-    """Positions, stick times (the end for none), kinds, and du/dt and its slopes by xi and eta."""
+    """Positions, stick times (the end for none), kinds, and du/dt and its slopes by xi and eta.
+
+    Interval k lies between the knots k and k + 1.
+    """
 
     x: np.ndarray
     stick: np.ndarray
@@ -73,33 +75,38 @@ class Knots(NamedTuple):
         _, first = np.unique(np.append(self.x, other.x), return_index=True)
         return Knots._make(np.append(a, b)[first] for a, b in zip(self, other, strict=True))
 
-    def of_kinds(self, k: np.ndarray, *kinds: int) -> np.ndarray:
-        """Mask of the intervals right of knots k whose two ends have these kinds in any order."""
-        first, second = self.kind[k], self.kind[k + 1]
-        one, other = kinds
-        return ((first == one) & (second == other)) | ((first == other) & (second == one))
+    def interval(self, x: np.ndarray) -> np.ndarray:
+        """The interval of each position, the nearest one beyond the knots."""
+        k = np.searchsorted(self.x, x, side="right") - 1
+        return np.clip(k, 0, self.x.size - 2)
+
+    def of_kinds(self, k: np.ndarray, one: int, other: int) -> np.ndarray:
+        """Mask of the intervals whose two ends have these kinds in any order."""
+        left, right = self.kind[k], self.kind[k + 1]
+        return ((left == one) & (right == other)) | ((left == other) & (right == one))
+
+    def brief(self, k: np.ndarray) -> np.ndarray:
+        """Mask of the intervals with an end that slid too briefly."""
+        return (self.kind[k] == BRIEF) | (self.kind[k + 1] == BRIEF)
 
     def jumps(self, k: np.ndarray) -> np.ndarray:
-        """Mask of the intervals right of knots k over which the edge does not outrun the waves."""
+        """Mask of the intervals in which the edge jumps, or changes from fast to slow."""
         change = np.abs(self.stick[k + 1] - self.stick[k])
-        slow = change >= (self.x[k + 1] - self.x[k]) * (1.0 + SAME)
-        known = (self.kind[k] != BRIEF) & (self.kind[k + 1] != BRIEF)
-        return slow & known & ~self.of_kinds(k, SLOW, SLOW) | self.of_kinds(k, FAST, SLOW)
+        steep = change >= (self.x[k + 1] - self.x[k]) * (1.0 + SAME)
+        told = ~self.brief(k) & ~self.of_kinds(k, SLOW, SLOW)
+        return (steep & told) | self.of_kinds(k, FAST, SLOW)
 
     def fast_ends(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Knots at which the edge last outruns the waves before it jumps, and the intervals there.
-
-        Only intervals right of knots k are looked at.
-        """
-        jumps = k[self.jumps(k)]
+        """Knots at which the edge last outruns the waves before it jumps, and lengths of jumps."""
+        k = k[self.jumps(k)]
+        left, right = self.kind[k], self.kind[k + 1]
         # The edge ends at the earlier of two knots, unless only the other one outruns the waves.
-        later = self.stick[jumps] >= self.stick[jumps + 1]
-        kind = self.kind[[jumps, jumps + 1]]
-        ends = jumps + np.where(kind[0] == kind[1], later, kind[1] == FAST)
-        return ends, self.x[jumps + 1] - self.x[jumps]
+        right_first = self.stick[k] >= self.stick[k + 1]
+        at_right = np.where(left == right, right_first, right == FAST)
+        return np.where(at_right, k + 1, k), self.x[k + 1] - self.x[k]
 
     def stick_between(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Stick times by cubics between knots k and k + 1."""
+        """Stick times by cubics in intervals."""
         stick, pace, span = self.stick, self.pace, self.x[k + 1] - self.x[k]
         s = (x - self.x[k]) / span
         bow = span * ((1.0 - s) * pace[k] - s * pace[k + 1])
@@ -110,20 +117,32 @@ class Knots(NamedTuple):
         """Some knots."""
         return Knots._make(values[k] for values in self)
 
+    def predict(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
+        """Mask of the intervals whose ends predict the knot in the middle."""
+        same = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
+        half = middle.x - self.x[k]
+        slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
+        slope -= 0.25 * (self.pace[k] + self.pace[k + 1])
+        near = np.abs(middle.stick - self.stick_between(k, middle.x)) <= 2.0 * PREDICTED * half
+        near &= np.abs(middle.pace - slope) <= PREDICTED_SLOPE
+        slides = ~middle.may_stick(self.those(k)) & ~middle.may_stick(self.those(k + 1))
+        return same & np.where(middle.kind == SLIDES, slides, near | (middle.kind != FAST))
+
     def may_stick(self, other: "Knots") -> np.ndarray:
         """Mask of knots that slide whose tangents to du/dt meet below 0 before other knots."""
         span = other.x - self.x
-        fall, rise = (knots.by_eta - knots.by_xi for knots in (self, other))
-        valley = (fall * span < 0.0) & (rise * span > 0.0)
-        way = (other.velocity - self.velocity - rise * span) / np.where(valley, fall - rise, 1.0)
-        return valley & (self.velocity + fall * way <= 0.0) & (self.velocity > ROUNDING)
+        slope, other_slope = self.by_eta - self.by_xi, other.by_eta - other.by_xi
+        valley = (slope * span < 0.0) & (other_slope * span > 0.0)
+        difference = other.velocity - self.velocity - other_slope * span
+        distance = difference / np.where(valley, slope - other_slope, 1.0)
+        return valley & (self.velocity + slope * distance <= 0.0) & (self.velocity > ROUNDING)
 
 
 @dataclass
 class TrailingEdge:
     """Stick times of a part, known at knots and found in between with their help."""
 
-    part: "Part"
+    part: Part
 
     @cached_property
     def knots(self) -> Knots:
@@ -140,17 +159,16 @@ class TrailingEdge:
         x = np.unique([left, *edges, *self.part.marks, *fronts])
         x = x[(x >= left) & (x <= right) & (curve.arrival(x) < self.part.until)]
         x = x[np.diff(x, append=np.inf) > SAME * (right - left)]
-        knots = self._knots_at(x)
+        search = self.part.search
+        knots = self._knots_of(x, search(x))
         if x.size < 2:
             return knots
-        knots = knots.joined(self._knots_at(self._landings(knots)))
-        knots, todo = self._refined(knots, knots.x[:-1], self.part.search)
+        x = self._landings(knots)
+        knots = knots.joined(self._knots_of(x, search(x)))
+        knots, todo = self._refined(knots, knots.x[:-1], search)
         while todo.size:
             knots, todo = self._refined(knots, todo, partial(self._stick_time, knots))
         return knots
-
-    def _knots_at(self, x: np.ndarray) -> Knots:
-        return self._knots_of(x, self.part.search(x))
 
     def _knots_of(self, x: np.ndarray, stick: np.ndarray) -> Knots:
         part, sticks = self.part, np.isfinite(stick)
@@ -183,48 +201,40 @@ class TrailingEdge:
         return np.unique(np.concatenate(out))
 
     def _refined(
-        self, knots: Knots, todo: np.ndarray, stick_time: Callable[[np.ndarray], np.ndarray]
+        self, knots: Knots, left: np.ndarray, stick_time: Callable[[np.ndarray], np.ndarray]
     ) -> tuple[Knots, np.ndarray]:
-        """More knots in the intervals right of some, and the intervals that need still more."""
-        k = np.searchsorted(knots.x, todo)
-        # What lies in the future of a jump, wherever it is in its interval, needs no knots.
-        ends, spans = knots.fast_ends(k)
+        """More knots in some intervals, and the left ends of the intervals to look at next."""
+        k = self._before_jumps(knots, np.searchsorted(knots.x, left))
+        jumps, at_end = knots.jumps(k), knots.of_kinds(k, FAST, SLIDES)
+        size, scale = self.part.curve.edges[-1] - self.part.curve.edges[0], self.part.scale
+        short = np.full(k.size, SHORTEST * scale)
+        short[at_end | knots.brief(k)] = AT_END * scale
+        short[jumps] = LOCATED * size
+        long = knots.x[k + 1] - knots.x[k] > short
+        cut = k[long & (jumps | at_end)]
+        halved = k[long & ~jumps & ~at_end]
+        pieces = np.linspace(knots.x[cut], knots.x[cut + 1], CUTS + 1)[:-1]
+        middle = 0.5 * (knots.x[halved] + knots.x[halved + 1])
+        x = np.append(pieces[1:].ravel(), middle)
+        found = self._knots_of(x, stick_time(x))
+        surprise = ~knots.predict(halved, found.those(slice(x.size - middle.size, None)))
+        halves = np.append(knots.x[halved[surprise]], middle[surprise])
+        refined, pieces = knots.joined(found), pieces.ravel()
+        k = np.searchsorted(refined.x, pieces)
+        rough = refined.jumps(k) | refined.of_kinds(k, FAST, SLIDES)
+        return refined, np.append(halves, pieces[rough])
+
+    def _before_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
+        """Intervals without those in the future of a jump, wherever it is in its interval."""
+        ends, lengths = knots.fast_ends(k)
         sides = np.array([k, k + 1])[..., None]
         earliest = knots.stick[sides] - np.abs(knots.x[sides] - knots.x[ends])
-        k = k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * spans).all(axis=1)]
-        rough, least = knots.jumps(k), np.full(k.size, SHORTEST * self.part.scale)
-        least[rough] = LOCATED * (self.part.curve.edges[-1] - self.part.curve.edges[0])
-        ends = ~rough & knots.of_kinds(k, FAST, SLIDES)
-        brief = (knots.kind[k] == BRIEF) | (knots.kind[k + 1] == BRIEF)
-        least[ends | brief] = AT_END * self.part.scale
-        long = knots.x[k + 1] - knots.x[k] > least
-        smooth, rough = k[long & ~rough & ~ends], k[long & (rough | ends)]
-        cuts = np.linspace(knots.x[rough], knots.x[rough + 1], CUTS + 1)[:-1]
-        middle = 0.5 * (knots.x[smooth] + knots.x[smooth + 1])
-        x = np.append(cuts[1:].ravel(), middle)
-        found = self._knots_of(x, stick_time(x))
-        surprise = ~self._predicted(knots, smooth, found.those(slice(cuts[1:].size, None)))
-        new = knots.joined(found)
-        halves = np.append(knots.x[smooth[surprise]], middle[surprise])
-        pieces = cuts.ravel()
-        k = np.searchsorted(new.x, pieces)
-        return new, np.append(halves, pieces[new.jumps(k) | new.of_kinds(k, FAST, SLIDES)])
-
-    def _predicted(self, knots: Knots, k: np.ndarray, middle: Knots) -> np.ndarray:
-        """Mask of the intervals whose ends predict the knot in the middle."""
-        same = (knots.kind[k] == middle.kind) & (knots.kind[k + 1] == middle.kind)
-        half = middle.x - knots.x[k]
-        slope = 0.75 * (knots.stick[k + 1] - knots.stick[k]) / half
-        slope -= 0.25 * (knots.pace[k] + knots.pace[k + 1])
-        near = np.abs(middle.stick - knots.stick_between(k, middle.x)) <= 2.0 * PREDICTED * half
-        near &= np.abs(middle.pace - slope) <= PREDICTED_SLOPE
-        slides = ~middle.may_stick(knots.those(k)) & ~middle.may_stick(knots.those(k + 1))
-        return same & np.choose(middle.kind, [slides, near, True, True])
+        return k[(earliest.min(axis=0) < knots.stick[ends] + 2.0 * lengths).all(axis=1)]
 
     def about(self, x: np.ndarray) -> np.ndarray:
         """Stick times to a fraction of the distance of knots; the end for none."""
         knots = self.knots
-        k = np.clip(np.searchsorted(knots.x, x, side="right") - 1, 0, knots.x.size - 2)
+        k = knots.interval(x)
         fast = knots.of_kinds(k, FAST, FAST)
         return np.where(fast, knots.stick_between(k, x), np.interp(x, knots.x, knots.stick))
 
@@ -236,11 +246,10 @@ class TrailingEdge:
         until = self.part.until
         if knots.x.size < 2:
             return self.part.search(x)
-        k = np.clip(np.searchsorted(knots.x, x, side="right") - 1, 0, knots.x.size - 2)
+        k = knots.interval(x)
         inside = (x >= knots.x[0]) & (x <= knots.x[-1])
-        out = self._between_knots(
-            knots, x, k, inside & knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
-        )
+        fast = knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
+        out = self._between_knots(knots, x, k, inside & fast)
         # A position that slides at the end, as both knots do, has not stuck.
         slides = np.flatnonzero(inside & knots.of_kinds(k, SLIDES, SLIDES))
         slides = slides[self.part.velocity(x[slides], np.full(slides.size, until)) > 0.0]
@@ -255,8 +264,8 @@ class TrailingEdge:
         span = knots.x[k + 1] - knots.x[k]
         s = (x - knots.x[k]) / span
         guess = knots.stick_between(k, x)
-        rate = knots.by_xi + knots.by_eta
-        rate = rate[k] * (1.0 - s) + rate[k + 1] * s
+        acceleration = knots.by_xi + knots.by_eta
+        acceleration = acceleration[k] * (1.0 - s) + acceleration[k + 1] * s
         out, time = np.full(x.shape, np.nan), guess.copy()
         velocity, step = np.zeros(x.shape), np.zeros(x.shape)
         todo = np.flatnonzero(wanted)
@@ -267,17 +276,17 @@ class TrailingEdge:
             last = step[todo]
             # Secants follow the first step.
             secant = (earlier - velocity[todo]) / np.where(last == 0.0, np.nan, last)
-            rate[todo] = np.where(np.abs(last) > STEP, secant, rate[todo])
-            step[todo] = velocity[todo] / rate[todo]
+            acceleration[todo] = np.where(np.abs(last) > STEP, secant, acceleration[todo])
+            step[todo] = velocity[todo] / acceleration[todo]
             time[todo] -= step[todo]
             good = np.abs(time[todo] - guess[todo]) <= 0.05 * span[todo]
             size, before = np.abs(step[todo]), np.where(last == 0.0, 1.0, np.abs(last))
-            done = good & ((size < STEP) | (size * before < STEP * SHORTEST * span[todo]))
+            done = good & ((size < STEP) | (size * before < NEXT_STEP * span[todo]))
             out[todo[done]] = time[todo[done]]
             todo = todo[good & ~done]
         return out
 
-    def violations(self) -> list[Point]:
+    def slow_points(self) -> list[Point]:
         """Points of the trailing edge where it does not outrun the waves."""
         knots = self.knots
         ends, _ = knots.fast_ends(np.arange(knots.x.size - 1))
