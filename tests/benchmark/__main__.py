@@ -29,7 +29,7 @@ from slippulse.solver.fixed_step import FixedStepLattice
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.solution import solve_on_lattice
 from slippulse.theory.front_speeds import front_speed as exact_speed
-from slippulse.theory.front_speeds import steady_pulse
+from slippulse.theory.pulse import steady_pulse
 
 from . import stencils
 

@@ -7,8 +7,6 @@ import pytest
 
 from slippulse.theory.weakening import (
     undamped_weakening_slip,
-    weakening_front_coefficient,
-    weakening_front_speed,
     weakening_pulse,
 )
 
@@ -59,20 +57,6 @@ def test_slip_does_not_depend_on_damping():
     # Lengths scale with (beta v)^(1/3), and so does every term.
     slips = [weakening_pulse(0.5, GAMMA, beta, 0.2).slip for beta in (0.02, 0.05, 0.3)]
     np.testing.assert_allclose(slips, slips[0], rtol=1e-9)
-
-
-@pytest.mark.parametrize(("tau0", "a"), [(0.2, 0.15448), (0.5, 0.43475), (0.8, 0.8419)])
-def test_coefficient_without_springs(tau0, a):
-    assert weakening_front_coefficient(tau0) == pytest.approx(a, rel=1e-4)
-
-
-@pytest.mark.parametrize("tau0", [0.3, 0.5, 0.8])
-def test_weak_springs_give_the_front_without_springs(tau0):
-    # Springs matter over the width of a pulse, which is long against the weakening zone.
-    free = weakening_front_speed(tau0, 0.05, 0.05)
-    errors = [weakening_pulse(tau0, gamma, 0.05, 0.05).speed / free - 1.0 for gamma in (1e-2, 1e-3)]
-    assert abs(errors[1]) < 0.5 * abs(errors[0])
-    assert abs(errors[1]) < 1e-2
 
 
 def test_undamped_slip_releases_the_fracture_energy():

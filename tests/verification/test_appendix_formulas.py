@@ -13,7 +13,7 @@ from scipy.linalg import expm
 from scipy.special import j0
 
 from slippulse import Prestress, theory
-from slippulse.theory import Layer, damage_zone_stress_drop, front_speed_undamped, paper_pulse
+from slippulse.theory import damage_zone_stress_drop, front_speed_undamped, paper_pulse
 
 
 def symbol(k: complex, v: float, b: float) -> complex:
@@ -103,6 +103,61 @@ def test_the_left_front_takes_for_ever():
 # The algebra of the paper: each formula over the one derived from its equations, at random layers
 # of rock. Number of layers and seed; degree of the polynomials that stand for any displacement.
 LAYERS, SEED, DEGREE = 200, 20210501, 4
+
+
+@dataclasses.dataclass(frozen=True)
+class Layer:
+    """An elastic layer on a rigid substrate: sections II and IV A and appendix B of the paper."""
+
+    thickness: float
+    density: float
+    lame: float
+    shear_modulus: float
+    static_friction: float
+    kinetic_friction: float
+    normal_stress: float
+
+    @property
+    def modulus(self) -> float:
+        return self.lame + 2.0 * self.shear_modulus
+
+    @property
+    def gamma(self) -> float:
+        return 2.0 * self.shear_modulus / self.modulus
+
+    @property
+    def wave_speed(self) -> float:
+        return np.sqrt(self.modulus / self.density)
+
+    @property
+    def time_scale(self) -> float:
+        return self.thickness / self.wave_speed
+
+    @property
+    def friction_drop(self) -> float:
+        return (self.static_friction - self.kinetic_friction) * self.normal_stress
+
+    def slip_scale(self, boundary: str) -> float:
+        factor = 2.0 if boundary == "displacement" else 1.0
+        return factor * self.thickness * self.friction_drop / self.modulus
+
+    def prestress(self, shear_stress: float) -> float:
+        excess = shear_stress / self.normal_stress - self.kinetic_friction
+        return excess / (self.static_friction - self.kinetic_friction)
+
+    def peak_velocity(self) -> float:
+        """Peak of the paper's pulse, derived from the scales: twice the printed one."""
+        return self.slip_scale("displacement") / self.time_scale / np.sqrt(self.gamma)
+
+    def printed_peak_velocity(self) -> float:
+        """The peak as printed in section IV A of the paper."""
+        return self.friction_drop / np.sqrt(2.0 * self.shear_modulus * self.density)
+
+    def transition_length(self, front_speed: float) -> float:
+        return 2.0 * np.pi * self.thickness / np.sqrt(self.gamma) * front_speed
+
+    def pulse_width(self, tau0: float, front_speed: float) -> float:
+        return np.pi * tau0 * self.thickness / np.sqrt(self.gamma) * front_speed
 
 
 def random_layers():

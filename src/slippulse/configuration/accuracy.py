@@ -18,7 +18,7 @@ from ..model.prestress import Prestress
 from ..model.scene import RELEASES, Scene
 from ..model.stability import chosen_step
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import pulse_behind_front
+from ..theory.pulse import steady_pulse
 from .expand import promise_of, runs
 from .problems import ConfigError
 
@@ -177,7 +177,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
             continue
         speed = cached_front_speed(level, demand.damping_ratio, demand.release)
         # In the limit dx -> 0 damping acts through the speed alone.
-        width = pulse_behind_front(level, demand.gamma, 0.0, speed).width
+        width = steady_pulse(level, demand.gamma, 0.0, speed).width
         layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
         speed_error = math.sqrt(demand.error / (SPEED + SPEED_LAYER * layer * speed))
         spacings += [width / BLOCKS, width * speed_error]

@@ -9,7 +9,7 @@ from ..model.cost import Bound, bound_of
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import pulse_behind_front
+from ..theory.pulse import steady_pulse
 from .accuracy import promised
 from .expand import expand, run_count
 from .resolve import accuracy_of, all_simulations, corners, resolve
@@ -90,7 +90,7 @@ def _pulse_blocks(scene: Scene) -> float:
         return math.inf
     try:
         speed = float(front_speed(level, scene.damping_ratio, scene.release))
-        return pulse_behind_front(level, scene.gamma, scene.beta, speed).width / scene.dx
+        return steady_pulse(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):
         return math.inf
 

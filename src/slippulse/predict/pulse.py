@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from ..model.scene import Scene
-from ..theory.pulse import SteadyPulse, paper_pulse, pulse_behind_front
+from ..theory.pulse import SteadyPulse, paper_pulse, steady_pulse
 from .front import exact_speeds
 from .numbers import NAN, known, level
 
@@ -38,7 +38,7 @@ def _exact(scene: Scene, side: str, speed: float) -> SteadyPulse | None:
     """Steady pulse on a side, where its front outruns the waves."""
     if scene.boundary != "displacement" or not speed > 1.0:
         return None
-    return known(lambda: pulse_behind_front(level(scene, side), scene.gamma, scene.beta, speed))
+    return known(lambda: steady_pulse(level(scene, side), scene.gamma, scene.beta, speed))
 
 
 def _acceleration(pulse: SteadyPulse) -> float:

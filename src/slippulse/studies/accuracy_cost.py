@@ -22,7 +22,8 @@ from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_speeds import front_speed as exact_speed
-from ..theory.front_speeds import front_speed_undamped, steady_pulse
+from ..theory.front_speeds import front_speed_undamped
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 

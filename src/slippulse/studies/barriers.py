@@ -11,8 +11,7 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.solution import solve_on_lattice
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
-from ..theory.front_speeds import steady_pulse
-from ..theory.pulse import SteadyPulse
+from ..theory.pulse import SteadyPulse, steady_pulse
 
 NEEDS = {}  # type: dict[str, list[str]]
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -13,8 +14,9 @@ from ..model.scene import RELEASES
 from ..predict.numbers import or_nan
 from ..simulation.exact_rupture import exact_rupture
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
-from ..theory.front_motion import admissibility_table
-from ..theory.front_speeds import front_speed, steady_pulse
+from ..theory.front_motion import steady_front
+from ..theory.front_speeds import front_speed
+from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
 from .gaussian_transition import over_paper
 
@@ -47,7 +49,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)
     # It is undamped, at the speed with damping.
     pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
-    fronts = pd.concat([pd.DataFrame(admissibility_table(*FOLLOWED, rule)) for rule in RELEASES])
+    fronts = [steady_front(*keys) for keys in product(*FOLLOWED, RELEASES)]
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
         "pulse_width": lambda: pulse().width,
@@ -72,7 +74,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         # The curvature of slip at the nucleation point, halfway to the transition; tau is 1 there.
         "strain_term": lambda: abs(float(rupture().strain(STEP, halfway())) / STEP),
         "fronts_block_by_block": lambda: len(fronts),
-        "fronts_admissible": lambda: int(fronts["admissible"].sum()),
+        "fronts_admissible": lambda: sum(front.admissible for front in fronts),
     }
     rows = [(name, math.nan, or_nan(find)) for name, find in numbers.items()]
     for name in ("release_time", "stick_time", "final_slip"):

@@ -24,7 +24,7 @@ from ..theory.exact_transition import exact_transition_displacement
 from ..theory.front_speeds import front_speed as exact_speed
 from ..theory.front_speeds import lattice_front_speed
 from ..theory.fronts import Fronts
-from ..theory.pulse import pulse_behind_front
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window"]}
 
@@ -144,7 +144,7 @@ def level_near_zero() -> Iterator[Edge]:
         (0.01, 0.4, 60.0, "flagged"),
         (0.01, 0.01, 60.0, "flagged"),
     ):
-        slip = pulse_behind_front(level, GAMMA, RATIO * dx, speed(level)).slip
+        slip = steady_pulse(level, GAMMA, RATIO * dx, speed(level)).slip
         setup = Setup(dx, duration, level, width=max(0.02, dx))
         yield Edge(f"tau_0 = {level:g}, dx = {dx:g}", "final slip", should, slip, setup)
 

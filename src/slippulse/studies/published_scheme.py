@@ -8,7 +8,7 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_speeds import steady_pulse
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window"]}
 

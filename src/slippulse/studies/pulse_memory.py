@@ -7,7 +7,7 @@ import pandas as pd
 
 from ..configuration.expand import expand
 from ..simulation.exact_rupture import exact_rupture
-from ..theory.front_speeds import steady_pulse
+from ..theory.pulse import steady_pulse
 
 # The curves have the parameters of this simulation.
 NEEDS = {"sweeps": ["pulses_across_a_step"]}

@@ -7,7 +7,7 @@ from scipy.integrate import cumulative_trapezoid
 from ..configuration.expand import expand
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
-from ..theory.front_speeds import steady_pulse
+from ..theory.pulse import steady_pulse
 
 NEEDS = {"sweeps": ["steady_displacement", "steady_stress"]}
 

@@ -27,9 +27,7 @@ class ArrestingCrack:
     prestress : Prestress, tau(0) = 1, level 0 far to the right and negative far to the left
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
 
-    Raises
-    ------
-    ValueError : outside these ranges; of every method, outside those that it states
+    Raises ValueError: outside these ranges; of every method, outside those that it states.
 
     Examples
     --------
@@ -50,16 +48,7 @@ class ArrestingCrack:
         self.zero = -float(self.fronts.ends[-1.0])
 
     def entry_for(self, position: float) -> float:
-        """Entry point of the characteristic that ends on the slow left front at a position.
-
-        Parameters
-        ----------
-        position : float, between x_minus and the zero x* of the pre-stress
-
-        Returns
-        -------
-        float : e, to the right of x*
-        """
+        """Where the characteristic that ends on the left front, from x_minus to x*, entered."""
         check_number("position", position, above=self.balance_position, at_most=self.zero)
         last = self.end - 1e-9
         if self.prestress.integral(position, last) <= 0.0:
@@ -75,16 +64,7 @@ class ArrestingCrack:
         return root_between(balance, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
-        """Time when the left front reaches a position.
-
-        Parameters
-        ----------
-        position : float, in (x_minus, 0]
-
-        Returns
-        -------
-        float
-        """
+        """Time when the left front reaches a position, in (x_minus, 0]."""
         check_number("position", position, above=self.balance_position, at_most=0.0)
         if position >= self.zero:
             return float(self.fronts.arrival(position))
@@ -92,30 +72,12 @@ class ArrestingCrack:
         return entry + float(self.fronts.arrival(entry)) - position
 
     def time_at_fraction(self, fraction: float) -> float:
-        """Time when the left front has covered a fraction of |x_minus|.
-
-        Parameters
-        ----------
-        fraction : float, in (0, 1)
-
-        Returns
-        -------
-        float
-        """
+        """Time when the left front has covered a fraction, in (0, 1), of |x_minus|."""
         check_number("fraction", fraction, above=0.0, below=1.0)
         return self.time_at(fraction * self.balance_position)
 
     def length_at_fraction(self, fraction: float) -> float:
-        """Distance between the fronts at `time_at_fraction`.
-
-        Parameters
-        ----------
-        fraction : float, in (0, 1)
-
-        Returns
-        -------
-        float
-        """
+        """Distance between the fronts at `time_at_fraction`."""
         time = self.time_at_fraction(fraction)
         last = float(self.fronts.curve.edges[-1])
         last_time = float(self.fronts.curve.edge_times[-1])
@@ -128,15 +90,9 @@ class ArrestingCrack:
         return 0.5 * self.prestress.integral(self.zero, self.end)
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
-        """The pulse that runs far to the right, by its characteristics.
+        """Arrays of x - t and du/dt on the characteristics of the pulse that runs far to the right.
 
-        Parameters
-        ----------
-        count : int, points of each third, 2 to 10000
-
-        Returns
-        -------
-        tuple of arrays : x - t of the characteristics, and du/dt on them
+        count points, 2 to 10000, are on each of three parts.
         """
         check_number("count", count, integer=True, at_least=2, at_most=10_000)
         right = np.linspace(2.0 * self.reach, 0.0, count)

@@ -11,7 +11,7 @@ from .curve import Curve, Panel
 from .domains import check_domains
 from .fast_front import straight_panel
 from .front_speeds import front_speed
-from .pulse import pulse_behind_front
+from .pulse import steady_pulse
 from .slow_front import advance
 
 # Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
@@ -82,7 +82,7 @@ def barrier_depth(
 
 def _steady_front(tau0: float, speed: float) -> list[Panel]:
     """Panels of a front that comes to x = 0 at gamma = 1, as far back as its pulse remembers."""
-    memory = MEMORY * pulse_behind_front(tau0, 1.0, 0.0, speed).width / (speed - 1.0) * speed
+    memory = MEMORY * steady_pulse(tau0, 1.0, speed=speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
     return [

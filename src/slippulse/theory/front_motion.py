@@ -8,11 +8,10 @@ comes to rest before the next one is released.
 """
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
-from ..model.checks import as_numbers, check_choice, check_number
+from ..model.checks import check_choice, check_number
 from ..model.scene import RELEASES
 
 # Velocity and stress are known at this number of substeps of a period.
@@ -70,9 +69,7 @@ def steady_front(
     -------
     SteadyFront
 
-    Raises
-    ------
-    ValueError : outside these ranges
+    Raises ValueError: outside these ranges.
 
     Examples
     --------
@@ -121,44 +118,3 @@ def steady_front(
         velocity=tau * velocity[:-1, :trusted].T.ravel(),
         ahead=tau * ahead,
     )
-
-
-def admissibility_table(speeds, ratios, springs, release: str = "total") -> list[dict]:
-    """Admissibility of the `steady_front` at each speed, damping ratio and leaf springs.
-
-    Parameters
-    ----------
-    speeds, ratios, springs : floats or arrays, as speed, damping_ratio, springs of `steady_front`
-    release : "total" or "elastic"
-
-    Returns
-    -------
-    list of dicts : of each front its arguments, the pre-stress, the largest stress_ahead before the
-        release, the first rest behind the front (blocks), and whether it is admissible
-
-    Raises
-    ------
-    ValueError : outside the ranges of `steady_front`
-
-    Examples
-    --------
-    >>> [row["admissible"] for row in admissibility_table(1.5, [0.0, 0.1], 0.01)]
-    [True, True]
-    """
-    axes = {"springs": springs, "ratios": ratios, "speeds": speeds}
-    numbers = [as_numbers(name, values).flat for name, values in axes.items()]
-    rows = []
-    for g, b, v in product(*numbers):
-        front = steady_front(v, b, g, release)
-        row = {
-            "speed": v,
-            "damping_ratio": b,
-            "springs": g,
-            "release": release,
-            "prestress": front.prestress,
-            "stress_ahead": float(front.ahead[:-1].max()),
-            "rest": front.first_rest,
-            "admissible": front.admissible,
-        }
-        rows.append(row)
-    return rows

@@ -11,11 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.checks import check_choice, check_number, check_runaway
+from ..model.checks import as_numbers, check_choice, check_number, check_runaway
 from ..model.roots import increasing_roots
 from ..model.scene import RELEASES
 from .domains import DOMAINS, broadcast_numbers, check_domains
-from .pulse import SteadyPulse, front_speed_undamped, pulse_behind_front
 from .wiener_hopf import log_prestress
 
 LARGEST_RATIO = DOMAINS["damping_ratio"]["at_most"]
@@ -32,8 +31,9 @@ SLOWEST, FASTEST = -80.0, 280.0
 SLOWEST_MARGIN = 1e-6
 # This number of elements is solved at once, which bounds the memory.
 CHUNK = 128
-# The least pre-stress is searched at SCAN speeds in a range that is narrowed as often.
-SCAN, NARROWINGS = 64, 6
+# The least pre-stress is searched at this number of speeds, then NARROWINGS times around the lowest
+# at so many more.
+SCAN, NARROWER_SCAN, NARROWINGS = 64, 17, 6
 
 
 class Lattice(NamedTuple):
@@ -47,6 +47,27 @@ class Lattice(NamedTuple):
     def log_prestress(self, x: np.ndarray, ratio: np.ndarray) -> np.ndarray:
         """ln tau_0 of fronts at x = ln(v - 1)."""
         return log_prestress(np.exp(x), ratio, self.springs, self.release, self.drag)
+
+
+def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
+    """Front speed without damping, 1/sqrt(1 - tau_0^2). Source: section III A of the paper.
+
+    Parameters
+    ----------
+    tau0 : float or array in [0, 1), pre-stress ahead of the front
+
+    Returns
+    -------
+    float or array : front speed (wave speeds)
+
+    Raises ValueError: outside the domain.
+
+    Examples
+    --------
+    >>> round(float(front_speed_undamped(0.6)), 6)
+    1.25
+    """
+    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
@@ -66,9 +87,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     -------
     float or array : front speed (wave speeds)
 
-    Raises
-    ------
-    ValueError : outside the domain
+    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -105,9 +124,7 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     -------
     float or array : pre-stress tau_0
 
-    Raises
-    ------
-    ValueError : outside the domain
+    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -150,11 +167,9 @@ def lattice_front_speed(
     -------
     float : front speed (wave speeds)
 
-    Raises
-    ------
-    ValueError : outside these ranges, or where tau_0 is not above the least pre-stress of any front
-        faster than the waves and than sqrt(4 + gamma dx^2)/pi (where friction weakens with slip
-        velocity, so fast that slip behind it does not run away)
+    Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any
+    front faster than the waves and than sqrt(4 + gamma dx^2)/pi (where friction weakens with slip
+    velocity, so fast that slip behind it does not run away).
 
     Examples
     --------
@@ -202,9 +217,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     -------
     float : front speed (wave speeds)
 
-    Raises
-    ------
-    ValueError : outside these ranges, or where the front would not outrun the waves
+    Raises ValueError: outside these ranges, or where the front would not outrun the waves.
 
     Examples
     --------
@@ -224,47 +237,6 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + springs)))
 
 
-def steady_pulse(
-    tau0: float,
-    gamma: float,
-    beta: float = 0.0,
-    speed: float | None = None,
-    *,
-    damping_ratio: float | None = None,
-    release: str = "total",
-    rate_strengthening: float = 0.0,
-) -> SteadyPulse:
-    """Steady pulse in uniform pre-stress behind a front. Source: `pulse.pulse_behind_front`.
-
-    Parameters
-    ----------
-    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
-    beta : float, damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
-    speed : float, front speed (wave speeds), > 1, or None
-    damping_ratio, release : where speed is None it is that of `front_speed`
-    rate_strengthening : float, alpha of a term -alpha du/dt, at most `critical_rate_strengthening`
-        in size
-
-    Returns
-    -------
-    SteadyPulse
-
-    Raises
-    ------
-    ValueError : outside these ranges, or where the pulse is too large or small to be computed
-
-    Examples
-    --------
-    >>> round(steady_pulse(0.6, 0.65, speed=1.25).slip, 6)
-    1.846154
-    """
-    if (damping_ratio is None) == (speed is None):
-        raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
-    if speed is None:
-        speed = float(front_speed(tau0, damping_ratio, release))
-    return pulse_behind_front(tau0, gamma, beta, speed, rate_strengthening)
-
-
 def _slowed_by_weak_springs(speed: float, ratio: float, lattice: Lattice) -> float:
     """Speed with leaf springs g to first order in g/v^2, from the speed without.
 
@@ -279,8 +251,8 @@ def _slowed_by_weak_springs(speed: float, ratio: float, lattice: Lattice) -> flo
 def _least_prestress(tau0: float, lattice: Lattice) -> tuple[float, float]:
     """ln(v - 1) of a front, and the least pre-stress of fronts, which that front has.
 
-    Mostly the slowest front has it, and where tau_0 is above the pre-stress of the slowest front
-    there is one speed. Else the least one is searched for: it may be that of a faster front.
+    Where tau_0 is above the pre-stress of the slowest front, which mostly has the least one, there
+    is one speed.
     """
     if lattice.springs > LARGEST_SPRINGS:
         return 0.0, 1.0
@@ -302,12 +274,12 @@ def _fold(first: float, lattice: Lattice) -> tuple[float, float]:
     inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN - 1))
     x = np.concatenate([[first], inner])
     for _ in range(NARROWINGS + 1):
-        levels = lattice.log_prestress(x, np.full(x.size, ratio))
-        lowest = int(np.argmin(levels))
-        fold = float(x[lowest]), float(np.exp(levels[lowest]))
+        log_tau = lattice.log_prestress(x, np.full(x.size, ratio))
+        lowest = int(np.argmin(log_tau))
+        fold = float(x[lowest]), float(np.exp(log_tau[lowest]))
         if x[lowest] == first:
             break
-        x = np.linspace(x[max(lowest - 1, 0)], x[min(lowest + 1, x.size - 1)], SCAN // 4 + 1)
+        x = np.linspace(x[max(lowest - 1, 0)], x[min(lowest + 1, x.size - 1)], NARROWER_SCAN)
     return fold
 
 
@@ -316,16 +288,16 @@ def slowness_nearly_one(tau: np.ndarray, ratio: np.ndarray | float, release: str
 
     -ln tau = b/v + 1/(2 v^2) under rule "total", and 1/(2 v^2) under rule "elastic".
     """
-    level = -np.log(tau)
+    fall = -np.log(tau)
     damping = np.asarray(ratio) if release == "total" else 0.0
-    return 2.0 * level / np.maximum(damping + np.sqrt(damping**2 + 2.0 * level), 1e-300)
+    return 2.0 * fall / np.maximum(damping + np.sqrt(damping**2 + 2.0 * fall), 1e-300)
 
 
 def log_prestress_in_chunks(excess: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
     """`log_prestress` without leaf springs, in bounded memory."""
     parts = (slice(i, i + CHUNK) for i in range(0, excess.size, CHUNK))
-    levels = [log_prestress(excess[part], ratio[part], 0.0, release) for part in parts]
-    return np.concatenate(levels)
+    values = [log_prestress(excess[part], ratio[part], 0.0, release) for part in parts]
+    return np.concatenate(values)
 
 
 def first_guess(tau: np.ndarray, ratio: np.ndarray, release: str) -> np.ndarray:
@@ -346,9 +318,9 @@ def _speed(tau: np.ndarray, lattice: Lattice, slowest: float = SLOWEST) -> np.nd
 
     def mismatch(x: np.ndarray, which: np.ndarray) -> np.ndarray:
         """Difference in ln(tau/(1 - tau)), which is nearly linear in ln(v - 1)."""
-        level = lattice.log_prestress(x, lattice.ratio[which])
+        log_tau = lattice.log_prestress(x, lattice.ratio[which])
         # Where the stress is 1 to rounding, the front is faster than any target.
-        return level - np.log(np.maximum(-np.expm1(level), 1e-17)) - target[which]
+        return log_tau - np.log(np.maximum(-np.expm1(log_tau), 1e-17)) - target[which]
 
     low, high = np.full(tau.size, slowest), np.full(tau.size, FASTEST)
     guess = np.clip(first_guess(tau, lattice.ratio, lattice.release), low + 0.1, high - 1.0)

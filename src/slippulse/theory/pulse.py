@@ -9,36 +9,14 @@ from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_number
 from ..model.prestress import Prestress
 from .domains import check_domains
-
-
-def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2). Source: section III A of the paper.
-
-    Parameters
-    ----------
-    tau0 : float or array in [0, 1), pre-stress ahead of the front
-
-    Returns
-    -------
-    float or array : front speed (wave speeds)
-
-    Raises
-    ------
-    ValueError : outside the domain
-
-    Examples
-    --------
-    >>> round(float(front_speed_undamped(0.6)), 6)
-    1.25
-    """
-    return 1.0 / np.sqrt(1.0 - as_numbers("tau0", tau0, at_least=0.0, below=1.0) ** 2)
+from .front_speeds import front_speed, front_speed_undamped
 
 
 @dataclass(frozen=True)
 class SteadyPulse:
     """A steady pulse in units of H, with xi = x - v t <= 0 behind the front at xi = 0.
 
-    `steady_pulse`, `pulse_behind_front` and `paper_pulse` make one.
+    `steady_pulse` and `paper_pulse` make one.
 
     Parameters
     ----------
@@ -67,24 +45,9 @@ class SteadyPulse:
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Slip, slip velocity and slip acceleration: at rest ahead of the front and behind.
-
-        Parameters
-        ----------
-        xi : float or array, positions relative to the front (units of H)
-
-        Returns
-        -------
-        tuple of arrays of the shape of xi
-
-        Raises
-        ------
-        ValueError : if xi is not a finite number or an array of them
-        """
+        """Arrays of slip, slip velocity and slip acceleration, at rest outside of the pulse."""
         xi = as_numbers("xi", xi)
-        p = self.growth
-        q = self.wavenumber
-        v = self.speed
+        p, q, v = self.growth, self.wavenumber, self.speed
         inside = (xi <= 0.0) & (xi >= -self.width)
         y = np.where(inside, xi, 0.0)
         size = v * self.tau0 * (p**2 + q**2) / (self.gamma * q)
@@ -98,16 +61,43 @@ class SteadyPulse:
         return slip, velocity, acceleration
 
 
-def pulse_behind_front(
-    tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
+def steady_pulse(
+    tau0: float,
+    gamma: float,
+    beta: float = 0.0,
+    speed: float | None = None,
+    *,
+    damping_ratio: float | None = None,
+    release: str = "total",
+    rate_strengthening: float = 0.0,
 ) -> SteadyPulse:
-    """Steady pulse in uniform pre-stress behind a front of a given speed.
+    """Steady pulse in uniform pre-stress behind a front.
 
     Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the
     complex pair of roots. The real root, about -(v^2 - 1)/(beta v), grows away from the front and
     is dropped. alpha = beta = 0 gives appendix C of the paper before its last step, at any speed.
-    Arguments and errors are those of `front_speeds.steady_pulse`.
+
+    Parameters
+    ----------
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+    beta : float, damping, >= 0; 0 is the limit dx -> 0 at any damping ratio
+    speed : float, front speed (wave speeds), > 1, or None
+    damping_ratio, release : where speed is None it is that of `front_speed`
+    rate_strengthening : float, alpha of a term -alpha du/dt, at most `critical_rate_strengthening`
+        in size
+
+    Raises ValueError: outside these ranges, or where the pulse is too large or small to be
+    computed.
+
+    Examples
+    --------
+    >>> round(steady_pulse(0.6, 0.65, speed=1.25).slip, 6)
+    1.846154
     """
+    if (damping_ratio is None) == (speed is None):
+        raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
+    if speed is None:
+        speed = float(front_speed(tau0, damping_ratio, release))
     check_domains(tau0=tau0, gamma=gamma)
     check_number("beta", beta, at_least=0.0)
     check_number("speed", speed, above=1.0)
@@ -138,12 +128,12 @@ def _no_pulse(tau0: float, gamma: float, beta: float, speed: float, alpha: float
 
 @np.errstate(over="raise", invalid="raise", divide="raise")
 def _solution(tau0: float, gamma: float, beta: float, speed: float, alpha: float) -> SteadyPulse:
-    stiffness = (speed - 1.0) * (speed + 1.0)
+    inertia = (speed - 1.0) * (speed + 1.0)
     if beta == 0.0:
-        p = 0.5 * alpha * speed / stiffness
-        q = float(np.sqrt(gamma / stiffness - p**2))
+        p = 0.5 * alpha * speed / inertia
+        q = float(np.sqrt(gamma / inertia - p**2))
     else:
-        roots = np.roots([beta * speed, stiffness, -alpha * speed, gamma])
+        roots = np.roots([beta * speed, inertia, -alpha * speed, gamma])
         pair = roots[np.argmax(roots.imag)]
         p, q = float(pair.real), float(pair.imag)
     width = np.pi / q
@@ -168,9 +158,7 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
     -------
     float : alpha_c
 
-    Raises
-    ------
-    ValueError : outside the domain
+    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -193,9 +181,7 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     -------
     SteadyPulse : of speed 1/sqrt(1 - tau_0^2) and peak velocity 1/sqrt(gamma)
 
-    Raises
-    ------
-    ValueError : outside the domain
+    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -203,7 +189,7 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     2.0
     """
     check_domains(tau0=tau0)
-    return pulse_behind_front(tau0, gamma, 0.0, float(front_speed_undamped(tau0)))
+    return steady_pulse(tau0, gamma, speed=float(front_speed_undamped(tau0)))
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
@@ -219,9 +205,7 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
     -------
     tuple of floats : T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2)
 
-    Raises
-    ------
-    ValueError : outside the domain
+    Raises ValueError: outside the domain.
 
     Examples
     --------

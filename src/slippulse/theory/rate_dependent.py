@@ -43,25 +43,14 @@ class RatePulse:
 def rate_pulse(tau0: float, gamma: float, damping_ratio: float, friction: Friction) -> RatePulse:
     """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
 
+    Source: derived in the supplement, section on friction that depends on slip rate.
+
     Parameters
     ----------
-    tau0, gamma, damping_ratio : float
-        Pre-stress in (0, 1), elasticity ratio, > 0, and beta/dx, >= 0.
-    friction : Friction
-        Law that is 0 at rest and does not depend on slip.
+    tau0, gamma, damping_ratio : floats, pre-stress, in (0, 1), gamma > 0, and beta/dx, >= 0
+    friction : Friction, a law that is 0 at rest and does not depend on slip
 
-    Returns
-    -------
-    RatePulse
-
-    Raises
-    ------
-    ValueError
-        Outside the domain.
-
-    Notes
-    -----
-    Derived in the supplement, section on friction that depends on slip rate.
+    Raises ValueError: outside the domain.
 
     Examples
     --------

@@ -11,7 +11,6 @@ sticks, or at which the growing exponential is absent.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,10 +50,10 @@ class WeakeningPulse:
 
 
 class _Exponentials:
-    """Solution of b U''' + k U'' + stiffness U = load, by its values U, U', U'' at xi = 0."""
+    """Solution of b U''' + inertia U'' + stiffness U = load, by U, U', U'' at xi = 0."""
 
-    def __init__(self, b: float, k: float, stiffness: float, load: float, start: np.ndarray):
-        self.exponents = np.sort_complex(np.roots([b, k, 0.0, stiffness]))
+    def __init__(self, b: float, inertia: float, stiffness: float, load: float, start: np.ndarray):
+        self.exponents = np.sort_complex(np.roots([b, inertia, 0.0, stiffness]))
         self.rest = load / stiffness
         powers = np.vander(self.exponents, 3, increasing=True).T
         self.sizes = np.linalg.solve(powers, start - np.array([self.rest, 0.0, 0.0]))
@@ -74,10 +73,10 @@ class _Exponentials:
 
 
 def _weakening_zone(
-    b: float, k: float, gamma: float, tau0: float, weakening: float
+    b: float, inertia: float, gamma: float, tau0: float, weakening: float
 ) -> tuple[_Exponentials, float]:
     """U in the zone where friction weakens, and its end; -inf where slip velocity ends first."""
-    zone = _Exponentials(b, k, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
+    zone = _Exponentials(b, inertia, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
     xi = zone.samples()
     weak = zone.at(xi) >= weakening
     stopped = zone.at(xi, 1) >= 0.0
@@ -100,12 +99,12 @@ class _Tail:
 
 def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) -> _Tail | None:
     """Tail behind the weakening zone at a trial speed; None where the slip stops in that zone."""
-    b, k = beta * v, (v - 1.0) * (v + 1.0)
-    zone, end = _weakening_zone(b, k, gamma, tau0, weakening)
+    b, inertia = beta * v, (v - 1.0) * (v + 1.0)
+    zone, end = _weakening_zone(b, inertia, gamma, tau0, weakening)
     if end == -math.inf:
         return None
     start = np.array([float(zone.at(end, n)) for n in range(3)])
-    tail = _Exponentials(b, k, gamma, tau0, start)
+    tail = _Exponentials(b, inertia, gamma, tau0, start)
     xi = tail.samples()
     velocity, curvature = -tail.at(xi, 1), tail.at(xi, 2)
     stopped = velocity <= 0.0
@@ -123,28 +122,19 @@ def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) ->
 def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> WeakeningPulse:
     """Steady rupture in uniform pre-stress, its speed selected by slip weakening and damping.
 
+    Source: derived in the supplement, section on friction laws.
+
     Parameters
     ----------
-    tau0, gamma : float
-        Pre-stress in (0, 1), and elasticity ratio, > 0.
-    beta : float
-        Damping, > 0, in units of H times the wave speed.
-    weakening : float
-        Slip d_c over which friction falls from 1 to 0, in units of U, > 0 and < 1/gamma.
+    tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+    beta : float, damping, > 0 (H times the wave speed)
+    weakening : float, slip d_c over which friction falls from 1 to 0 (U), > 0 and < 1/gamma
 
     Returns
     -------
-    WeakeningPulse
-        The slowest steady rupture; roots of the conditions need not be unique.
+    WeakeningPulse : the slowest steady rupture; roots of the conditions need not be unique
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, or where no steady rupture has a speed between 0.05 and 50.
-
-    Notes
-    -----
-    Derived in the supplement, section on friction laws.
+    Raises ValueError: outside the domain, or where no steady rupture has a speed of 0.05 to 50.
 
     Examples
     --------
@@ -187,105 +177,20 @@ def _decays(tail: _Exponentials) -> bool:
     return bool(tail.sizes[1].real < 0.0)
 
 
-def weakening_front_coefficient(tau0: float) -> float:
-    """A of v^2 - 1 = A (beta v)^(2/3) d_c^(-1/3), for a front without leaf springs.
-
-    Parameters
-    ----------
-    tau0 : float
-        Pre-stress in (0, 1).
-
-    Returns
-    -------
-    float
-        A, so that the front outruns the waves by any d_c, the more the smaller d_c is.
-
-    Raises
-    ------
-    ValueError
-        Outside the domain.
-
-    Notes
-    -----
-    In units of (beta v d_c)^(1/3) and d_c the equation is U''' + A U'' - U = tau_0 - 1 up to U = 1;
-    behind that A U'' = tau_0 where the growing exponential is absent.
-
-    Examples
-    --------
-    >>> round(weakening_front_coefficient(0.5), 4)
-    0.4348
-    """
-    check_domains(tau0=tau0)
-
-    def excess(a: float) -> float:
-        zone, end = _weakening_zone(1.0, a, 0.0, tau0, 1.0)
-        return -1.0 if end == -math.inf else a * float(zone.at(end, 2)) - tau0
-
-    return _root_above(excess, 1e-6)
-
-
-def _root_above(function: Callable[[float], float], lower: float) -> float:
-    """Root of a function that is negative at a lower end and positive somewhere above."""
-    upper = 2.0 * lower
-    while function(upper) < 0.0:
-        lower, upper = upper, 2.0 * upper
-    return root_between(function, lower, upper)
-
-
-def weakening_front_speed(tau0: float, beta: float, weakening: float) -> float:
-    """Speed of a front without leaf springs, in wave speeds, by slip weakening and damping.
-
-    Parameters
-    ----------
-    tau0, beta, weakening : float
-        As in `weakening_pulse`.
-
-    Returns
-    -------
-    float
-        v > 1, from v^2 - 1 = A (beta v)^(2/3) d_c^(-1/3).
-
-    Raises
-    ------
-    ValueError
-        Outside the domain.
-
-    Notes
-    -----
-    See `weakening_front_coefficient`.
-
-    Examples
-    --------
-    >>> round(weakening_front_speed(0.5, 0.05, 0.1), 4)
-    1.06
-    """
-    check_number("beta", beta, above=0.0)
-    check_number("weakening", weakening, above=0.0)
-    factor = weakening_front_coefficient(tau0) * (beta**2 / weakening) ** (1.0 / 3.0)
-    return _root_above(lambda v: (v - 1.0) * (v + 1.0) - factor * v ** (2.0 / 3.0), 1.0)
-
-
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
     """Final slip of an undamped pulse on a lattice, (tau_0 + sqrt(tau_0^2 - gamma d_c))/gamma.
 
+    Source: the energy tau_0 u - gamma u^2/2 that the layer releases is its fracture energy d_c/2.
+
     Parameters
     ----------
-    tau0, gamma, weakening : float
-        As in `weakening_pulse`, with gamma d_c <= tau_0^2.
+    tau0, gamma, weakening : floats, as in `weakening_pulse`, with gamma d_c <= tau_0^2
 
     Returns
     -------
-    float
-        Slip in units of U.
+    float : slip (U)
 
-    Raises
-    ------
-    ValueError
-        Outside the domain, also where the fracture energy d_c/2 is more than the pulse releases.
-
-    Notes
-    -----
-    The energy tau_0 u - gamma u^2/2 that the layer releases is its fracture energy d_c/2.
+    Raises ValueError: outside the domain, also where d_c/2 is more than the pulse releases.
 
     Examples
     --------
