@@ -1,4 +1,4 @@
-"""No edge of the solver's domain ends in a wrong number without a flag."""
+"""No limit of the solver's domain gives a wrong number without a flag."""
 
 import math
 
@@ -7,10 +7,11 @@ import pytest
 from slippulse.report.tables import edges
 from slippulse.solver.lattice import UnstableRun
 from slippulse.studies import extremes
-from slippulse.studies.extremes import Edge, Outcome, Setup
+from slippulse.studies.extreme_cases import Case
+from slippulse.studies.extremes import Outcome
 
 WRONG = "WRONG WITHOUT A FLAG"
-# Each family, its number of edges, and the value at its last edge.
+# Each family, its number of cases, and where its last case is.
 FAMILIES = {
     "level near 1": (3, "tau_0 = 0.9999"),
     "level near 0": (6, "tau_0 = 0.01, dx = 0.01"),
@@ -45,17 +46,18 @@ FAMILIES = {
     ],
 )
 def test_the_verdict_is_computed(monkeypatch, expected, outcome, verdict):
-    def measured(edge, window):
+    def measured(case, window):
         if isinstance(outcome, Exception):
             raise outcome
         return outcome
 
     monkeypatch.setattr(extremes, "measured", measured)
-    edge = Edge("value", "front speed", "right", expected, Setup(0.1, 1.0))
-    assert extremes.row("family", edge, 0.3)["verdict"] == verdict
+    monkeypatch.setattr(Case, "expected", lambda case: expected)
+    case = Case("family", "where", "front speed", "right", 0.1, 1.0)
+    assert extremes.row(case, 0.3)["verdict"] == verdict
 
 
-def test_every_edge_ends_as_it_should(study):
+def test_every_case_ends_as_it_should(study):
     table = study("extremes")
     others = table[table["verdict"] != table["should"]]
     assert others.empty, others.to_string()
