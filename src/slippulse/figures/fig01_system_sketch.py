@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .shared.sketch import BOTH, arrow, label
+from .shared.sketch import BOTH, MUTED, arrow, label
 from .style import BLACK, BLUE, COLUMN, ORANGE, Look, new_panels
 
 NEEDS = {"data": ()}
@@ -21,7 +21,7 @@ DISPLACEMENT = 0.5
 # Position of the strip, and of displacement 0.
 STRIP, REST = 1.68, 2.38
 LENGTHS = ["y", "displacement", "strip_width"]
-RED, MUTED = "#c00000", "0.25"
+RED = "#c00000"
 HATCHED: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 

@@ -6,7 +6,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.patches import Polygon
-from matplotlib.path import Path as Outline
 
 from ..data.numerals import setting
 from ..model.prestress import Prestress
@@ -88,13 +87,10 @@ def draw_symmetric(figure: SubFigure, table: pd.DataFrame) -> None:
     for axes, boundary in zip(panels, BOUNDARIES, strict=True):
         rows = table[table["boundary"] == boundary]
         for level in (-0.5, 0.5):
-            # The regime of equal levels is that of the quadrant of both planes.
+            # The regime of equal levels is that of the quadrant with this centre.
             areas = rows[rows["role"] == "area"].groupby(["series", "regime"])
-            (regime,) = [
-                regime
-                for (_, regime), area in areas
-                if Outline(area[["left", "right"]]).contains_point((level, level))
-            ]
+            centres = areas[["left", "right"]].mean().eq(level).all(axis="columns")
+            regime = centres[centres].index[0][1]
             colour, text = LOOKS[regime]
             axes.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
             look: Look = {"ha": "center", "va": "bottom", "fontsize": 8.0}

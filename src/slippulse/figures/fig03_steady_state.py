@@ -3,7 +3,7 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .shared.pulses import conditions, draw_prestress, draw_pulses, handles, pulse_table
+from .shared.pulses import draw_prestress, draw_pulses, handles, pulse_table, title
 from .style import PAGE, Look, new_panels
 
 NEEDS = {
@@ -27,7 +27,7 @@ def draw(table: pd.DataFrame) -> Figure:
         rows = table[table["panel"] == name]
         draw_pulses(axes, rows, "slip_velocity")
         draw_prestress(axes, rows, (0.08, 0.6, 0.26, 0.29), widths)
-        axes.set_title(conditions(rows), loc="right")
+        axes.set_title(title(rows), loc="right")
         axes.set_ylim(-0.03, 1.06)
         look: Look = {"ncols": 3, "columnspacing": 1.0}
         axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=(0.5, -0.17), **look)

@@ -10,8 +10,9 @@ from matplotlib.patches import Patch
 
 from ..data.points import point
 from ..measurement.fronts import position_at
+from . import style
 from .shared import space_time
-from .style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look, legend_below, new_figure, panel_letter
+from .style import BLACK, HALO, ORANGE, PAGE, PURPLE, Look
 
 NEEDS = {
     "data": ["space_time_displacement", "space_time_stress"],
@@ -70,20 +71,20 @@ def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure; a legend entry that is in one panel alone names the panel."""
-    figure = new_figure(PAGE, 3.3)
+    figure = style.new_figure(PAGE, 3.3)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
     panels: dict[str, str] = {}
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
-        roles = space_time.rows_by_role(table[table["panel"] == panel])
+        roles = style.by_role(table[table["panel"] == panel])
         space_time.draw_profile(profile, roles["prestress"])
         image = space_time.draw_map(axes, roles)
         draw_transition(axes, roles)
         bar = side.colorbar(image, ax=axes, pad=0.02, aspect=22)
         bar.set_label(rf"slip velocity $\dot u$ (largest {roles['largest']['value'].iloc[0]:#.3g})")
-        panel_letter(profile, letter)
+        style.panel_letter(profile, letter)
         when = "first stick"
         if "fraction" in roles:
             percent = 100.0 * roles["fraction"]["value"].iloc[0]
@@ -98,7 +99,7 @@ def draw(table: pd.DataFrame) -> Figure:
     panels |= {"not yet slipped": "ab", "stuck again": panels.get("trailing edge", "a")}
     for label, handle in handles.items():
         handle.set_label(label if panels[label] == "ab" else f"{label} ({panels[label]})")
-    legend_below(figure, list(handles.values()), len(handles))
+    style.legend_below(figure, list(handles.values()), len(handles))
     return figure
 
 

@@ -5,9 +5,9 @@ from matplotlib.figure import Figure
 
 from .shared import scaling
 from .shared.pulses import prestress_inset
-from .shared.scaling import DRAWN, OTHER, SYMBOLS, run_colours, transition_table
+from .shared.scaling import DRAWN, OTHER, QUANTITIES, run_colours, transition_table
 from .shared.selection import spread_values
-from .style import PAGE, Look, new_panels
+from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, new_panels
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
@@ -21,14 +21,14 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw the collapse, a row a quantity and a column a boundary; insets have the ratio."""
     figure, panels = new_panels(PAGE, 5.6, 2, 2)
     for column, (boundary, title) in enumerate(BOUNDARIES.items()):
-        runs, other = table[table["boundary"] == boundary], OTHER[boundary].quantity
+        runs, other = table[table["boundary"] == boundary], OTHER[boundary]
         few = runs[runs[other].isin(spread_values(runs[other], DRAWN))]
         faces, rims = (run_colours(runs, name) for name in ("left", other))
-        for axes, quantity in zip(panels[column::2], SYMBOLS, strict=True):
+        for axes, quantity in zip(panels[column::2], QUANTITIES, strict=True):
             scaling.draw_collapse(axes, runs, quantity, {"c": faces, "edgecolors": rims})
             box = (0.1, 0.6, 0.34, 0.31)
             inset = scaling.ratio_inset(axes, box, few, quantity, "left", other)
-            inset.set_xlabel(scaling.LEVEL[boundary].symbol, fontsize=7.0, labelpad=0.0)
+            inset.set_xlabel(f"${SYMBOLS[LEVEL[boundary]]}$", fontsize=SMALL, labelpad=0.0)
         narrow = runs[runs["width"] == runs["width"].min()].drop_duplicates("left")
         narrow = narrow[narrow["left"].isin(spread_values(runs["left"], DRAWN))]
         levels = list(run_colours(narrow, "left"))

@@ -1,7 +1,5 @@
 """Figure 6: the onset of pulses as blocks and springs, from runs at dx = 1."""
 
-from itertools import pairwise
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -173,26 +171,19 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
 
 def coils(centres: np.ndarray, y: float) -> LineCollection:
     """Coil springs between neighbouring blocks."""
-    half = 0.5 * BLOCK
-    lines = [coil(left + half, right - half, y) for left, right in pairwise(centres)]
+    offset = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
+    ends = np.linspace(centres[:-1] + 0.5 * BLOCK, centres[1:] - 0.5 * BLOCK, offset.size, axis=1)
+    lines = [np.column_stack([x, y + offset]) for x in ends]
     return LineCollection(lines, colors="0.35", linewidths=0.6, gid="coil springs")
 
 
 def leaves(rest: np.ndarray, centres: np.ndarray, base: float) -> LineCollection:
-    """Leaf springs from the plate, above the positions at rest, to the blocks."""
-    ends = zip(rest, centres, strict=True)
-    lines = [bow(top, base + PLATE, bottom, base + HEIGHT) for top, bottom in ends]
-    return LineCollection(lines, colors=BLUE, linewidths=0.9, gid="leaf springs")
-
-
-def coil(start: float, end: float, y: float) -> np.ndarray:
-    """Points of a coil spring from ``start`` to ``end`` at height ``y``."""
-    offset = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
-    return np.column_stack([np.linspace(start, end, offset.size), y + offset])
-
-
-def bow(x_top: float, y_top: float, x_bottom: float, y_bottom: float) -> np.ndarray:
-    """Points of a leaf spring that is clamped upright at both ends."""
+    """Leaf springs, clamped upright, from the plate above the positions at rest to the blocks."""
     along = np.linspace(0.0, 1.0, 15)
-    x = x_top + (x_bottom - x_top) * along**2 * (3.0 - 2.0 * along)
-    return np.column_stack([x, y_top + (y_bottom - y_top) * along])
+    plate = base + PLATE
+    y = plate + (base + HEIGHT - plate) * along
+    lines = []
+    for top, bottom in zip(rest, centres, strict=True):
+        x = top + (bottom - top) * along**2 * (3.0 - 2.0 * along)
+        lines.append(np.column_stack([x, y]))
+    return LineCollection(lines, colors=BLUE, linewidths=0.9, gid="leaf springs")

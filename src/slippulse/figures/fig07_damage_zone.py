@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from .shared.sketch import BOTH, arrow, label
+from .shared.sketch import BOTH, MUTED, arrow, label
 from .style import BLACK, BLUE, COLUMN, GREY, ORANGE, Look, as_given, new_panels
 
 NEEDS = {"studies": ["damage_zone"]}
@@ -15,7 +15,6 @@ table = as_given
 
 # Width of the sketch and position of displacement 0, in thicknesses of the zone.
 WIDTH, ORIGIN = 4.2, 1.95
-MUTED = "0.25"
 
 
 def draw(table: pd.DataFrame) -> Figure:

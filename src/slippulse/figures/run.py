@@ -63,7 +63,7 @@ def plot(run: xr.Dataset) -> Picture:
 
 def _draw(run: xr.Dataset) -> Picture:
     from .shared import space_time
-    from .style import BLUE, PAGE
+    from .style import BLUE, PAGE, by_role
 
     front, trailing = space_time.edges(run)
     roles = {"prestress": space_time.prestress_profile(run), "front": front, "trailing": trailing}
@@ -71,7 +71,7 @@ def _draw(run: xr.Dataset) -> Picture:
     profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
     space_time.draw_profile(profile, roles["prestress"])
     if _has_map(run):
-        roles |= space_time.rows_by_role(space_time.velocity_map(run))
+        roles |= by_role(space_time.velocity_map(run))
         image = space_time.draw_map(times, roles)
         figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
         if run.attrs.get("limit_reason"):

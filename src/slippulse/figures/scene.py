@@ -12,7 +12,7 @@ from ..data.numerals import MOST, number, with_uncertainty
 from .shared import space_time
 from .shared.numbers import with_symbols
 from .shared.selection import spaced_indices
-from .style import BLUE, GREY, ORANGE, PAGE, Look, new_figure, panel_letter
+from .style import BLUE, DASHES, GREY, ORANGE, PAGE, Look, by_role, new_figure, panel_letter
 
 # The number of blocks drawn of a profile.
 PROFILE_POINTS = 400
@@ -64,7 +64,7 @@ def number_text(value: float, uncertainty: float, theory: float) -> str:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure from its table."""
-    roles = space_time.rows_by_role(table)
+    roles = by_role(table)
     numbers = roles.get("number", table.iloc[:0])
     rows = math.ceil(len(numbers) / 2)
     figure = new_figure(PAGE, 4.9 + 0.16 * rows)
@@ -100,7 +100,7 @@ def draw_end(axes: Axes, profile: pd.DataFrame, steady: pd.DataFrame, field: str
     rows = profile[profile["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
-    look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": (0, (3, 1.5)), "gid": "steady"}
+    look: Look = {"color": ORANGE, "linewidth": 0.8, "linestyle": DASHES, "gid": "steady"}
     look["label"] = "steady pulse of this side, exact"
     for pulse in steady[steady["series"] == field].itertuples():
         axes.plot([0.0, pulse.position], [pulse.value] * 2, **look)

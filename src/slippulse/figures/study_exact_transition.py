@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
-from .shared.scaling import SYMBOLS
+from .shared import scaling
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look
 
 NEEDS = {
@@ -72,7 +72,7 @@ def _draw_distributions(axes: Axes, sweep: pd.DataFrame, quantity: str) -> None:
             ratio = (runs[f"transition_{quantity}"] / predicted).dropna()
             look: Look = {"color": colour, "linestyle": line, "gid": f"{boundary} {reference}"}
             axes.ecdf(np.abs(ratio - 1.0), label=f"{boundary_name}, {name}", **look)
-    symbol = SYMBOLS[quantity]
+    symbol = scaling.QUANTITIES[quantity]
     axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|", ylim=(0.0, 1.0))
     axes.set_ylabel("fraction of runs that are nearer")
 
@@ -84,7 +84,7 @@ def _draw_refinement(axes: Axes, runs: pd.DataFrame) -> None:
         error = np.abs(runs[f"transition_{quantity}"] / runs[f"exact_transition_{quantity}"] - 1.0)
         look: Look = {"markersize": 2.5, "markerfacecolor": "none", "markeredgewidth": 0.5}
         axes.plot(spacing, error, marker, color=colour, **look)
-        largest, label = error.groupby(spacing).max(), f"${SYMBOLS[quantity]}$, largest"
+        largest, label = error.groupby(spacing).max(), f"${scaling.QUANTITIES[quantity]}$, largest"
         axes.plot(largest, marker=marker, color=colour, label=label)
     ends = spacing.agg(["min", "max"]).to_numpy()
     axes.plot(ends, 0.4 * ends, color=BLACK, linewidth=0.8, linestyle=":", label="first order")

@@ -4,77 +4,56 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PAGE,
-    SKY,
-    Look,
-    as_given,
-    entry,
-    few_ticks,
-    legend_below,
-    new_panels,
-)
+from . import style
+from .style import BLACK, BLUE, GREY, MARKERS, OPEN, PAGE, REGIMES, SKY, Look, entry
 
 NEEDS = {"studies": ["friction_laws"]}
-table = as_given
+table = style.as_given
 
-REGIMES = {
-    "sticking pulse": ("sticking pulse", BLUE, "o"),
-    "creeping pulse": ("creeping pulse", GREEN, "^"),
-    "crack": ("crack", ORANGE, "s"),
-    "no rupture": ("no rupture", GREY, "x"),
-}
+RATE, WEAKENING = r"$F/\tau_0$", r"$\gamma d_c/\tau_0^2$"
+# Laws of a plane: the label of its axis, and the strength of the friction.
 PLANES = {
-    ("rate_weakening", "bounded_rate"): (
-        r"$F/\tau_0$",
-        r"$-\min(a\dot u,F)$, $F\dot u/(\dot u+v_0)$",
-    ),
-    ("slip_weakening",): (r"$\gamma d_c/\tau_0^2$", r"$1-u/d_c$"),
-    ("exponential_weakening",): (r"$\gamma d_c/\tau_0^2$", r"$\mathrm{e}^{-u/d_c}$"),
+    ("rate_weakening", "bounded_rate"): (RATE, r"$-\min(a\dot u,F)$, $F\dot u/(\dot u+v_0)$"),
+    ("slip_weakening",): (WEAKENING, r"$1-u/d_c$"),
+    ("exponential_weakening",): (WEAKENING, r"$\mathrm{e}^{-u/d_c}$"),
 }
-MARKERS, COLOURS = ("o", "s", "^"), (SKY, BLUE)
+COLOURS = (SKY, BLUE)
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes (a) of bounded laws of slip rate, (b, c) of slip weakening; (d) front speeds."""
-    figure, (*planes, speeds) = new_panels(PAGE, 5.2, 2, 2)
-    runs = table[table["role"] == "plane"]
+    figure, (*planes, speeds) = style.new_panels(PAGE, 5.2, 2, 2)
+    roles = style.by_role(table)
+    runs = roles["plane"]
     for axes, (laws, (label, title)) in zip(planes, PLANES.items(), strict=True):
-        _draw_plane(axes, runs[runs["law"].isin(laws)])
+        style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title, loc="right")
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    _draw_speeds(speeds, table[table["role"] == "selection"])
-    looks = REGIMES.values()
-    legend_below(figure, [entry(name, marker=mark, color=tint) for name, tint, mark in looks], 4)
+    _draw_speeds(speeds, roles["selection"])
+    shown = {name: REGIMES[name] for name in REGIMES if (runs["regime"] == name).any()}
+    handles = [entry(name, color=colour, marker=mark) for name, (colour, mark) in shown.items()]
+    style.legend_below(figure, handles, len(handles))
     return figure
-
-
-def _draw_plane(axes: Axes, runs: pd.DataFrame) -> None:
-    for regime, rows in runs.groupby("regime"):
-        _, colour, marker = REGIMES[str(regime)]
-        axes.plot(rows["strength"], rows["level"], marker, color=colour, markersize=4.0)
 
 
 def _draw_speeds(axes: Axes, runs: pd.DataFrame) -> None:
     """Draw front speeds on lattices, and exact ones at their distances as lines."""
-    for colour, (_, rows) in zip(COLOURS, runs.groupby("level"), strict=True):
-        for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=True):
+    for colour, (level, rows) in zip(COLOURS, runs.groupby("level"), strict=True):
+        for marker, (dx, points) in zip(MARKERS, rows.groupby("dx"), strict=False):
             resolution = points["d_c"] / dx
             axes.plot(resolution, points["exact_speed"], color=colour, linewidth=0.8)
-            look: Look = {"color": colour, "markerfacecolor": "white", "markersize": 4.0}
+            look: Look = {"color": colour, "markersize": 4.0} | OPEN
             axes.plot(resolution, points["speed"], marker, **look)
-    for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=True):
-        axes.plot([], [], marker, color=GREY, label=rf"$\Delta x = {dx:g}$")
-    for colour, level in zip(COLOURS, sorted(runs["level"].unique()), strict=True):
-        axes.plot([], [], color=colour, label=rf"exact, $\tau_0 = {level:g}$")
+        axes.lines[-2].set_label(rf"exact, $\tau_0 = {level:g}$")
+    lines = axes.get_legend_handles_labels()[0]
+    for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=False):
+        lines.append(entry(rf"lattice, $\Delta x = {dx:g}$", marker=marker, color=GREY, **OPEN))
     axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
     axes.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
-    few_ticks(axes.xaxis, (1, 2, 4, 8))
+    style.few_ticks(axes.xaxis, (1, 2, 4, 8))
     axes.set_title(rf"$1-u/d_c$, $\beta = {runs['beta'].iloc[0]:g}$", loc="right")
-    axes.legend(loc="best", ncols=2, columnspacing=0.8)
+    # The legend stands below the fast fronts, left of the slow ones.
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.15 * (high - low), high)
+    axes.legend(handles=lines, loc="lower left", handlelength=1.4)

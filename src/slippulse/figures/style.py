@@ -42,6 +42,29 @@ SKY, YELLOW = "#56B4E9", "#E69F00"
 BLACK, GREY = "#000000", "#7f7f7f"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, YELLOW, BLACK)
 VELOCITY_MAP = "viridis"
+MARKERS = ("o", "s", "^", "D", "v", "P")
+# Symbols of parameters, by their column.
+SYMBOLS = {
+    "tau_0": r"\tau_0",
+    "tau_l": r"\tau_{0,l}",
+    "tau_r": r"\tau_{0,r}",
+    "gamma": r"\gamma",
+    "width": "W",
+    "damping_ratio": "b",
+    "dx": r"\Delta x",
+    "time": "t",
+}
+# Open markers, dashes, and the size of the smallest text.
+OPEN: Look = {"markerfacecolor": "white"}
+DASHES = (0, (3, 1.5))
+SMALL = 7.0
+# Colour and marker of what a rupture under another friction turns into.
+REGIMES = {
+    "sticking pulse": (BLUE, "o"),
+    "creeping pulse": (GREEN, "^"),
+    "crack": (ORANGE, "s"),
+    "no rupture": (GREY, "x"),
+}
 # The outline of letters that stand on a drawing.
 HALO = [withStroke(linewidth=2.2, foreground="white")]
 
@@ -64,6 +87,9 @@ SCALES = {
     "damping_ratio": Scale("viridis", (0.0, 0.64), (5e-3, 5.0), LogNorm),
     "width": Scale("copper_r", (0.36, 1.0), (0.5, 16.0), LogNorm),
 }
+
+# Each run has the colour of its level.
+LEVEL = {"displacement": "tau_0", "stress": "tau_l"}
 
 # A note below a figure: inches of a line and of the gap above, and characters an inch.
 NOTE_LINE, NOTE_GAP = 0.13, 0.08
@@ -122,6 +148,14 @@ def new_panels(
     return figure, panels
 
 
+def small_inset(axes: Axes, box: Box, title: str) -> Axes:
+    """Add an inset with small letters in a box of a panel."""
+    inset = axes.inset_axes(box)
+    inset.tick_params(labelsize=SMALL, length=1.5, pad=1.5)
+    inset.set_title(title, fontsize=SMALL, pad=2.5)
+    return inset
+
+
 def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
     """Set the only ticks with numbers, on a logarithmic axis too."""
     axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
@@ -135,6 +169,11 @@ def colour_scale(quantity: str) -> ScalarMappable:
     return ScalarMappable(scale.norm(*scale.ends, clip=True), ListedColormap(colours))
 
 
+def colour(quantity: str, value: float) -> np.ndarray:
+    """The colour of a value of a quantity of SCALES."""
+    return colour_scale(quantity).to_rgba(np.asarray(value))
+
+
 def panel_letter(axes: Axes, letter: str) -> None:
     """Mark a panel by (a), (b), ... above its upper left corner."""
     axes.set_title(f"({letter})", loc="left", fontweight="bold", fontsize=9.0)
@@ -145,6 +184,25 @@ def entry(label: str, **look: Any) -> Line2D:
     if "marker" in look:
         look = {"linestyle": "none"} | look
     return Line2D([], [], label=label, **look)
+
+
+def conditions(held: bool, **numbers: float) -> str:
+    """Title that names the boundary condition, and parameters by the names of SYMBOLS."""
+    parts = [rf"$\Gamma = {int(held)}$"]
+    parts += [f"${SYMBOLS[name]} = {value:g}$" for name, value in numbers.items()]
+    return ", ".join(parts)
+
+
+def by_role(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """Split a table by its column role."""
+    return {str(role): rows for role, rows in table.groupby("role")}
+
+
+def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
+    """Mark the regime of each run over a column and the level."""
+    for regime, rows in runs.groupby("regime"):
+        colour, marker = REGIMES[str(regime)]
+        axes.plot(rows[x], rows["level"], marker, color=colour, **{"markersize": 4.0} | look)
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:

@@ -1,7 +1,7 @@
 """Pulses in the frame that moves with them, simulated and exact: their table, and the drawing."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,7 +13,21 @@ from matplotlib.lines import Line2D
 from ...data.points import point
 from ...measurement.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
-from ..style import BLACK, PAGE, Box, Look, colour_scale, entry, legend_below, new_panels
+from ..style import (
+    BLACK,
+    LEVEL,
+    PAGE,
+    SMALL,
+    SYMBOLS,
+    Box,
+    Look,
+    colour_scale,
+    conditions,
+    entry,
+    legend_below,
+    new_panels,
+    small_inset,
+)
 from .selection import spread_values
 
 # Labels of the fields in the units of each boundary condition.
@@ -31,19 +45,8 @@ FIELDS = {
 DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
 
 
-class Key(NamedTuple):
-    """Meaning of colours and line styles: the level has the colour, another column the style."""
-
-    colours: str  # quantity of `style.SCALES`
-    level_symbol: str
-    styled: str  # column of the table of runs
-    styled_symbol: str
-
-
-KEYS = {
-    "displacement": Key("tau_0", r"\tau_0", "damping_ratio", "b"),
-    "stress": Key("tau_l", r"\tau_{0,l}", "width", "W"),
-}
+# The level gives a run its colour, and another column its line style.
+STYLED = {"displacement": "damping_ratio", "stress": "width"}
 STYLES = ("-", "--", ":", "-.")
 # The number of levels drawn.
 LEVELS = {"displacement": 2, "stress": 3}
@@ -83,8 +86,8 @@ def _sweep_rows(
         exact = profiles[profiles["run"] == index].assign(role="exact")
         simulated = _simulated_pulse(point(sweep, int(index)), window, _extent(numbers, exact))
         both = pd.concat([simulated.assign(role="simulation"), exact])
-        units = _units(numbers, exact)
-        curves = {name: (both[name] / unit).round(DECIMALS) for name, unit in units.items()}
+        units = zip(("x", *FIELDS), _units(numbers, exact), strict=True)
+        curves = {name: (both[name] / unit).round(DECIMALS) for name, unit in units}
         parts.append(pd.DataFrame({"role": both["role"], "run": index, **curves}))
     return pd.concat(parts, ignore_index=True).assign(panel=boundary)
 
@@ -107,33 +110,23 @@ def _extent(numbers: pd.Series, exact: pd.DataFrame) -> tuple[float, float]:
     return -length, AHEAD * length
 
 
-def _units(numbers: pd.Series, exact: pd.DataFrame) -> dict[str, float]:
+def _units(numbers: pd.Series, exact: pd.DataFrame) -> list[float]:
     """Units of x and of the fields of a run, as `pulse_table` explains them."""
-    names = ("x", *FIELDS)
     if numbers["boundary"] == "displacement":
         kinds = ("width", "slip", "peak_velocity", "acceleration")
-        units = [numbers[f"paper_pulse_{kind}"] for kind in kinds]
-        return dict(zip(names, units, strict=True))
+        return [numbers[f"paper_pulse_{kind}"] for kind in kinds]
     width, peak = numbers["width"], numbers["exact_largest_velocity"]
-    units = [width, exact["slip"].max(), peak, peak / width]
-    return dict(zip(names, units, strict=True))
+    return [width, exact["slip"].max(), peak, peak / width]
 
 
-class RunLook(NamedTuple):
-    """Colour and line style of a run."""
-
-    colour: Any
-    style: str
-
-
-def run_looks(table: pd.DataFrame) -> dict[int, RunLook]:
-    """Looks of the runs of one boundary, by the number of the run."""
-    key = KEYS[table["panel"].iloc[0]]
+def run_looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
+    """Colour and line style of each run of one boundary, by the number of the run."""
+    boundary = table["panel"].iloc[0]
     runs = table[table["role"] == "run"].set_index("run")
-    styles = dict(zip(np.sort(runs[key.styled].unique()), STYLES, strict=False))
-    scale = colour_scale(key.colours)
-    pairs = zip(scale.to_rgba(runs["left"].to_numpy()), runs[key.styled].map(styles), strict=True)
-    return {run: RunLook(*pair) for run, pair in zip(runs.index, pairs, strict=True)}
+    styled = runs[STYLED[boundary]]
+    styles = dict(zip(np.sort(styled.unique()), STYLES, strict=False))
+    colours = colour_scale(LEVEL[boundary]).to_rgba(runs["left"].to_numpy())
+    return dict(zip(runs.index, zip(colours, styled.map(styles), strict=True), strict=True))
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
@@ -154,7 +147,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
     figure, panels = new_panels(PAGE, 2.8, 1, 3)
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
-    panels[1].set_title(conditions(table))
+    panels[1].set_title(title(table))
     if table["panel"].iloc[0] == "displacement":
         # The undamped lattice rings beyond the theory at the front.
         panels[2].set_ylim(-1.3, 1.3)
@@ -171,41 +164,40 @@ def draw_prestress(axes: Axes, table: pd.DataFrame, box: Box, widths: float) -> 
     """Draw the pre-stress of the runs of one boundary with `prestress_inset`."""
     runs = table[table["role"] == "run"].drop_duplicates(["left", "right", "width"])
     looks = run_looks(table)
-    prestress_inset(axes, box, runs, [looks[run].colour for run in runs["run"]], widths)
+    prestress_inset(axes, box, runs, [looks[run][0] for run in runs["run"]], widths)
 
 
 def handles(table: pd.DataFrame) -> list[Line2D]:
     """Legend entries of one boundary: the colours, the line styles and the simulation."""
     runs, looks = table[table["role"] == "run"].set_index("run"), run_looks(table)
-    key = KEYS[table["panel"].iloc[0]]
+    boundary = table["panel"].iloc[0]
+    level_symbol, styled = SYMBOLS[LEVEL[boundary]], STYLED[boundary]
     entries = []
     for run, level in runs["left"].drop_duplicates().sort_values().items():
-        entries.append(entry(rf"${key.level_symbol} = {level:g}$", color=looks[run].colour))
-    for run, value in runs[key.styled].drop_duplicates().sort_values().items():
-        name, style = rf"exact, ${key.styled_symbol} = {value:g}$", looks[run].style
+        entries.append(entry(rf"${level_symbol} = {level:g}$", color=looks[run][0]))
+    for run, value in runs[styled].drop_duplicates().sort_values().items():
+        name, style = rf"exact, ${SYMBOLS[styled]} = {value:g}$", looks[run][1]
         entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=style))
     return [*entries, entry("simulation", color=BLACK, **PALE)]
 
 
-def conditions(table: pd.DataFrame) -> str:
+def title(table: pd.DataFrame) -> str:
     """Title that names the boundary of the runs, and gamma or b, which their looks do not tell."""
     held = table["panel"].iloc[0] == "displacement"
-    column, symbol = ("gamma", r"\gamma") if held else ("damping_ratio", "b")
+    column = "gamma" if held else "damping_ratio"
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
-    return rf"$\Gamma = {int(held)}$, ${symbol} = {values}$"
+    return rf"{conditions(held)}, ${SYMBOLS[column]} = {values}$"
 
 
 def prestress_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float
 ) -> None:
     """Draw the pre-stress of runs in a box of a panel, to some widths of the widest Gaussian."""
-    inset = axes.inset_axes(box)
+    inset = small_inset(axes, box, r"pre-stress $\tau(x)$")
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
     for run, colour in zip(runs.itertuples(), colours, strict=True):
         inset.plot(x, Prestress(run.left, run.right, run.width)(x), color=colour, linewidth=0.8)
     inset.locator_params(nbins=3, integer=True)
     # Room between the peak and the title.
     inset.margins(y=0.12)
-    inset.set_title(r"pre-stress $\tau(x)$", fontsize=7.0, pad=2.5)
-    inset.set_xlabel("$x$", fontsize=7.0, labelpad=0.0)
-    inset.tick_params(labelsize=7.0, length=1.5, pad=1.5)
+    inset.set_xlabel("$x$", fontsize=SMALL, labelpad=0.0)

@@ -1,7 +1,7 @@
 """T_trans and L_trans of every run over the paper's formulas, with exact theory as lines."""
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,30 +11,28 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ...data.numerals import setting
 from .. import style
-from ..style import BLACK, GREY, PAGE, Box, Look, entry, few_ticks
+from ..style import (
+    BLACK,
+    GREY,
+    LEVEL,
+    PAGE,
+    SMALL,
+    SYMBOLS,
+    Box,
+    Look,
+    entry,
+    few_ticks,
+    small_inset,
+)
 from .selection import spread_values
 
-SYMBOLS = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
-
-
-class Coloured(NamedTuple):
-    """A quantity of `style.SCALES` that gives runs their colours."""
-
-    quantity: str
-    symbol: str
-
-
-# Each run has the colour of its level, and that of what varies beside the level.
-LEVEL = {
-    "displacement": Coloured("tau_0", r"$\tau_0$"),
-    "stress": Coloured("tau_l", r"$\tau_{0,l}$"),
-}
-OTHER = {"displacement": Coloured("gamma", r"$\gamma$"), "stress": Coloured("width", r"$W$")}
+QUANTITIES = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
+# The column that varies beside the level.
+OTHER = {"displacement": "gamma", "stress": "width"}
 # An inset draws lines of this many levels, or values of gamma or W.
 DRAWN = 3
 # Place of an inset below the line of equality.
 BELOW: Box = (0.52, 0.12, 0.26, 0.29)
-SMALL = 7.0
 # Ticks of an axis that has less than this ratio of its ends are more than the powers of ten.
 SHORT = 40.0
 
@@ -44,15 +42,15 @@ def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     runs = pd.concat(tables.values(), ignore_index=True)
     kept = ["boundary", "left", "right", "width", "gamma"]
     kept += ["damping_ratio", "beta", "dx", "run_flags"]
-    for name in SYMBOLS:
+    for name in QUANTITIES:
         kept += [f"transition_{name}", f"paper_transition_{name}", f"exact_transition_{name}"]
     return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
 
 
 def run_colours(runs: pd.DataFrame, column: str) -> np.ndarray:
     """The colour of each run by its level (column left), gamma, width or damping ratio."""
-    quantity = LEVEL[runs["boundary"].iloc[0]].quantity if column == "left" else column
-    return style.colour_scale(quantity).to_rgba(runs[column].to_numpy())
+    scale = style.colour_scale(coloured(runs["boundary"].iloc[0], column))
+    return scale.to_rgba(runs[column].to_numpy())
 
 
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
@@ -62,7 +60,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
     _scatter(axes, runs, x, y, colours, marker="o", s=15.0, linewidths=width)
     ends = [min(x.min(), y.min()) / 1.4, max(x.max(), y.max()) * 1.4]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
-    symbol = SYMBOLS[quantity]
+    symbol = QUANTITIES[quantity]
     axes.set(xlabel=f"paper's formula for ${symbol}$", ylabel=f"measured ${symbol}$")
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
     subs = (1.0, 2.0, 5.0) if ends[1] < SHORT * ends[0] else (1.0,)
@@ -79,7 +77,7 @@ def ratio_inset(
     ``across`` is the column of the horizontal axis, and there is a line for each value of ``line``,
     in its colours. Where the damping ratio runs across, it gives the colours of the runs.
     """
-    inset, boundary = axes.inset_axes(box), runs["boundary"].iloc[0]
+    inset, boundary = small_inset(axes, box, "measured / formula"), runs["boundary"].iloc[0]
     inset.set_in_layout(False)
     inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
     for style_of_line, (value, group) in zip(("-", "--", ":"), runs.groupby(line), strict=False):
@@ -88,15 +86,13 @@ def ratio_inset(
         look: Look = {"color": run_colours(group, line)[0]}
         if across == "damping_ratio":
             look = {"color": BLACK, "linestyle": style_of_line}
-        name = f"{_coloured(boundary, line).symbol} = {setting(value)}"
+        name = f"${SYMBOLS[coloured(boundary, line)]}$ = {setting(value)}"
         inset.plot(group[across], exact, linewidth=0.8, label=name, gid="exact", **look)
     ratio = runs[quantity] / runs[f"paper_{quantity}"]
-    coloured = across if across == "damping_ratio" else line
-    _scatter(inset, runs, runs[across], ratio, {"c": run_colours(runs, coloured)}, marker="o")
+    column = across if across == "damping_ratio" else line
+    _scatter(inset, runs, runs[across], ratio, {"c": run_colours(runs, column)}, marker="o")
     look = {"fontsize": SMALL, "handlelength": 1.1, "handletextpad": 0.3, "borderaxespad": 0.3}
     inset.legend(loc="upper left", bbox_to_anchor=(1.0, 1.2), **look)
-    inset.tick_params(labelsize=SMALL, length=1.5, pad=1.5)
-    inset.set_title("measured / formula", fontsize=SMALL, pad=2.5)
     return inset
 
 
@@ -113,26 +109,26 @@ def _scatter(
     axes.scatter(x[~flagged], y[~flagged], gid="runs", **look | shown)
 
 
-def _coloured(boundary: str, column: str) -> Coloured:
-    """Quantity of a column: the level (left), or else gamma or W."""
-    return LEVEL[boundary] if column == "left" else OTHER[boundary]
+def coloured(boundary: str, column: str) -> str:
+    """Quantity of `style.SCALES` of a column: that of the level for column left."""
+    return LEVEL[boundary] if column == "left" else column
 
 
 def colour_bar(
     figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any
 ) -> None:
     """Add the bar of the colours of a column: the level (left), gamma or W."""
-    quantity, symbol = _coloured(boundary, column)
+    quantity = coloured(boundary, column)
     # The scale of tau_l is stretched, and ticks at equal distances would overlap.
     ticks = [-2.0, -1.0, -0.5, 0.0] if quantity == "tau_l" else None
     bar = figure.colorbar(style.colour_scale(quantity), ax=list(axes), ticks=ticks, **options)
-    bar.set_label(symbol)
+    bar.set_label(f"${SYMBOLS[quantity]}$")
 
 
 def damping_figure(table: pd.DataFrame) -> Figure:
     """Draw figures 10 and 11: the collapse in colours of b, and in insets the ratio against b."""
     boundary = table["boundary"].iloc[0]
-    other, symbol = OTHER[boundary]
+    other = OTHER[boundary]
     middle = spread_values(table[other], DRAWN)[1]
     few = table[(table[other] == middle) & table["left"].isin(spread_values(table["left"], DRAWN))]
     runs = table.sort_values("damping_ratio")
@@ -140,7 +136,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     spacing = runs["dx"] / runs["width"]
     spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
     figure, panels = style.new_panels(PAGE, 3.5, 1, 2)
-    for axes, quantity in zip(panels, SYMBOLS, strict=True):
+    for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, runs, quantity, colours)
         axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}")
         # The runs lie above equality, so that the corner below it is free.
@@ -149,7 +145,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     shown = runs.drop_duplicates("damping_ratio")
     pairs = zip(shown["damping_ratio"], run_colours(shown, "damping_ratio"), strict=True)
     handles = [entry(f"$b = {ratio:g}$", marker="o", color=colour) for ratio, colour in pairs]
-    name = f"exact, {symbol} = {middle:g} (insets)"
+    name = f"exact, ${SYMBOLS[other]}$ = {middle:g} (insets)"
     handles.append(entry(name, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure

@@ -11,6 +11,7 @@ from ..style import BLACK, Look
 Point = tuple[float, float]
 # The style of an arrow with two heads, as a dimension has them.
 BOTH = "<|-|>"
+MUTED = "0.25"
 
 
 def arrow(

@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
-from ..style import BLACK, GREY, VELOCITY_MAP, Look
+from ..style import BLACK, DASHES, GREY, VELOCITY_MAP, Look, conditions
 from .selection import spaced_indices
 
 # Samples kept along each axis of a map, and blocks along each front.
@@ -34,24 +35,17 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(rows), velocity_map(run), prestress_profile(run), *edges(run)])
 
 
-def rows_by_role(table: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """Split a table by its column role; the functions that draw take the result as ``roles``."""
-    return {str(role): rows for role, rows in table.groupby("role")}
-
-
 def description(roles: dict[str, pd.DataFrame]) -> str:
     """Boundary, pre-stress and damping of a run, and its flags, as a title."""
     value = roles["parameter"].set_index("series")["value"]
-    held = rf"$\Gamma = 1$, $\gamma = {value['gamma']:g}$"
-    parts = [held if value["gamma"] > 0.0 else r"$\Gamma = 0$"]
-    if value["left"] == value["right"]:
-        parts.append(rf"$\tau_0 = {value['left']:g}$")
-    else:
-        parts.append(rf"$\tau_{{0,l}} = {value['left']:g}$, $\tau_{{0,r}} = {value['right']:g}$")
-    parts.append(rf"$W = {value['width']:g}$, $b = {value['damping_ratio']:g}$")
+    gamma = {"gamma": value["gamma"]} if value["gamma"] > 0.0 else {}
+    levels = {"tau_0": value["left"]}
+    if value["left"] != value["right"]:
+        levels = {"tau_l": value["left"], "tau_r": value["right"]}
+    title = conditions(bool(gamma), **gamma, **levels, **value[["width", "damping_ratio"]])
     if "flag" in roles:
-        parts.append(f"flagged: {roles['flag']['series'].iloc[0]}".replace("_", " "))
-    return ", ".join(parts)
+        title += f", flagged: {roles['flag']['series'].iloc[0]}".replace("_", " ")
+    return title
 
 
 def limits(run: xr.Dataset) -> tuple[float, float]:
@@ -145,6 +139,19 @@ def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> AxesImage:
     return image
 
 
+def draw_halves(figure: Figure, axes: Axes, rows: pd.DataFrame, half: str) -> None:
+    """Draw two maps, one above x = 0 and one below, of the values of a column."""
+    look: Look = {"cmap": VELOCITY_MAP, "shading": "nearest", "rasterized": True}
+    look |= {"vmin": 0.0, "vmax": rows["slip_velocity"].max()}
+    for _, part in rows.groupby(half):
+        # Positions that do not slide stay white.
+        grid = part.pivot(index="position", columns="time", values="slip_velocity")
+        image = axes.pcolormesh(grid.columns, grid.index, grid.where(grid > 0.0), **look)
+    axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
+    figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
+    axes.set(xlabel=r"time $t$", ylabel=r"position $x$")
+
+
 def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     """Draw front and trailing edge, and hide the map before the release and after the stick.
 
@@ -169,5 +176,5 @@ def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
     # Single blocks that stick between two releases of an arresting front make no edge.
     if np.any(np.isfinite(stick[1:]) & np.isfinite(stick[:-1])):
         axes.fill_betweenx(x, stick, end + overhang, color=STUCK, linewidth=0.0, zorder=1.4)
-        look: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": (0, (3, 1.5))}
+        look: Look = {"color": BLACK, "linewidth": 0.8, "linestyle": DASHES}
         axes.plot(stick, x, label="trailing edge", **look)
