@@ -93,6 +93,44 @@ def test_lattices_tend_to_the_steady_pulse_of_a_bounded_law_of_slip_rate(law, ra
         assert measured[2]["pulse_peak_velocity"] == pytest.approx(exact.peak_velocity, rel=0.01)
 
 
+def by_events(dx, d_c=0.1, level=0.8, **values):
+    law = sp.friction("slip_weakening", d_c=d_c, nucleation=2.0)
+    return run(law, dx, level, scheme="localised", **values)
+
+
+@pytest.mark.parametrize(
+    ("level", "d_c", "sticks"), [(0.8, 0.1, True), (0.5, 0.2, True), (0.5, 0.3, False)]
+)
+def test_linear_weakening_by_events_tends_to_theory_at_second_order(level, d_c, sticks):
+    exact = theory.weakening_pulse(level, GAMMA, BETA, d_c)
+    runs = [by_events(dx, d_c, level) for dx in SPACINGS]
+    measured = [sp.measure(data) for data in runs]
+    assert max(data.attrs["energy_residual"] for data in runs) < ENERGY
+    expected = {"front_speed_right": exact.speed} | ({"pulse_slip": exact.slip} if sticks else {})
+    for name, value in expected.items():
+        errors = np.abs([numbers[name] / value - 1.0 for numbers in measured])
+        assert errors[2] < 5e-4 and errors[0] / errors[1] > 3.0 and errors[1] / errors[2] > 3.0
+
+
+def test_linear_weakening_by_events_is_the_limit_of_short_textbook_steps():
+    law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
+    localised = by_events(0.05, duration=15.0)
+    errors = []
+    for step in (0.04, 0.02):
+        textbook = run(law, 0.05, 0.8, 15.0, step=step)
+        late = textbook["release_time"] - localised["release_time"]
+        errors.append(float(np.abs(late).max()))
+    assert errors[1] < 0.6 * errors[0] and errors[1] < 0.02
+
+
+def test_steps_orders_and_half_a_lattice_agree_where_weakening_ends_within_steps():
+    fine = by_events(0.05, step=0.05, order=8)["slip"]
+    for values in ({"step": 0.2}, {"order": 8}, {"order": 6, "half_lattice": False}):
+        data = by_events(0.05, **values)
+        assert float(np.abs(data["slip"] - fine).max()) < 2e-6
+        assert data.attrs["re_releases"] == 0
+
+
 def test_a_block_heals_when_it_sticks():
     """It needs a stress of 1 again: no block slides back and forth behind a pulse."""
     data = run(sp.friction("slip_weakening", d_c=0.1, nucleation=2.0), 0.05, 0.8, 30.0)
@@ -105,10 +143,18 @@ def test_without_nucleation_slip_weakening_starts_nothing():
     assert float(data["slip"].max()) == 0.0
 
 
-@pytest.mark.parametrize("law", ["bounded_rate", "rate_weakening", "slip_weakening"])
-@pytest.mark.parametrize("scheme", ["localised", "continuum"])
-def test_schemes_that_do_not_solve_a_law_refuse_it(law, scheme):
-    refusal = rf"scheme: '{scheme}'; allowed: fixed_step, with friction law '{law}'"
+@pytest.mark.parametrize(
+    ("law", "scheme", "allowed"),
+    [
+        ("bounded_rate", "localised", "fixed_step"),
+        ("rate_weakening", "localised", "fixed_step"),
+        ("exponential_weakening", "localised", "fixed_step"),
+        ("bounded_rate", "continuum", "fixed_step"),
+        ("slip_weakening", "continuum", "localised or fixed_step"),
+    ],
+)
+def test_schemes_that_do_not_solve_a_law_refuse_it(law, scheme, allowed):
+    refusal = rf"scheme: '{scheme}'; allowed: {allowed}, with friction law '{law}'"
     with pytest.raises(ValueError, match=refusal):
         run(sp.friction(law, **EXAMPLES[law]), 0.05, scheme=scheme)
 

@@ -77,8 +77,8 @@ class Scene:
     resolved_blocks : int
         A pulse of fewer sliding blocks is flagged: its width errs by about a block.
     friction : Friction
-        Law of friction of a sliding block, which `friction` makes. "fixed_step" takes any, the
-        other schemes "coulomb" and "linear_rate".
+        Law of friction of a sliding block, which `friction` makes. "fixed_step" takes any;
+        "localised" and "continuum" "coulomb" and "linear_rate", the first "slip_weakening" too.
 
     Raises
     ------

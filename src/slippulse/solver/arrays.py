@@ -65,6 +65,7 @@ class Medium(NamedTuple):
     law: int  # number of another law of friction, 0: none
     first: float  # its parameters
     second: float
+    d_c: float | None  # slip over which friction falls linearly in the Taylor step
     mirror: bool  # block 1 lies at x = 0 and block 0 is the mirror image of block 2
     total: bool  # the stress that is compared with 1 includes the damping force
 
@@ -79,6 +80,7 @@ class Motion(NamedTuple):
     strain: np.ndarray  # (N,), (u_{i+1} - u_i)/dx
     tau: np.ndarray  # (N,), pre-stress
     # Of laws of friction other than those of no and of linear rate dependence:
+    falls: np.ndarray  # (N,), 1/d_c while the friction of a block falls linearly, else 0
     resists: np.ndarray  # (N,), 1 where the law holds, 0 where the rupture is nucleated without it
     released: np.ndarray  # (N,), slip at the last release
 
@@ -92,11 +94,12 @@ class Segments(NamedTuple):
 
 
 class Event(NamedTuple):
-    """The release of a block, or its stick, a time after the start of the step."""
+    """The release of a block, its stick or the end of its weakening, and when in the step."""
 
     block: int
     time: float
     stick: bool
+    weak: bool
 
 
 class Forecast(NamedTuple):
@@ -106,6 +109,7 @@ class Forecast(NamedTuple):
     release: np.ndarray
     stick_block: np.ndarray  # (N,), blocks that stick, the first ``sticks.n`` entries
     stick_time: np.ndarray  # (N,)
+    weak: np.ndarray  # (N,), True where weakening ends instead
     sticks: np.record
     coefficients: np.ndarray  # (K,), scratch: a polynomial
     slopes: np.ndarray  # (K,), scratch: its derivative
@@ -180,9 +184,9 @@ def make_segments(size: int) -> Segments:
 def make_forecast(size: int, order: int) -> Forecast:
     """No events, on a lattice of ``size`` blocks."""
     release, stick_time = np.full(size, np.inf), np.zeros(size)
-    stick_block = np.zeros(size, dtype=np.int64)
+    stick_block, weak = np.zeros(size, dtype=np.int64), np.zeros(size, dtype=bool)
     polynomials = np.zeros((2, order + 2))
-    return Forecast(release, stick_block, stick_time, record(COUNT), *polynomials)
+    return Forecast(release, stick_block, stick_time, weak, record(COUNT), *polynomials)
 
 
 def make_scratch(size: int, order: int) -> Scratch:
@@ -202,8 +206,8 @@ def make_medium(
     beta: float,
     mirror: bool,
     total: bool,
-    friction: tuple[float, int, float, float] = (0.0, 0, 0.0, 0.0),
+    friction: tuple[float, int, float, float, float | None] = (0.0, 0, 0.0, 0.0, None),
 ) -> Medium:
-    """Constants of one scene; ``friction`` has alpha, law, first and second of `Medium`."""
+    """Constants of one scene; ``friction`` has alpha to d_c of `Medium`."""
     per_dx2, damping = 1.0 / (dx * dx), beta / (dx * dx)
     return Medium(dx, 1.0 / dx, per_dx2, leaf, beta, damping, *friction, mirror, total)

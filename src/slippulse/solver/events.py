@@ -10,8 +10,8 @@ the step, so the few blocks within reach change as in a new expansion of the who
 import numpy as np
 
 from .arrays import CENTRE, COLUMNS
-from .foresight import RECIPROCAL, find_sticks, foresee_releases, forget_sticks
-from .friction import strengthen
+from .foresight import RECIPROCAL, find_sticks, find_weak, foresee_releases, forget_sticks
+from .friction import begin_weakening, strengthen, weaken
 from .jit import inner, once
 from .segments import sliding_beside
 from .stencils import blocks, derivative
@@ -46,6 +46,7 @@ def start(centre, medium, motion, block, now, top):
     force = (strain[block] - strain[block - 1]) / medium.dx + per_dx2 * ahead + motion.tau[block]
     force -= medium.leaf * (w[0, block] + offset[block])
     centre[2] = force + damping * (w[1, block - 1] + w[1, block + 1])
+    centre[2] -= begin_weakening(motion, medium.d_c, block)
     # Between the start of the step and ``now``, two derivatives more than are kept contribute.
     for k in range(1, top + 1):
         centre[k + 2] = per_dx2 * (w[k, block - 1] + w[k, block + 1])
@@ -69,9 +70,22 @@ def stop(centre, w, offset, block, now, top):
 
 
 @inner(inline=True)
-def spread(difference, medium, left, right, stick, top):
+def stop_weakening(centre, motion, d_c, block, now, top):
+    """Derivatives of the change that the end of its weakening makes in the slip of a block."""
+    if d_c is not None:
+        for k in range(1, top + 1):
+            centre[k] = motion.w[k, block]
+        taylor_shift(centre, np.int64(1), top, top, now)
+        for k in range(top, 2, -1):
+            centre[k] = -centre[k - 2] / d_c
+        centre[2] = 0.0
+
+
+@inner(inline=True)
+def spread(difference, medium, motion, event, left, right, top):
     """Derivatives of the difference from those of its centre, over the sliding blocks beside it."""
     rows, centre = difference.rows, difference.centre
+    column = np.uint64(event.block) - np.uint64(CENTRE)
     for k in range(2, top + 1):
         for p in range(np.uint64(COLUMNS)):
             rows[k, p] = 0.0
@@ -81,7 +95,8 @@ def spread(difference, medium, left, right, stick, top):
             rows[k, p] = derivative(rows, k, p, medium.per_dx2, medium.leaf, medium.damping)
         if medium.alpha != 0.0:
             strengthen(rows, k, first, last, medium.alpha)
-        rows[k, CENTRE] = centre[k] + (0.0 if stick else rows[k, CENTRE])
+        weaken(rows, k, first, last, column, motion, medium.d_c)
+        rows[k, CENTRE] = centre[k] + (0.0 if event.stick else rows[k, CENTRE])
 
 
 @inner(inline=True)
@@ -134,7 +149,7 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     dv times the change of da.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
-    block, now, stick = event
+    block, now, stick, weak = event
     speed, kink = 0.0, 0.0
     left, right = sliding_beside(segments, block)
     middle = medium.mirror and block == 1
@@ -143,6 +158,8 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     if stick:
         speed = stop(difference.centre, w, offset, block, now, top)
         velocity[block] = 0.0
+    elif weak:
+        stop_weakening(difference.centre, motion, medium.d_c, block, now, top)
     else:
         start(difference.centre, medium, motion, block, now, top)
     if medium.beta > 0.0:
@@ -151,7 +168,7 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
         if not middle:
             neighbours += later_velocity(w, block - 1, top, now)
         kink = -difference.centre[2] * neighbours
-    spread(difference, medium, left, right, stick, top)
+    spread(difference, medium, motion, event, left, right, top)
     if stick:
         # `stop` has changed the block of the event already.
         for k in range(2, top + 1):
@@ -169,4 +186,5 @@ def change_course(medium, motion, segments, forecast, difference, event, h, top)
     lowest = foresee_releases(medium, motion, segments, forecast, first - 1, last + 1, now, h)
     forget_sticks(forecast, first, last)
     finite = find_sticks(motion, forecast, first, last, last - first, now, h, top)
+    find_weak(motion, medium.d_c, forecast, first, last, now, h, top)
     return finite, 0 if with_ghost else first, last, speed, lowest, kink

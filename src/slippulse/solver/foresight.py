@@ -145,7 +145,7 @@ def foresee_releases(medium, motion, segments, forecast, first, last, now, h):
 @once
 def next_event(segments, forecast):
     """The first event foreseen; its time is inf where there is none."""
-    block, stick = -1, False
+    block, stick, weak = -1, False, False
     earliest = math.inf
     for r in range(segments.count.n):
         for edge in (segments.starts[r] - 1, segments.ends[r]):
@@ -153,9 +153,10 @@ def next_event(segments, forecast):
                 block, earliest = edge, forecast.release[edge]
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] < earliest:
-            block, stick = forecast.stick_block[q], True
+            block, weak = forecast.stick_block[q], forecast.weak[q]
+            stick = not weak
             earliest = forecast.stick_time[q]
-    return Event(block, earliest, stick)
+    return Event(block, earliest, stick, weak)
 
 
 @once
@@ -230,6 +231,7 @@ def find_sticks(motion, forecast, first, last, suspects, now, h, top):
         if root < math.inf:
             n = forecast.sticks.n
             forecast.stick_block[n], forecast.stick_time[n] = i, root
+            forecast.weak[n] = False
             forecast.sticks.n = n + 1
         if suspects == 0:
             break
@@ -237,12 +239,34 @@ def find_sticks(motion, forecast, first, last, suspects, now, h, top):
 
 
 @inner(inline=True)
+def find_weak(motion, d_c, forecast, first, last, now, h, top):
+    """Add the ends of weakening until h of the blocks first..last-1, where slip reaches d_c."""
+    if d_c is not None:
+        coefficients = forecast.coefficients
+        for i in range(first, last):
+            if motion.falls[i] == 0.0:
+                continue
+            factorial = 1.0
+            for k in range(top + 1):
+                factorial *= max(k, 1)
+                coefficients[k] = motion.w[k, i] / factorial
+            coefficients[0] += motion.offset[i] - motion.released[i] - d_c
+            if polynomial(coefficients, top, h) >= 0.0:
+                n = forecast.sticks.n
+                before = polynomial(coefficients, top, now)
+                root = crossing(coefficients, top, now, h) if before < 0.0 else now
+                forecast.stick_block[n], forecast.stick_time[n] = i, root
+                forecast.weak[n] = True
+                forecast.sticks.n = n + 1
+
+
+@inner(inline=True)
 def forget_sticks(forecast, first, last):
     """Drop the foreseen sticks of the blocks first..last-1."""
-    block, time = forecast.stick_block, forecast.stick_time
+    block, time, weak = forecast.stick_block, forecast.stick_time, forecast.weak
     kept = 0
     for q in range(forecast.sticks.n):
         if not first <= block[q] < last:
-            block[kept], time[kept] = block[q], time[q]
+            block[kept], time[kept], weak[kept] = block[q], time[q], weak[q]
             kept += 1
     forecast.sticks.n = kept

@@ -7,7 +7,7 @@ import numpy as np
 from ..model.samples import Samples
 from ..model.scene import Scene
 from . import arrays, taylor
-from .friction import constants_of
+from .friction import begin_weakening, constants_of
 
 # A call of a kernel makes at most this number of steps, and of updates of a block, which take about
 # a tenth of a second. Between calls Python tells the progress and can be interrupted.
@@ -39,7 +39,7 @@ class Lattice:
         self.call_steps = CALL_STEPS
         self.mirror = scene.symmetric
         leaf = scene.gamma if scene.boundary == "displacement" else 0.0
-        total, friction = scene.release == "total", constants_of(scene.friction)
+        total, friction = scene.release == "total", constants_of(scene.friction, self.localised)
         self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, friction)
         # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
         weakening = max(-scene.friction.linear_rate, 0.0) * scene.duration
@@ -68,6 +68,8 @@ class Lattice:
         edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
         n = self.segments.count.n = edges.size // 2
         self.segments.starts[:n], self.segments.ends[:n] = edges[0::2], edges[1::2]
+        for block in np.flatnonzero(self.sliding):
+            begin_weakening(self.motion, self.medium.d_c, block)
         self.tally.first_stick_time = np.nan
         self.tally.releases = self.sliding.sum()
 
@@ -112,6 +114,7 @@ class Lattice:
         self.motion.strain[inside] = old.strain
         self.motion.tau[inside] = old.tau
         self.motion.released[inside] = old.released
+        self.motion.falls[inside] = old.falls
         away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
         self.motion.resists[:] = away >= self.scene.friction.zone
         for first, last in ((0, left), (inside.stop, size)):

@@ -14,8 +14,22 @@ import numpy as np
 
 from .arrays import ALL_STUCK, CONTINUE, DONE, GROW, MOST_EVENTS, ROOM, UNSTABLE
 from .events import change_course
-from .foresight import due_releases, find_sticks, foresee_releases, next_event, simultaneous
-from .friction import dissipation_by_rate, strengthen
+from .foresight import (
+    due_releases,
+    find_sticks,
+    find_weak,
+    foresee_releases,
+    next_event,
+    simultaneous,
+)
+from .friction import (
+    begin_weakening,
+    dissipation_by_rate,
+    end_weakening,
+    resist_weakening,
+    strengthen,
+    weaken,
+)
 from .jit import entry, inner, once
 from .segments import holds, release_block, stick_block
 from .stencils import (
@@ -124,12 +138,14 @@ def derivatives(medium, motion, segments, alpha, top):
         first_acceleration(w, motion.strain, motion.tau, a, b, medium.per_dx, leaf, damping)
         if alpha != 0.0:
             strengthen(w, 2, a, b, alpha)
+        resist_weakening(motion, a, b, medium.d_c)
         for k in range(3, top + 1):
             if mirror and a == 1:
                 w[k - 1, 0] = w[k - 1, 2]
             next_derivative(w, k, a, b, medium.per_dx2, leaf, damping)
             if alpha != 0.0:
                 strengthen(w, k, a, b, alpha)
+            weaken(w, k, a, b, np.uint64(0), motion, medium.d_c)
     if mirror:
         for k in range(1, top + 1):
             w[k, 0] = w[k, 2]
@@ -150,6 +166,7 @@ def foresee(medium, motion, segments, forecast, tally, h, top):
         suspects = velocity_after(motion.velocity, motion.w, a, b, h, top - 1)
         if suspects > 0 and not find_sticks(motion, forecast, a, b, suspects, 0.0, h, top):
             return False
+        find_weak(motion, medium.d_c, forecast, a, b, 0.0, h, top)
     size = motion.tau.shape[0]
     lowest = foresee_releases(medium, motion, segments, forecast, np.int64(0), size, 0.0, h)
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
@@ -174,7 +191,9 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     top = motion.w.shape[0] - 1
     changed, tally = scratch.changed, history.tally
     block, stick = event.block, event.stick
-    if stick:
+    if event.weak:
+        end_weakening(medium, medium.d_c, motion, block, True, tally)
+    elif stick:
         stick_block(segments, block)
         note_stick(history, block, instant)
     else:
@@ -189,6 +208,7 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
         return False
     tally.min_stuck_stress = min(tally.min_stuck_stress, lowest)
     if stick:
+        end_weakening(medium, medium.d_c, motion, block, False, tally)
         tally.min_velocity = min(tally.min_velocity, speed)
     k = kink * ((2.0 if medium.mirror else 1.0) * 2.0 * medium.beta / medium.dx)
     s = event.time
@@ -238,6 +258,9 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
     for q in range(forecast.sticks.n):
         if forecast.stick_time[q] <= latest:
             block = forecast.stick_block[q]
+            end_weakening(medium, medium.d_c, motion, block, forecast.weak[q], tally)
+            if forecast.weak[q]:
+                continue
             tally.min_velocity = min(tally.min_velocity, motion.w[1, block])
             for k in range(1, top + 1):
                 motion.w[k, block] = 0.0
@@ -245,6 +268,7 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
             note_stick(history, block, end)
     for q in range(n_due):
         release_block(segments, due[q])
+        begin_weakening(motion, medium.d_c, due[q])
         note_release(history, due[q], end)
 
 

@@ -12,6 +12,8 @@ class ExponentialWeakening(SlipWeakening):
     """Friction exp(-slip/d_c), healed at a stick. Within |x| < ``nucleation`` it is 0."""
 
     law: ClassVar = "exponential_weakening"
+    schemes: ClassVar = ("fixed_step",)
+    linear_weakening: ClassVar = None
 
     @staticmethod
     def friction(slip, velocity, d_c, nucleation):

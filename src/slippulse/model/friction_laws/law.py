@@ -31,6 +31,11 @@ class Friction:
         return 0.0
 
     @property
+    def linear_weakening(self) -> float | None:
+        """The slip d_c over which friction falls linearly; None for other laws."""
+        return None
+
+    @property
     def steepest(self) -> float:
         """Upper bound on the slope of friction over slip rate."""
         return 0.0

@@ -22,6 +22,7 @@ class SlipWeakening(Friction):
     nucleation: float
 
     law: ClassVar = "slip_weakening"
+    schemes: ClassVar[tuple[str, ...]] = ("localised", "fixed_step")
 
     def __post_init__(self) -> None:
         check_number("d_c", self.d_c, above=0.0)
@@ -31,6 +32,11 @@ class SlipWeakening(Friction):
     def friction(slip, velocity, d_c, nucleation):
         """Return 1 - slip/d_c, or 0 beyond d_c."""
         return max(0.0, 1.0 - slip / d_c)
+
+    @property
+    def linear_weakening(self) -> float | None:
+        """The slip d_c."""
+        return self.d_c
 
     @property
     def zone(self) -> float:
