@@ -5,14 +5,24 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import pandas as pd
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, sync_playwright
+
+from slippulse.report.explorer_page import explorer_page
+from slippulse.studies import explorer_law
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 WIDTHS, SCHEMES = (390, 1280), ("light", "dark")
 # Rules of WCAG at the levels A and AA.
 LEVELS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+# A simulated run that the explorer can show.
+RUN = {"boundary": "displacement", "left": 0.3, "right": 0.3, "width": 1.0, "peak": 1.0}
+RUN |= {"gamma": 0.5, "beta": 1e-3, "damping_ratio": 0.1, "release": "total"}
+RUN |= {"steps_and_bumps": '{"steps": [], "bumps": []}', "front_speed_right": 1.1}
+RUN |= {"transition_time": 4.1, "transition_length": 10.1}
+RUN |= {"pulse_slip": 1.11, "pulse_state": "steady"}
 
 
 @pytest.fixture(scope="session")
@@ -70,3 +80,17 @@ def violations():
         return problems
 
     return find
+
+
+@pytest.fixture(scope="session")
+def explorer(tmp_path_factory):
+    """The explorer with one simulated run."""
+    path = tmp_path_factory.mktemp("explorer") / "explorer.html"
+    page = explorer_page(explorer_law.table({}, {}, {}), [pd.DataFrame([RUN])], "viridis")
+    path.write_text(page, encoding="utf-8")
+    return path
+
+
+def settled(page: Page) -> None:
+    """Wait until the page has drawn what it was told."""
+    page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")

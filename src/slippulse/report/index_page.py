@@ -50,7 +50,7 @@ def index_page(
     filled = partial(fill, names=names | {"runs": partial(parameters, config)})
     captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
     lines = judged_lines(summary, ledger, filled)
-    in_short, accuracy = answer(lines), filled(summary["accuracy"])
+    in_short, accuracy = answer(lines[:1]), filled(summary["accuracy"])
     figures = {
         # A user-defined sweep has no caption but its name.
         name: captions.get(name)

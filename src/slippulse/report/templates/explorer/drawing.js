@@ -18,14 +18,14 @@ function ticks(low, high, count = 5) {
 // A picture with axes, as wide as the page leaves it so that its letters keep their size.
 class Picture {
   constructor(element, {
-    x, y, labels, height, top: above = 12, xTicks = ticks(...x), yTicks = ticks(...y), position = (value) => value, shown = format,
+    x, y, labels, height, top: above = 12, before = 58, xTicks = ticks(...x), yTicks = ticks(...y), position = (value) => value, shown = format,
   }) {
-    this.element = element;
+    Object.assign(this, { element, height, ranges: [x, y] });
+    element.picture = this;
     // Asked once a width of the page, since the answer waits for all that was drawn before.
-    element.room ||= element.parentElement.clientWidth;
-    this.width = Math.max(element.room - 24, 240);
-    this.height = height;
-    this.box = { left: 58, right: this.width - 10, top: above, bottom: height - 42 };
+    element.room ||= element.getBoundingClientRect().width;
+    this.width = Math.max(element.room, 40);
+    this.box = { left: before, right: this.width - 10, top: above, bottom: height - 42 };
     this.inside = [];
     const { left, right, top, bottom } = this.box;
     const [low, high] = x.map(position);
@@ -42,6 +42,18 @@ class Picture {
       + `<text transform="translate(13 ${0.5 * (top + bottom)}) rotate(-90)" text-anchor="middle">${labels[1]}</text>`;
   }
 
+  // What the (even) axes say where the pointer is.
+  valuesAt({ clientX, clientY }) {
+    const place = this.element.getBoundingClientRect();
+    const { left, right, top, bottom } = this.box;
+    const across = ((clientX - place.left) * this.width / place.width - left) / (right - left);
+    const up = (bottom - (clientY - place.top) * this.height / place.height) / (bottom - top);
+    return [across, up].map((part, n) => {
+      const [low, high] = this.ranges[n];
+      return low + (high - low) * Math.min(Math.max(part, 0), 1);
+    });
+  }
+
   curve(points, kind) {
     const path = points.map(([x, y]) => `${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}`).join("L");
     if (points.length > 1) this.inside.push(`<path class="${kind}" d="M${path}"/>`);
@@ -52,8 +64,8 @@ class Picture {
     this.inside.push(`<polygon class="${kind}" points="${corners}"/>`);
   }
 
-  dot(x, y, kind = "") {
-    this.inside.push(`<circle class="${kind}" cx="${this.x(x)}" cy="${this.y(y)}" r="${kind ? 5 : 4}"/>`);
+  dot(x, y, kind = "", radius = kind ? 5 : 4) {
+    this.inside.push(`<circle class="${kind}" cx="${this.x(x)}" cy="${this.y(y)}" r="${radius}"/>`);
   }
 
   // A symbol with its subscript after "_" set as one.
@@ -80,18 +92,18 @@ class Picture {
     this.write(left + 64 * wide + 8, 15, text);
   }
 
-  // Show it; what it says is its alternative text.
+  // Show it, below what changes with the moment; what it says is its alternative text.
   show(text) {
     const { left, right, top, bottom } = this.box;
     const clip = `clip-${this.element.id}`;
     this.element.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
     this.element.setAttribute("aria-label", text);
     this.element.innerHTML = `<clipPath id="${clip}"><rect x="${left}" y="${top}" width="${right - left}"`
-      + ` height="${bottom - top}"/></clipPath><g clip-path="url(#${clip})">${this.inside.join("")}</g>${this.outside}`;
+      + ` height="${bottom - top}"/></clipPath><g clip-path="url(#${clip})">${this.inside.join("")}<g class="moment"></g></g>${this.outside}`;
   }
 }
 
-// At even positions between the fronts of a time: arrival, times and slip velocities from there on, end of sliding.
+// At even positions between the fronts of a time: arrival, times, slip velocities and slips from there on, end of sliding.
 function columns(rupture, end, count = 121) {
   const [low, high] = rupture.fronts(end);
   const half = (count - 1) / 2;
@@ -103,9 +115,18 @@ function columns(rupture, end, count = 121) {
       continue;
     }
     const { times, values, stick } = rupture.history(y, end);
-    found.push({ y, start: times[0], stick, stop: Math.min(stick, end), times, values });
+    found.push({ y, start: Math.min(times[0], end), stick, stop: Math.min(stick, end), times, values, slips: sums(times, values) });
   }
   return found;
+}
+
+// Slip at each time of a history of slip velocity.
+function sums(times, values) {
+  let slip = 0;
+  return times.map((time, k) => {
+    if (k) slip += 0.5 * (values[k] + values[k - 1]) * (time - times[k - 1]);
+    return slip;
+  });
 }
 
 // The columns as an image, time to the right and position upward; a few pixels beyond where anything slides.
@@ -126,7 +147,8 @@ function velocityImage(found, end, largest, colours, pixels = 300) {
       const time = (n + 0.5) * end / pixels;
       if (time < first || time > last) continue;
       while (m < times.length - 2 && times[m + 1] < time) m++;
-      const fraction = Math.min(Math.max((time - times[m]) / (times[m + 1] - times[m]), 0), 1);
+      // A block that sticks where it is released has one time twice.
+      const fraction = Math.min(Math.max((time - times[m]) / (times[m + 1] - times[m] || 1), 0), 1);
       const value = times.length > 1 ? values[m] + fraction * (values[m + 1] - values[m]) : 0;
       const [red, green, blue] = colours[Math.min(Math.floor(colours.length * Math.max(value, 0) / largest), colours.length - 1)];
       shades[(found.length - 1 - k) * pixels + n] = red | green << 8 | blue << 16 | 255 << 24;

@@ -1,0 +1,104 @@
+// The time and position that are read off and drawn: set by sliders and by a click on the map, moved by play.
+
+// Seconds that play takes for the whole map, and that a picture stays where the reader wants little motion.
+const [WHOLE, STILL] = [8, 0.5];
+const LITTLE_MOTION = matchMedia("(prefers-reduced-motion: reduce)");
+// Fractions of the map: play begins anew from its end.
+const moment = { time: 1, place: 0.5 };
+// Time and position under the pointer.
+let pointed = null;
+let playing = false;
+
+function momentOf(scene) {
+  const [low, high] = view.reach;
+  return { time: moment.time * scene.end, x: low + (high - low) * moment.place };
+}
+
+// What is known of a point of the map, in words.
+function reading({ scene, rupture, known }, time, x) {
+  const start = `t = ${format(time, 3)}, x = ${format(x, 3)}: `;
+  const stress = `Pre-stress ${format(prestressAt(scene, x), 3)}.`;
+  if (!(time > rupture.arrival(x))) return `${start}not yet released. ${stress}`;
+  if (!known(x, time)) return `${start}not known, see below the map.`;
+  const { times, values, stick } = rupture.history(x, time);
+  const slip = format(sums(times, values).at(-1), 3);
+  return stick <= time ? `${start}stuck again since t = ${format(stick, 3)}, slip ${slip}. ${stress}`
+    : `${start}slides, slip velocity ${format(values.at(-1), 3)}, slip ${slip}. ${stress}`;
+}
+
+function drawMoment() {
+  if (!shown) return;
+  const { picture } = at("map");
+  const now = momentOf(shown.scene);
+  const { time, x } = pointed || now;
+  const { top, bottom } = picture.box;
+  picture.element.querySelector(".moment").innerHTML = `<path class="now" d="M${picture.x(now.time)} ${top}V${bottom}"/>`
+    + `<circle class="probe" cx="${picture.x(time)}" cy="${picture.y(x)}" r="6"/>`;
+  drawBlocks(shown, now.time);
+  const said = at("reading");
+  // A reader of screens hears what was set, not what passes by.
+  said.setAttribute("aria-live", playing || pointed ? "off" : "polite");
+  said.textContent = reading(shown, time, x);
+  for (const [name, value] of [["time", now.time], ["place", now.x]]) {
+    at(name).value = Math.round(1000 * moment[name]);
+    at(name).setAttribute("aria-valuetext", format(value, 3));
+  }
+}
+
+// Seconds since the last picture move the time on.
+function play(before, now) {
+  if (!playing) return;
+  const seconds = (now - before) / 1000;
+  if (LITTLE_MOTION.matches && seconds < STILL) {
+    requestAnimationFrame((next) => play(before, next));
+    return;
+  }
+  moment.time = Math.min(moment.time + Math.min(seconds, STILL) / WHOLE, 1);
+  if (moment.time === 1) pause();
+  drawMoment();
+  if (playing) requestAnimationFrame((next) => play(now, next));
+}
+
+function pause() {
+  playing = false;
+  at("play").textContent = "Play";
+}
+
+function makePlayable() {
+  at("play").addEventListener("click", () => {
+    if (playing) {
+      pause();
+      return;
+    }
+    playing = true;
+    at("play").textContent = "Pause";
+    if (moment.time === 1) moment.time = 0;
+    requestAnimationFrame((now) => play(now, now));
+  });
+  for (const name of ["time", "place"]) {
+    at(name).addEventListener("input", () => {
+      if (name === "time") pause();
+      moment[name] = at(name).value / 1000;
+      drawMoment();
+    });
+  }
+  const map = at("map");
+  const point = (event) => {
+    const [time, x] = map.picture.valuesAt(event);
+    pointed = { time: Math.min(time, shown.scene.end), x };
+    drawMoment();
+  };
+  map.addEventListener("pointermove", point);
+  map.addEventListener("pointerleave", () => {
+    pointed = null;
+    drawMoment();
+  });
+  map.addEventListener("click", (event) => {
+    point(event);
+    const [low, high] = view.reach;
+    moment.time = pointed.time / shown.scene.end;
+    moment.place = (pointed.x - low) / (high - low);
+    pause();
+    drawMoment();
+  });
+}

@@ -1,0 +1,214 @@
+"""The explorer in motion: dragging, reading off and playing, without a page that jumps."""
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+from browser.conftest import SCHEMES, settled
+from playwright.sync_api import Page
+
+pytestmark = pytest.mark.slow
+
+# Everything that jumped, by how much of the screen and how far, from the first picture on.
+WATCH = """
+window.shifts = [];
+const keep = (list) => window.shifts.push(...list.getEntries().map((entry) => entry.value));
+new PerformanceObserver(keep).observe({ type: "layout-shift", buffered: true });
+"""
+LARGEST_SHIFT = 0.01
+
+
+@contextmanager
+def still(page: Page) -> Iterator[None]:
+    """Let nothing on the page jump, whether the reader has just pressed a key or not."""
+    page.evaluate(WATCH)
+    yield
+    settled(page)
+    assert sum(page.evaluate("window.shifts")) < LARGEST_SHIFT
+
+
+def reading(page: Page) -> str:
+    return page.locator("#reading").text_content()
+
+
+def time_of(page: Page) -> float:
+    return float(page.locator("#time").input_value())
+
+
+def inside(page: Page, name: str, across: float, down: float) -> tuple[int, int]:
+    """A pixel of a picture, by fractions of its width and height."""
+    box = page.locator(f"#{name}").bounding_box()
+    return round(box["x"] + across * box["width"]), round(box["y"] + down * box["height"])
+
+
+def drag(page: Page, start: tuple[int, int], end: tuple[int, int]) -> None:
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=8)
+    settled(page)
+    page.mouse.up()
+
+
+def levels(page: Page) -> list[float]:
+    return [float(page.locator(f"#{name}-typed").input_value()) for name in ("left", "right")]
+
+
+@pytest.mark.parametrize("width", [400, 1440])
+def test_dragging_changes_the_pre_stress(explorer, opened, width):
+    with opened(explorer, width) as page:
+        settled(page)
+        with still(page):
+            page.locator("#prestress").scroll_into_view_if_needed()
+            before = page.locator("#map").inner_html()
+            drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.7, 0.2))
+            both = levels(page)
+            assert both[0] == both[1] and -0.9 < both[1] < 0.7
+            assert page.locator("#map").inner_html() != before
+            assert f"right={both[1]:g}" in page.url
+        page.locator("#alike").uncheck()
+        drag(page, inside(page, "prestress", 0.7, 0.8), inside(page, "prestress", 0.5, 0.8))
+        left, right = levels(page)
+        assert left < right == both[1]
+
+
+def test_a_dragged_level_into_negative_pre_stress_moves_nothing_else(explorer, opened):
+    with opened(explorer, 1440) as page:
+        settled(page)
+        page.locator("#alike").uncheck()
+        with still(page):
+            drag(page, inside(page, "prestress", 0.85, 0.8), inside(page, "prestress", 0.45, 0.8))
+            drag(page, inside(page, "prestress", 0.85, 0.2), inside(page, "prestress", 0.45, 0.2))
+            assert max(levels(page)) < 0.0
+
+
+def test_the_pointer_reads_the_map(explorer, opened):
+    with opened(explorer, 1440) as page:
+        settled(page)
+        with still(page):
+            said = []
+            for across, down in ((0.1, 0.15), (0.2, 0.5), (0.9, 0.45)):
+                page.mouse.move(*inside(page, "map", across, down))
+                said.append(reading(page))
+        assert "not yet released" in said[0]
+        assert re.search(r"slides, slip velocity \d", said[1])
+        assert "stuck again" in said[2]
+        page.mouse.move(5, 5)
+        assert reading(page) not in said
+        page.mouse.click(*inside(page, "map", 0.2, 0.5))
+        page.mouse.move(5, 5)
+        assert reading(page) == said[1]
+
+
+def test_the_keyboard_reads_the_map(explorer, opened):
+    with opened(explorer) as page:
+        settled(page)
+        page.locator("#time").press("Home")
+        assert "t = 0, x = 0: not yet released" in reading(page)
+        for _ in range(3):
+            page.locator("#time").press("PageUp")
+        assert "slides" in reading(page)
+        page.locator("#place").press("Home")
+        assert "not yet released" in reading(page)
+        assert page.locator("#place").get_attribute("aria-valuetext") in reading(page)
+
+
+def test_a_reading_is_the_exact_solution(explorer, opened):
+    with opened(explorer) as page:
+        settled(page)
+        page.locator("#time").fill("200")
+        said = re.search(r"velocity ([0-9.]+), slip ([0-9.]+)\.", reading(page)).groups()
+        exact = page.evaluate(
+            """() => {
+                const time = 0.2 * settings.end;
+                return [shown.rupture.velocity(0, time), shown.rupture.slip(0, time)];
+            }"""
+        )
+    assert [float(number) for number in said] == pytest.approx(exact, rel=5e-3)
+
+
+def test_play_advances_pauses_and_begins_anew(explorer, opened):
+    with opened(explorer, 1440) as page:
+        settled(page)
+        page.locator("#time").press("End")
+        drawn = page.locator("#blocks").inner_html()
+        play = page.locator("#play")
+        with still(page):
+            play.press("Enter")
+            assert play.text_content() == "Pause"
+            page.wait_for_function("Number(document.getElementById('time').value) > 100")
+            assert page.locator("#blocks").inner_html() != drawn
+            play.press("Enter")
+            assert play.text_content() == "Play"
+            paused = time_of(page)
+            page.wait_for_timeout(200)
+            assert paused == time_of(page) < 1000
+        page.locator("#time").fill("990")
+        play.press("Enter")
+        page.wait_for_function("document.getElementById('play').textContent === 'Play'")
+        assert time_of(page) == 1000
+
+
+def test_blocks_slide_by_the_slip_of_the_exact_solution_and_keep_their_order(explorer, opened):
+    with opened(explorer) as page:
+        settled(page)
+        found = page.evaluate(
+            """() => {
+                const { map, scene, rupture } = shown;
+                const time = 0.5 * scene.end;
+                return [0, 2.5, -6, 30].map((x) => {
+                    const { slip, velocity, state } = blockAt(map, x, time);
+                    const stick = x === 30 ? Infinity : rupture.stick(x, scene.end);
+                    const exact = x === 30 ? 0 : rupture.slip(x, Math.min(time, stick));
+                    return { slip, velocity, state, exact };
+                });
+            }"""
+        )
+        heights = page.locator("#blocks rect.block").evaluate_all(
+            "blocks => blocks.map((block) => Number(block.getAttribute('y')))"
+        )
+    assert [block["state"] for block in found] == ["stuck", "stuck", "slides", "waits"]
+    for block in found:
+        assert block["slip"] == pytest.approx(block["exact"], rel=2e-2, abs=1e-9)
+        assert (block["velocity"] > 0.0) == (block["state"] == "slides")
+    assert heights == sorted(heights, reverse=True)
+
+
+def test_little_motion_is_asked_for_and_given(explorer, opened):
+    with opened(explorer) as page:
+        page.emulate_media(reduced_motion="reduce")
+        page.reload()
+        settled(page)
+        page.evaluate(
+            """() => {
+                window.times = [];
+                const drawn = drawBlocks;
+                drawBlocks = (found, time) => { window.times.push(time); drawn(found, time); };
+            }"""
+        )
+        page.locator("#play").press("Enter")
+        page.wait_for_timeout(1800)
+        times = page.evaluate("window.times")
+    assert 2 <= len(times) <= 5
+
+
+@pytest.mark.parametrize("width", [1440, 400])
+def test_the_map_stays_in_view(explorer, opened, width):
+    with opened(explorer, width) as page:
+        settled(page)
+        for name in ("end", "velocity", "simulated") if width > 1000 else ("end",):
+            page.locator(f"#{name}").scroll_into_view_if_needed()
+            for part in ("map", "play"):
+                box = page.locator(f"#{part}").bounding_box()
+                assert box["y"] >= -1.0 and box["y"] + box["height"] < 844, (name, part)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("width", [400, 1440])
+def test_it_is_accessible_at_rest_and_while_it_plays(explorer, opened, violations, width, scheme):
+    with opened(explorer, width, scheme) as page:
+        settled(page)
+        assert violations(page) == []
+        page.locator("#play").press("Enter")
+        page.locator("details summary").press("Enter")
+        assert violations(page) == []
