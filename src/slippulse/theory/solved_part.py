@@ -1,6 +1,7 @@
 """A connected part of a rupture with its trailing edge: fields at all its points, and extremes."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -20,8 +21,13 @@ CHECKED, FALL = 0.25, 1e-6
 Horizon = Callable[[np.ndarray], np.ndarray]
 
 
+@dataclass
 class SolvedPart(Part):
     """A connected part of the rupture and its trailing edge."""
+
+    def __post_init__(self) -> None:
+        # One field after another is wanted at the same positions: the last ones, and their sticks.
+        self._last = np.empty(0), np.empty(0)
 
     @cached_property
     def edge(self) -> TrailingEdge:
@@ -30,11 +36,11 @@ class SolvedPart(Part):
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
         """Stick times at positions; NaN outside the part, and for none before the end."""
-        out = np.full(x.shape, np.nan)
-        covered = self.curve.covers(x)
-        if covered.any():
+        if not np.array_equal(x, self._last[0]):
+            out, covered = np.full(x.shape, np.nan), self.curve.covers(x)
             out[covered] = self.edge.stick_time(x[covered])
-        return out
+            self._last = x, out
+        return self._last[1]
 
     def fill(
         self,

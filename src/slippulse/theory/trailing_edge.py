@@ -174,7 +174,8 @@ class TrailingEdge:
         part, sticks = self.part, np.isfinite(stick)
         time = np.where(sticks, stick, part.until)
         past = part.past(x, time)
-        velocity = np.where(sticks, 0.0, past.slip_velocity())
+        velocity = np.zeros(x.size) if sticks.all() else past.slip_velocity()
+        velocity[sticks] = 0.0
         by_xi, by_eta = past.velocity_slopes()
         slow = (by_xi >= 0.0) | (by_eta >= 0.0)
         kind = np.where(sticks, np.where(slow, SLOW, FAST), SLIDES)
