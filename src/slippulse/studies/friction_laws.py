@@ -18,8 +18,8 @@ from ..model.friction_laws.slip_weakening import SlipWeakening
 from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.simulate import simulate
-from ..theory.rate_dependent import RatePulse, rate_pulse
-from ..theory.weakening import WeakeningPulse, weakening_pulse
+from ..theory.rate_dependent import rate_pulse
+from ..theory.weakening import weakening_pulse
 from .rate_dependence import CRACK, CREEPING, STICKING
 
 NEEDS = {"settings": ["measure"]}
@@ -171,7 +171,6 @@ def _speed(right: xr.Dataset) -> float:
 
 def _theory(level: float, law: Friction) -> dict:
     """Exact numbers of a case."""
-    pulse: WeakeningPulse | RatePulse
     if isinstance(law, SlipWeakening):
         pulse = weakening_pulse(level, GAMMA, BETA, law.d_c)
     else:

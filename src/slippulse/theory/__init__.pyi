@@ -22,11 +22,10 @@ from .pulse import paper_pulse as paper_pulse
 from .pulse import paper_transition_displacement as paper_transition_displacement
 from .pulse import paper_transition_stress as paper_transition_stress
 from .pulse import steady_pulse as steady_pulse
-from .rate_dependent import RatePulse as RatePulse
 from .rate_dependent import rate_pulse as rate_pulse
 from .rupture import FrontEnd as FrontEnd
 from .rupture import Limit as Limit
 from .rupture import Rupture as Rupture
-from .weakening import WeakeningPulse as WeakeningPulse
+from .weakening import SteadyRupture as SteadyRupture
 from .weakening import undamped_weakening_slip as undamped_weakening_slip
 from .weakening import weakening_pulse as weakening_pulse

@@ -21,13 +21,12 @@ class ArrestingCrack:
 
     and X -> x_minus only as e -> infinity: the left front never arrives, and the arrest time is
     infinite. Source: equation (11) and section III C of the paper for x_minus; the rest follows.
+    Raises ValueError: outside these ranges; of every method, outside those that it states.
 
     Parameters
     ----------
     prestress : Prestress, tau(0) = 1, level 0 far to the right and negative far to the left
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
-
-    Raises ValueError: outside these ranges; of every method, outside those that it states.
 
     Examples
     --------

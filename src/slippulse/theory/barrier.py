@@ -1,7 +1,6 @@
 """The distance that a steady pulse enters into a barrier of negative pre-stress."""
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
@@ -9,7 +8,7 @@ from ..model.checks import check_number
 from ..model.prestress import Prestress
 from .curve import Curve, Panel
 from .domains import check_domains
-from .fast_front import straight_panel
+from .fast_front import straight_panels
 from .front_speeds import front_speed
 from .pulse import steady_pulse
 from .slow_front import advance
@@ -36,7 +35,10 @@ def barrier_depth(
     damping_ratio: float = 0.0,
     release: str = "total",
 ) -> float:
-    """Depth at which a steady pulse dies in a barrier; a shorter barrier is passed.
+    """Depth (units of H) at which a steady pulse dies in a barrier; a shorter barrier is passed.
+
+    Raises ValueError: outside the domain.
+    Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
 
     Parameters
     ----------
@@ -44,13 +46,6 @@ def barrier_depth(
     tau_barrier : float, pre-stress of the barrier, from -1e6 to -tau0/200
     gamma : float, elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
-
-    Returns
-    -------
-    float, distance from the edge of the barrier (units of H), proportional to 1/sqrt(gamma)
-
-    Raises ValueError: outside the domain.
-    Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
 
     Examples
     --------
@@ -85,23 +80,17 @@ def _steady_front(tau0: float, speed: float) -> list[Panel]:
     memory = MEMORY * steady_pulse(tau0, 1.0, speed=speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
-    return [
-        straight_panel(left, right, 1.0 / speed, tau0) for left, right in pairwise(edges.tolist())
-    ]
+    return straight_panels(edges, -1.0 / speed, tau0)
 
 
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
-    """Estimate of the depth: (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
+    """Estimate of the depth (units of H): (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
+
+    Raises ValueError: outside the domain. Source: the authors' public code of later work.
 
     Parameters
     ----------
     tau0, tau_barrier, gamma : float, pre-stress before it, in (0, 1), in it, < 0, and gamma > 0
-
-    Returns
-    -------
-    float, distance (units of H)
-
-    Raises ValueError: outside the domain. Source: the authors' public code of later work.
 
     Examples
     --------

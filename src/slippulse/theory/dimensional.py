@@ -14,7 +14,8 @@ POSITIVE: dict[str, Any] = {"at_least": 1.0 / LARGEST, "at_most": LARGEST}
 def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, rock_thickness):
     """Static stress drop of a fault with a compliant damage zone: section IV C 2 of the paper.
 
-    A displacement is imposed far away, on the rock beyond the zone.
+    It is G delta/(H + (G/G_r) H_r), in Pa, if a displacement is imposed far away on the rock.
+    Raises ValueError: outside these ranges.
 
     Parameters
     ----------
@@ -23,12 +24,6 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
         1e-100 to 1e100, G_r infinite too, for a rigid one
     thickness, rock_thickness : floats or arrays, H of the zone and H_r of the rock, to the imposed
         displacement (m), 1e-100 to 1e100, H_r 0 too
-
-    Returns
-    -------
-    float or array : G delta/(H + (G/G_r) H_r) (Pa)
-
-    Raises ValueError: outside these ranges.
 
     Examples
     --------

@@ -1,6 +1,5 @@
 """The crack-pulse transition under leaf springs, in scenes that first stick at x = 0."""
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +8,7 @@ from ..model.checks import check_kind
 from ..model.prestress import Prestress
 from .curve import Curve
 from .domains import check_domains
-from .fast_front import straight_panel
+from .fast_front import straight_panels
 from .front_speeds import front_speed
 from .fronts import Fronts
 from .part import Part
@@ -30,20 +29,16 @@ def exact_transition_displacement(
 ) -> ExactTransition:
     """T_trans and L_trans of a symmetric scene under a displacement boundary, as dx -> 0.
 
+    Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front
+    needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
+    Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
+    `Rupture.transition` looks at all positions.
+
     Parameters
     ----------
     prestress : Prestress, symmetric, with tau(0) = 1, positive everywhere
     gamma : float, elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
-
-    Returns
-    -------
-    ExactTransition
-
-    Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front
-    needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
-    Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
-    `Rupture.transition` looks at all positions.
 
     Examples
     --------
@@ -71,21 +66,17 @@ def exact_transition_displacement(
 def uniform_transition_time(
     tau0: float, gamma: float, damping_ratio: float = 0.0, release: str = "total"
 ) -> float:
-    """T_trans in uniform pre-stress that is nucleated at one point.
-
-    Parameters
-    ----------
-    tau0, gamma : float, pre-stress, in (0, 1), and elasticity ratio, > 0
-    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
-
-    Returns
-    -------
-    float, proportional to 1/sqrt(gamma)
+    """T_trans, like 1/sqrt(gamma), in uniform pre-stress that is nucleated at one point.
 
     Raises ValueError: outside the domain.
     Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v. With w = 1/v and
     q = sqrt(gamma) t/(1 + w) it is that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, which
     depends on v alone.
+
+    Parameters
+    ----------
+    tau0, gamma : float, pre-stress, in (0, 1), and elasticity ratio, > 0
+    damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
 
     Examples
     --------
@@ -93,17 +84,14 @@ def uniform_transition_time(
     3.787
     """
     check_domains(tau0=tau0, gamma=gamma, damping_ratio=damping_ratio)
-    rate = 1.0 / float(front_speed(tau0, damping_ratio, release))
+    slowness = 1.0 / float(front_speed(tau0, damping_ratio, release))
     # A factor of the velocity does not move its zero; a tiny one would lose digits.
     tau = max(tau0, 1e-9)
     # The fronts of a slow rupture need not be known beyond where the waves of the centre come from.
-    reach = 12.0 / max(1.0 - rate**2, 12.0 / FARTHEST)
+    reach = 12.0 / max(1.0 - slowness**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
-    panels = [
-        straight_panel(left, right, np.copysign(rate, left + right), tau)
-        for left, right in pairwise(edges.tolist())
-    ]
-    return _first_stick_at_centre(Curve(panels), 1.0, 10.0) / float(np.sqrt(float(gamma)))
+    curve = Curve(straight_panels(edges, slowness, tau))
+    return _first_stick_at_centre(curve, 1.0, 10.0) / float(np.sqrt(float(gamma)))
 
 
 def _first_stick_at_centre(curve: Curve, gamma: float, until: float) -> float:

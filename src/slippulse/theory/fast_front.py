@@ -167,9 +167,12 @@ class FastFront:
         )
 
 
-def straight_panel(left: float, right: float, slope: float, tau: float) -> Panel:
-    """A panel of a front at constant speed in uniform pre-stress, T = slope x."""
-    half = 0.5 * (right - left)
-    x = left + half * (1.0 + NODES)
-    source = np.full(COUNT, tau * half)
-    return Panel(x, slope * x, source, (left, right), (slope * left, slope * right))
+def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Panel]:
+    """Panels of T = slowness |x| in uniform pre-stress, none of them across x = 0."""
+    panels = []
+    for left, right in pairwise(edges.tolist()):
+        half, slope = 0.5 * (right - left), slowness if left + right > 0.0 else -slowness
+        x = left + half * (1.0 + NODES)
+        source = np.full(COUNT, tau * half)
+        panels.append(Panel(x, slope * x, source, (left, right), (slope * left, slope * right)))
+    return panels

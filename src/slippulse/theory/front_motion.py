@@ -57,6 +57,8 @@ def steady_front(
 ) -> SteadyFront:
     """The steady front at a given speed, without sticking behind it. Source: module docstring.
 
+    Raises ValueError: outside these ranges.
+
     Parameters
     ----------
     speed : float, wave speeds, > 1 and <= 1e100
@@ -64,12 +66,6 @@ def steady_front(
     release : "total" or "elastic"
     blocks : int, blocks behind the front, 10 to 500, and many more than the b v/(v^2 - 1) of the
         layer of damped waves at the front
-
-    Returns
-    -------
-    SteadyFront
-
-    Raises ValueError: outside these ranges.
 
     Examples
     --------

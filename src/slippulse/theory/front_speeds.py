@@ -50,17 +50,13 @@ class Lattice(NamedTuple):
 
 
 def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
-    """Front speed without damping, 1/sqrt(1 - tau_0^2). Source: section III A of the paper.
+    """Front speed (wave speeds) without damping, 1/sqrt(1 - tau_0^2).
+
+    Source: section III A of the paper. Raises ValueError: outside the domain.
 
     Parameters
     ----------
     tau0 : float or array in [0, 1), pre-stress ahead of the front
-
-    Returns
-    -------
-    float or array : front speed (wave speeds)
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -71,10 +67,11 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
 
 
 def front_speed(tau0, damping_ratio, release: str = "total"):
-    """Exact speed of a steady front, leaf springs left out (gamma dx^2 << 1).
+    """Exact speed (wave speeds) of a steady front, leaf springs left out (gamma dx^2 << 1).
 
     Source: Wiener-Hopf factorisation of the lattice equation (`wiener_hopf`); at damping_ratio = 0
     the paper's 1/sqrt(1 - tau_0^2) for any dx. Its relative error is below 1e-12 in tau_0.
+    Raises ValueError: outside the domain.
 
     Parameters
     ----------
@@ -82,12 +79,6 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
         from 0 to 1e100
     release : "total" or "elastic", whether the stress that is compared with the threshold includes
         the damping force
-
-    Returns
-    -------
-    float or array : front speed (wave speeds)
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -115,16 +106,12 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
 def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     """Pre-stress into which a steady front runs at a speed: the inverse of `front_speed`.
 
+    Raises ValueError: outside the domain.
+
     Parameters
     ----------
     speed, damping_ratio : floats or arrays, broadcast: wave speeds, from 1 to 1e100, and beta/dx
     release : "total" or "elastic", as in `front_speed`
-
-    Returns
-    -------
-    float or array : pre-stress tau_0
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -149,27 +136,22 @@ def lattice_front_speed(
     release: str = "total",
     rate_strengthening: float = 0.0,
 ) -> float:
-    """Exact front speed with leaf springs, damping and friction that depends on slip velocity.
+    """Exact front speed (wave speeds) with leaf springs, damping and drag -alpha du/dt.
 
     Where the least pre-stress of all fronts lies at a speed above 1 (rule "total", strong damping),
     two speeds belong to one tau_0: the faster one is returned, which grows with tau_0.
     Source: the lattice symbol with leaf springs (`wiener_hopf`), which has a closed form without
     damping and tends to `front_speed` as gamma dx^2 -> 0. Sticking behind the front is left out.
     The relative error is below 1e-6 next to tau_0 = 1 for gamma dx^2 (1 + beta/dx) up to 10.
+    Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any
+    front faster than the waves and than sqrt(4 + gamma dx^2)/pi (where friction weakens with slip
+    velocity, so fast that slip behind it does not run away).
 
     Parameters
     ----------
     tau0, gamma, dx : floats, pre-stress, in (0, 1), elasticity ratio, > 0, and spacing (H), > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
     rate_strengthening : float, alpha of a term -alpha du/dt; as dx -> 0 it no longer matters
-
-    Returns
-    -------
-    float : front speed (wave speeds)
-
-    Raises ValueError: outside these ranges, or where tau_0 is not above the least pre-stress of any
-    front faster than the waves and than sqrt(4 + gamma dx^2)/pi (where friction weakens with slip
-    velocity, so fast that slip behind it does not run away).
 
     Examples
     --------
@@ -204,20 +186,15 @@ def lattice_front_speed(
 
 
 def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
-    """Front speed as dx -> 0 at fixed beta, under the rule as printed ("elastic").
+    """Front speed (wave speeds) as dx -> 0 at fixed beta, under the rule as printed ("elastic").
 
     Source: v^2 = 1/{(1 - tau)[1 + gamma beta^2 (1 - tau)^2/tau^2]}. The symbol has one zero -i Y
     below the real axis, beta v Y^3 = (v^2 - 1) Y^2 + gamma; the rule is Y/(Y + 1/(beta v)) = tau.
+    Raises ValueError: outside these ranges, or where the front would not outrun the waves.
 
     Parameters
     ----------
     tau0, gamma, beta : floats, pre-stress, in (0, 1), elasticity ratio, >= 0, and damping, > 0
-
-    Returns
-    -------
-    float : front speed (wave speeds)
-
-    Raises ValueError: outside these ranges, or where the front would not outrun the waves.
 
     Examples
     --------

@@ -66,20 +66,17 @@ class Fronts:
 
 
 def slip_velocity(fronts: Fronts, gamma, y, time):
-    """du/dt at points behind the fronts, before anything sticks.
+    """du/dt at points before anything sticks, 0 where no front has been.
+
+    Raises ValueError: outside these ranges, or if the past of a point leaves the part that outruns
+    the waves. Source: Riemann's solution (`riemann`).
+
 
     Parameters
     ----------
     fronts : Fronts
     gamma : float or array, elasticity ratio, >= 0, whose waves the panels of the fronts resolve
     y, time : float or array, positions and times, finite; broadcast with gamma
-
-    Returns
-    -------
-    float or array, 0 where no front has been
-
-    Raises ValueError: outside these ranges, or if the past of a point leaves the part that outruns
-    the waves. Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
     stiffness, y, time = broadcast_numbers(

@@ -76,6 +76,7 @@ def steady_pulse(
     Source: beta v U''' + (v^2 - 1) U'' - alpha v U' + gamma U = tau_0 with U(0) = U'(0) = 0 on the
     complex pair of roots. The real root, about -(v^2 - 1)/(beta v), grows away from the front and
     is dropped. alpha = beta = 0 gives appendix C of the paper before its last step, at any speed.
+    Raises ValueError: outside these ranges, or where the pulse is too large or small.
 
     Parameters
     ----------
@@ -85,9 +86,6 @@ def steady_pulse(
     damping_ratio, release : where speed is None it is that of `front_speed`
     rate_strengthening : float, alpha of a term -alpha du/dt, at most `critical_rate_strengthening`
         in size
-
-    Raises ValueError: outside these ranges, or where the pulse is too large or small to be
-    computed.
 
     Examples
     --------
@@ -149,16 +147,11 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
     Source: the wavenumber q of the steady pulse is 0 there (beta -> 0). Without damping of the
     front alpha_c is 2 tau_0 sqrt(gamma).
+    Raises ValueError: outside the domain.
 
     Parameters
     ----------
     gamma, speed : floats, elasticity ratio, > 0, and front speed v (wave speeds), > 1
-
-    Returns
-    -------
-    float : alpha_c
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -171,17 +164,14 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """The paper's undamped pulse. Source: section III A and appendix C of the paper.
+    """The paper's undamped pulse, of peak velocity 1/sqrt(gamma).
+
+    Source: section III A and appendix C of the paper.
+    Raises ValueError: outside the domain.
 
     Parameters
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
-
-    Returns
-    -------
-    SteadyPulse : of speed 1/sqrt(1 - tau_0^2) and peak velocity 1/sqrt(gamma)
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -195,17 +185,13 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
     """The paper's estimate of the transition under a displacement boundary (section III B).
 
-    It neglects the elastic coupling and the Gaussian at nucleation.
+    T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2) neglect the elastic coupling
+    and the Gaussian at nucleation.
+    Raises ValueError: outside the domain.
 
     Parameters
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
-
-    Returns
-    -------
-    tuple of floats : T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2)
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -220,19 +206,8 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
     """The paper's estimate of the transition under a stress boundary (section III C).
 
-    Front speeds are taken as 1.
-
-    Parameters
-    ----------
-    prestress : Prestress, as `prestress_balance_position` takes it
-
-    Returns
-    -------
-    tuple of floats : T_trans = |x_minus| and L_trans = 2 |x_minus|
-
-    Raises
-    ------
-    ValueError, ArithmeticError : as `prestress_balance_position`
+    T_trans = |x_minus| and L_trans = 2 |x_minus| take front speeds as 1. The pre-stress is one that
+    `prestress_balance_position` takes.
     """
     distance = abs(prestress_balance_position(prestress))
     return distance, 2.0 * distance

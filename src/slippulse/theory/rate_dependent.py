@@ -6,7 +6,6 @@ Such a law is 0 at rest, so a front does not feel it. Behind a front of speed v,
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from ..model.checks import short_repr
 from ..model.friction_laws.law import Friction
 from .domains import check_domains
 from .front_speeds import front_speed
+from .weakening import SteadyRupture
 
 # Half-periods of leaf springs behind the front in which slip must stop, or it creeps.
 FARTHEST = 12.0
@@ -23,34 +23,18 @@ RELATIVE, ABSOLUTE = 1e-10, 1e-12
 STEPS = 100
 
 
-@dataclass(frozen=True)
-class RatePulse:
-    """Steady pulse: speed, width, slip, peak velocity, and whether it sticks.
-
-    Lengths are in units of H, slip in units of U. A pulse that does not stick creeps on: its width
-    is infinite and its slip is tau_0/gamma.
-    """
-
-    tau0: float
-    gamma: float
-    speed: float
-    width: float
-    slip: float
-    peak_velocity: float
-    sticks: bool
-
-
-def rate_pulse(tau0: float, gamma: float, damping_ratio: float, friction: Friction) -> RatePulse:
+def rate_pulse(
+    tau0: float, gamma: float, damping_ratio: float, friction: Friction
+) -> SteadyRupture:
     """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
 
     Source: derived in the supplement, section on friction that depends on slip rate.
+    Raises ValueError: outside the domain.
 
     Parameters
     ----------
     tau0, gamma, damping_ratio : floats, pre-stress, in (0, 1), gamma > 0, and beta/dx, >= 0
     friction : Friction, a law that is 0 at rest and does not depend on slip
-
-    Raises ValueError: outside the domain.
 
     Examples
     --------
@@ -78,14 +62,10 @@ def rate_pulse(tau0: float, gamma: float, damping_ratio: float, friction: Fricti
     def strain(distance: float, state: np.ndarray) -> float:
         return state[1]
 
-    def curvature(distance: float, state: np.ndarray) -> float:
-        return slopes(distance, state)[1]
-
     strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
     accuracy = {"rtol": RELATIVE, "atol": ABSOLUTE, "max_step": half_period / STEPS}
     span = (0.0, FARTHEST * half_period)
-    path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
-    peak = v * max(float(state[1]) for state in path.y_events[1])
+    path = solve_ivp(slopes, span, [0.0, 0.0], events=strain, **accuracy)
     if path.status != 1:
-        return RatePulse(tau0, gamma, v, math.inf, tau0 / gamma, peak, False)
-    return RatePulse(tau0, gamma, v, float(path.t[-1]), float(path.y[0, -1]), peak, True)
+        return SteadyRupture(v, math.inf, tau0 / gamma)
+    return SteadyRupture(v, float(path.t[-1]), float(path.y[0, -1]))

@@ -127,7 +127,7 @@ class Rupture:
         return [(self._front_end(*pair, LEFT), self._front_end(*pair, RIGHT)) for pair in pairs]
 
     def _front_end(self, part: SolvedPart, stretch: Stretch, side: float) -> FrontEnd:
-        (x, time), reason = stretch.ends[side], str(stretch.stopped[side])
+        (x, time), reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and time <= self._last:
             reason = "stops" if reason == "dead" else reason
             return FrontEnd(float(x), float(min(time, self.duration)), reason)

@@ -27,8 +27,8 @@ RESOLVED = 1e-11
 GROWTH = 4.0
 # The shortest fraction of a panel of entries.
 SHORTEST = 1e-11
-# A rest of a panel that is left to the next one.
-REST = 1e-8
+# A remainder of a panel that is left to the next one.
+REMAINDER = 1e-8
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
 # continued at their speed.
 NEAR_MARK = 1e-5
@@ -77,7 +77,7 @@ class Solution(NamedTuple):
     slope: np.ndarray
 
     def first_event(self, mark: float, limit: float) -> tuple[float, str | None] | None:
-        """The first parameter, up to a limit, where the front rests or meets the mark."""
+        """The first parameter, up to a limit, where the front stops or meets the mark."""
         events: list[tuple[float, str | None]] = [(s, None) for s in _roots_on(self.slope, limit)]
         if np.isfinite(mark):
             events += [(s, "mark") for s in _roots_on(self.x - mark, limit)]
@@ -107,7 +107,7 @@ def advance(
     level is the side level at the front, mark the end of the negative piece (may be infinite). The
     stop is "mark" where the new panel ends there, "dead" where the front could only go back, as
     the solution beyond shows, "unknown" where its characteristic comes from beyond the left end of
-    the curve, and "unresolved" where no panel is short enough. A panel ends where the front rests.
+    the curve, and "unresolved" where no panel is short enough. A panel ends where the front stops.
     """
     front = SlowFront(curve, prestress, level, gamma - 0.25 * alpha**2, alpha)
     entry = front.entry()
@@ -201,7 +201,7 @@ class FreeBoundary:
         crossed = self.late.size
         entered = (self.weight * value[:, :crossed]).sum(axis=1)
         growth = (self.weight * slope[:, :crossed]).sum(axis=1)
-        # From x0 to each position: with a kernel of 1 exactly, and the rest of the kernel at the
+        # From x0 to each position: with a kernel of 1 exactly, and what the kernel adds to 1 at the
         # nodes.
         half = 0.5 * (x - x0)
         tau = tau_at(x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
@@ -210,11 +210,11 @@ class FreeBoundary:
         if not np.all(fall < 0.0):
             return None
         # A change of x at one node changes what is left of the equation at another.
-        rest, paces = CUMULATIVE * (value[:, crossed:] - 1.0), SLOPE @ x
-        turn = CUMULATIVE * slope[:, crossed:] * (tau * paces)
-        matrix = (rest * tau) @ SLOPE + rest * (SLOPE @ tau) - turn
+        excess, slopes = CUMULATIVE * (value[:, crossed:] - 1.0), SLOPE @ x
+        turn = CUMULATIVE * slope[:, crossed:] * (tau * slopes)
+        matrix = (excess * tau) @ SLOPE + excess * (SLOPE @ tau) - turn
         matrix += np.diag(fall + turn.sum(axis=1))
-        return np.linalg.solve(matrix, entered + area + rest @ (tau * paces))
+        return np.linalg.solve(matrix, entered + area + excess @ (tau * slopes))
 
 
 @dataclass
@@ -250,11 +250,9 @@ class SlowFront:
         end = self.curve.ends[1, self.curve.row("early", entries.panel)][1]
         if abs(end - xi) < 10.0 * look:
             return panel, 1.0
-        parameter = float(entries.s[int(entries.panel[0] != panel)])
-        # A rest of a panel that is near rounding cannot be resolved: the next one takes it over.
-        if parameter + 1.0 < REST and panel > 0:
-            return panel - 1, 1.0
-        return panel, parameter
+        s = float(entries.s[0] if entries.panel[0] == panel else entries.s[1])
+        # A remainder near rounding cannot be resolved: the next panel takes it over.
+        return (panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else (panel, s)
 
     def equation(self, chunk: Chunk) -> FreeBoundary:
         """The equation that the positions of the front solve."""
@@ -306,7 +304,7 @@ class SlowFront:
 
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0, too short to be resolved, at wave speed."""
-        if not np.isfinite(mark) or mark - self.x0 > NEAR_MARK * self.size:
+        if mark - self.x0 > NEAR_MARK * self.size:
             return Advance(None, "unresolved")
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)

@@ -27,7 +27,7 @@ class SolvedPart(Part):
 
     def __post_init__(self) -> None:
         # One field after another is wanted at the same positions: the last ones, and their sticks.
-        self._last = np.empty(0), np.empty(0)
+        self._last: tuple[np.ndarray, np.ndarray] = np.empty(0), np.empty(0)
 
     @cached_property
     def edge(self) -> TrailingEdge:

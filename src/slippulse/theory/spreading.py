@@ -30,11 +30,11 @@ class Stretch:
     # The outermost known point.
     ends: dict[float, Point]
     # Position, with the side turned to the right, of the next nucleation point.
-    limits: dict[float, float]
+    next_start: dict[float, float]
     panels: list[Panel] = field(default_factory=list)
     # Reason why a front goes no further: "dead" (it stops for good), "duration", "met", a key of
     # UNKNOWN, or None.
-    stopped: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
+    end_reason: dict[float, str | None] = field(default_factory=lambda: dict.fromkeys(SIDES))
     # Positions where a slow front outran the waves again, and where two fronts met.
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     joins: list[float] = field(default_factory=list)
@@ -89,7 +89,7 @@ def spread(law: FastFront, until: float) -> Spreading:
         _, number, side = min(going)
         _step(laws[side], stretches[number], side, until)
         stretches = _joined(stretches)
-    stops = [(s.ends[side], str(s.stopped[side])) for s, side in product(stretches, SIDES)]
+    stops = [(s.ends[side], str(s.end_reason[side])) for s, side in product(stretches, SIDES)]
     unknown = [(point, UNKNOWN[reason]) for point, reason in stops if reason in UNKNOWN]
     return Spreading(stretches, unknown + _overrun(stretches))
 
@@ -119,7 +119,7 @@ def _going_fronts(stretches: list[Stretch]) -> list[tuple[float, int, float]]:
     return [
         (stretch.ends[side].time, number, side)
         for (number, stretch), side in product(enumerate(stretches), SIDES)
-        if stretch.stopped[side] is None
+        if stretch.end_reason[side] is None
     ]
 
 
@@ -131,27 +131,27 @@ def _overrun(stretches: list[Stretch]) -> list[tuple[Point, str]]:
             x = stopped.ends[-side].x
             if moving.panels and side * moving.ends[side].x > side * x:
                 moving.cut(side, x)
-                moving.stopped[side] = "met"
+                moving.end_reason[side] = "met"
                 out.append((moving.ends[side], OVERRUN))
     return out
 
 
 def _run(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Let a front go on while it outruns the waves, as far as the next nucleation point."""
-    start, limit = stretch.ends[side], stretch.limits[side]
-    panels, end = law.rightwards(Point(side * start.x, start.time), limit, until)
+    start, stop = stretch.ends[side], stretch.next_start[side]
+    panels, end = law.rightwards(Point(side * start.x, start.time), stop, until)
     if panels:
         stretch.add(side, panels, end)
     if end.time >= until:
-        stretch.stopped[side] = "duration"
-    elif end.x >= limit:
-        stretch.stopped[side] = "met"
+        stretch.end_reason[side] = "duration"
+    elif end.x >= stop:
+        stretch.end_reason[side] = "met"
 
 
 def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Add one panel of a slow front; where its negative piece ends, a fast front follows."""
     piece = law.piece_right_of(side * stretch.ends[side].x)
-    mark = min(piece.right, stretch.limits[side])
+    mark = min(piece.right, stretch.next_start[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
     panel, stop, stretch.longest[side] = advance(
         curve, law.prestress, piece.level, law.gamma, mark, law.alpha, stretch.longest[side]
@@ -160,12 +160,12 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
         stretch.add(side, [panel], panel.end)
     if stop in ("dead", *UNKNOWN):
         loaded = stop == "dead" and law.prestress(side * stretch.ends[side].x) > SAME
-        stretch.stopped[side] = "loaded" if loaded else stop
+        stretch.end_reason[side] = "loaded" if loaded else stop
     elif stretch.ends[side].time >= until:
-        stretch.stopped[side] = "duration"
+        stretch.end_reason[side] = "duration"
     elif stop == "mark":
-        if mark >= stretch.limits[side]:
-            stretch.stopped[side] = "met"
+        if mark >= stretch.next_start[side]:
+            stretch.end_reason[side] = "met"
         elif law.piece_right_of(mark).supersonic:
             stretch.restarts[side].append(side * mark)
             _run(law, stretch, side, until)
@@ -201,17 +201,16 @@ def _meeting_position(left: Stretch, right: Stretch) -> float | None:
 
 def _merged(left: Stretch, right: Stretch, x: float) -> Stretch:
     """One stretch of two whose fronts have met at x: each position belongs to the earlier front."""
-    just_before = left.curve().arrival(np.array([x - JUST_BEFORE, x]))
-    just_after = right.curve().arrival(np.array([x, x + JUST_BEFORE]))
-    slow = np.any(np.abs(np.diff([just_before, just_after])) > JUST_BEFORE)
-    restart = [x] if slow else []
+    nearby = np.array([[x - JUST_BEFORE, x], [x, x + JUST_BEFORE]])
+    times = np.array([left.curve().arrival(nearby[0]), right.curve().arrival(nearby[1])])
+    restart = [x] if np.any(np.abs(np.diff(times)) > JUST_BEFORE) else []
     left.cut(RIGHT, x)
     right.cut(LEFT, x)
     return Stretch(
         ends={LEFT: left.ends[LEFT], RIGHT: right.ends[RIGHT]},
-        limits={LEFT: left.limits[LEFT], RIGHT: right.limits[RIGHT]},
+        next_start={LEFT: left.next_start[LEFT], RIGHT: right.next_start[RIGHT]},
         panels=left.panels + right.panels,
-        stopped={LEFT: left.stopped[LEFT], RIGHT: right.stopped[RIGHT]},
+        end_reason={LEFT: left.end_reason[LEFT], RIGHT: right.end_reason[RIGHT]},
         restarts={side: left.restarts[side] + right.restarts[side] + restart for side in SIDES},
         joins=[*left.joins, x, *right.joins],
     )

@@ -39,10 +39,6 @@ class VelocitySamples(NamedTuple):
     time: np.ndarray
     velocity: np.ndarray
 
-    def at_rows(self, rows: np.ndarray) -> "VelocitySamples":
-        """The samples of some rows."""
-        return VelocitySamples(self.x[rows], self.time[rows], self.velocity[rows])
-
     def brackets(self, rows: np.ndarray, columns: np.ndarray) -> Brackets:
         """The intervals of some rows that end at these columns."""
         start, end = (rows, columns - 1), (rows, columns)
@@ -75,22 +71,24 @@ class StickSearch:
         out = np.full(x.shape, np.nan)
         # The last two samples are kept, since a minimum next to them may lie below 0. The first
         # sample, a velocity of -1, is made up.
-        velocity = np.stack([np.full(x.shape, -1.0), np.zeros(x.shape)], axis=1)
-        last = VelocitySamples(x, np.stack([release, release], axis=1), velocity)
+        last_time = np.stack([release, release], axis=1)
+        last_velocity = np.tile([-1.0, 0.0], (x.size, 1))
         sliding = np.flatnonzero(release < self.until)
         while sliding.size:
-            samples = self._continued(last.at_rows(sliding), times[sliding, :BATCH])
+            batch = self._sampled(x[sliding], times[sliding, :BATCH])
             times = times[:, BATCH:]
-            below = samples.velocity[:, 2:] <= 0.0
+            time = np.append(last_time[sliding], batch.time, axis=1)
+            velocity = np.append(last_velocity[sliding], batch.velocity, axis=1)
+            samples = VelocitySamples(x[sliding], time, velocity)
+            below = batch.velocity <= 0.0
             stuck = below.any(axis=1)
-            first = np.where(stuck, 2 + np.argmax(below, axis=1), samples.time.shape[1])
+            first = np.where(stuck, 2 + np.argmax(below, axis=1), time.shape[1])
             stick = self._zeros_next_to_minima(samples, first)
             rows = np.flatnonzero(stuck & ~np.isfinite(stick))
             stick[rows] = self._zeros(samples.brackets(rows, first[rows]))
             out[sliding] = stick
-            last.time[sliding] = samples.time[:, -2:]
-            last.velocity[sliding] = samples.velocity[:, -2:]
-            sliding = sliding[~np.isfinite(stick) & (samples.time[:, -1] < self.until)]
+            last_time[sliding], last_velocity[sliding] = time[:, -2:], velocity[:, -2:]
+            sliding = sliding[~np.isfinite(stick) & (time[:, -1] < self.until)]
         return out
 
     def _times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
@@ -106,14 +104,6 @@ class StickSearch:
         times[~(times > release[:, None] + LEAST * self.step)] = self.until
         times = np.sort(np.minimum(times, self.until), axis=1)
         return np.pad(times, ((0, 0), (0, BATCH)), constant_values=self.until)
-
-    def _continued(self, last: VelocitySamples, times: np.ndarray) -> VelocitySamples:
-        """The samples and the next batch."""
-        batch = self._sampled(last.x, times)
-        time = np.concatenate([last.time, times], axis=1)
-        return VelocitySamples(
-            last.x, time, np.concatenate([last.velocity, batch.velocity], axis=1)
-        )
 
     def _sampled(self, x: np.ndarray, time: np.ndarray) -> VelocitySamples:
         velocity = self.velocity(np.repeat(x, time.shape[1]), time.ravel())
@@ -142,19 +132,23 @@ class StickSearch:
         return out
 
     def _zeros(self, brackets: Brackets) -> np.ndarray:
-        """Zeros of du/dt in time; the end of a bracket where du/dt never rises from 0."""
-        # A velocity that starts at 0, at release, is followed from where it has risen.
-        level = np.where(brackets.velocity_at_start <= 0.0, QUIET, 0.0)
-        flat = self._raise_starts(brackets, np.flatnonzero(level))
-        rest = np.setdiff1d(np.arange(level.size), flat)
-        x, start, end, at_start, at_end = (values[rest] for values in brackets)
-        level = level[rest]
+        """Zeros of du/dt in time; the end of a bracket where du/dt never rises from 0.
 
-        def above_level(time: np.ndarray, which: np.ndarray) -> np.ndarray:
-            return self.velocity(x[which], time) - level[which]
+        A velocity that starts at 0, at release, is followed from where it has risen.
+        """
+        from_rest = brackets.velocity_at_start <= 0.0
+        flat = self._raise_starts(brackets, np.flatnonzero(from_rest))
+        others = np.setdiff1d(np.arange(from_rest.size), flat)
+        x, start, end, at_start, at_end = (values[others] for values in brackets)
+        target = np.where(from_rest[others], QUIET, 0.0)
+
+        def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
+            return self.velocity(x[which], time) - target[which]
 
         out = brackets.end.copy()
-        out[rest] = roots_between(above_level, start, end, at_start - level, at_end - level, TIME)
+        out[others] = roots_between(
+            above_target, start, end, at_start - target, at_end - target, TIME
+        )
         return out
 
     def _raise_starts(self, brackets: Brackets, flat: np.ndarray) -> np.ndarray:

@@ -32,21 +32,20 @@ ABSENT = 1e-6
 
 
 @dataclass(frozen=True)
-class WeakeningPulse:
-    """Steady rupture: speed, width, slip, and whether it sticks.
+class SteadyRupture:
+    """Steady rupture under a law of friction: speed (wave speeds), width (H), and slip (U).
 
-    Lengths are in units of H, slip in units of U. A rupture that does not stick is a crack with a
-    decaying tail: its width is infinite and its slip is tau_0/gamma.
+    One that does not stick is a crack with a decaying tail, of infinite width and slip tau_0/gamma.
     """
 
-    tau0: float
-    gamma: float
-    beta: float
-    weakening: float
     speed: float
     width: float
     slip: float
-    sticks: bool
+
+    @property
+    def sticks(self) -> bool:
+        """True for a pulse."""
+        return math.isfinite(self.width)
 
 
 class _Exponentials:
@@ -119,22 +118,18 @@ def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) ->
     return _Tail(tail, end, turn, bool(stopped.any()) and first_stop <= first_turn)
 
 
-def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> WeakeningPulse:
-    """Steady rupture in uniform pre-stress, its speed selected by slip weakening and damping.
+def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> SteadyRupture:
+    """The slowest steady rupture in uniform pre-stress under slip weakening.
 
+    Slip weakening and damping select its speed.
     Source: derived in the supplement, section on friction laws.
+    Raises ValueError: outside the domain, or where no steady rupture has a speed of 0.05 to 50.
 
     Parameters
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
     beta : float, damping, > 0 (H times the wave speed)
     weakening : float, slip d_c over which friction falls from 1 to 0 (U), > 0 and < 1/gamma
-
-    Returns
-    -------
-    WeakeningPulse : the slowest steady rupture; roots of the conditions need not be unique
-
-    Raises ValueError: outside the domain, or where no steady rupture has a speed of 0.05 to 50.
 
     Examples
     --------
@@ -162,35 +157,26 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     speed = root_to_last_bit(too_fast, upper / FASTER, upper)
     tail = _tail(speed, tau0, gamma, beta, weakening)
     assert tail is not None
-    numbers = (float(tau0), float(gamma), float(beta), float(weakening), speed)
     if _decays(tail.exponentials):
-        return WeakeningPulse(*numbers, math.inf, tau0 / gamma, False)
-    slip = float(tail.exponentials.at(tail.turn))
-    return WeakeningPulse(*numbers, -(tail.start + tail.turn), slip, True)
+        return SteadyRupture(speed, math.inf, tau0 / gamma)
+    return SteadyRupture(speed, -(tail.start + tail.turn), float(tail.exponentials.at(tail.turn)))
 
 
 def _decays(tail: _Exponentials) -> bool:
     """True for a tail that creeps for ever: no growing exponential, oscillation or overshoot."""
-    _, slow, fast = tail.exponents
-    if slow.imag or fast.imag or abs(tail.sizes[0]) > ABSENT * np.abs(tail.sizes[1:]).max():
-        return False
-    return bool(tail.sizes[1].real < 0.0)
+    growing = abs(tail.sizes[0]) > ABSENT * np.abs(tail.sizes[1:]).max()
+    return bool(not tail.exponents[1:].imag.any() and not growing and tail.sizes[1].real < 0.0)
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
-    """Final slip of an undamped pulse on a lattice, (tau_0 + sqrt(tau_0^2 - gamma d_c))/gamma.
+    """Final slip (U) of an undamped pulse on a lattice, (tau_0 + sqrt(tau_0^2 - gamma d_c))/gamma.
 
     Source: the energy tau_0 u - gamma u^2/2 that the layer releases is its fracture energy d_c/2.
+    Raises ValueError: outside the domain, also where d_c/2 is more than the pulse releases.
 
     Parameters
     ----------
     tau0, gamma, weakening : floats, as in `weakening_pulse`, with gamma d_c <= tau_0^2
-
-    Returns
-    -------
-    float : slip (U)
-
-    Raises ValueError: outside the domain, also where d_c/2 is more than the pulse releases.
 
     Examples
     --------
