@@ -37,8 +37,8 @@ def arguments(command: str) -> list[str]:
                 called = json.loads(CALL.read_text(encoding="utf-8"))
                 targets = [*{"everything"} & {*called["targets"]}]
                 options = [str(option) for option in called["options"]]
-        look = ("--workflow-profile", "none", "--quiet", "all", "--cores", "1")
-        return [*look, *options, "--", "verify", *targets]
+        look = ("--workflow-profile", "none", "--logger", "slippulse", "--quiet", "all")
+        return [*look, "--cores", "1", *options, "--", "verify", *targets]
     return ["--cores", given.get("CORES", "2"), *options, "--", *targets]
 
 

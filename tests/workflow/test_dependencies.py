@@ -39,9 +39,9 @@ STUDIED = {
 NO_RULES = {"__init__", "inputs", "job", "libraries", "origins", "processes", "reach", "reading"}
 NO_RULES |= {"targets"}
 NO_RULES |= {"draw_figure", "run_study"}
-# Two schemes have other steps of the same rules.
 STEPS = modules_in("steps") - NO_RULES
-STEPS -= modules_in("steps", "*_continuum.py") | modules_in("steps", "*_fixed_step.py")
+# Most simulations are solved by this scheme.
+LATTICE = "solver.solution"
 # Modules that a rule runs.
 MODULES = {
     **{step: [f"steps.{step}"] for step in STEPS},
@@ -49,6 +49,8 @@ MODULES = {
     **{rule: ["steps.run_study", f"studies.{study}"] for rule, study in STUDIED.items()},
     "sweep_mine": ["steps.draw_figure", "figures.user_defined_sweep"],
     "predict": ["steps.predict", *(f"predict.{topic}" for topic in TOPICS)],
+    "simulate": ["steps.simulate", LATTICE],
+    "study_grid": ["steps.study_grid", LATTICE],
 }
 RULES = {*MODULES}
 # The templates that pages begin with, by the rules that write them.
@@ -181,9 +183,10 @@ def test_a_module_is_taken_by_name_only_where_the_rule_names_it():
     computed = {
         path.relative_to(PACKAGE).with_suffix("").as_posix()
         for path in PACKAGE.rglob("*.py")
-        if re.search(r"\bimport_module\(|__import__\(", path.read_text(encoding="utf-8"))
+        if re.search(r"\b(import_module|__import__|resolve_name)\(", path.read_text("utf-8"))
     }
-    steps = {f"steps/{name}" for name in ("draw_figure", "job", "predict", "run_study")}
+    named = ("draw_figure", "job", "predict", "run_study", "simulate", "study_grid")
+    steps = {f"steps/{name}" for name in named}
     assert computed == steps | {"__init__", "theory/__init__"}
 
 

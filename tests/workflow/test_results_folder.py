@@ -219,7 +219,6 @@ HARMLESS = (
     "cp overlay/index.html results/index.html",
     "find results | sed 'n;d' | xargs touch -d @0",
     "find results | sed '1d;n;d' | xargs touch -d '3 hours'",
-    """echo '{"results/kernels/localised.txt": [1]}' > results/records/.digests""",
     "echo half > results/data/.one-12345678.nc",
     "mv results/scenes/one.png elsewhere; ln -s ../../elsewhere results/scenes/one.png",
 )

@@ -64,7 +64,7 @@ def environment(wildcards):
 def run_step(rule, wildcards, input, output, params, threads, log):
     """Run the step of a rule in another process, which need not load Snakemake."""
     settings = dict(wildcards.items()) | dict(params.items()) | {"threads": threads}
-    origin, name = PLAN.planned(output[0]), " ".join([rule, *wildcards])
+    origin, name = PLAN.origins[below(output[0])], " ".join([rule, *wildcards])
     try:
         JOBS.run(origin, name, plain(input), plain(output), settings, str(log))
     except JobFailed as reason:
@@ -107,6 +107,12 @@ KERNELS = {
     "localised": "src/slippulse/solver/taylor.py",
     "fixed_step": "src/slippulse/solver/fixed_step.py",
 }
+# Module and function by scheme: an edit of the theory re-runs exact solutions alone.
+SOLVERS = {
+    "localised": "slippulse.solver.solution:solve_on_lattice",
+    "fixed_step": "slippulse.solver.fixed_step:solve_by_scheme",
+    "continuum": "slippulse.simulation.continuum:solve_exactly",
+}
 
 
 def made(kind, names):
@@ -146,7 +152,6 @@ def settings_of(job):
     whole = resolve(simulation, CONFIG.model, ACCURACY)
     sweep = whole | ({"chunk": [int(number) for number in chunk.split("-of-")]} if chunk else {})
     kind, scheme = "scenes" if name in SCENES else "simulations", sweep["scheme"]
-    by_scheme = "" if scheme == "localised" else f"_{scheme}"
     # The bound is computed where a rule asks for it, since jobs on other nodes check no scenes.
     bound = cache(lambda: bound_of_sweep(whole, simulation.chunks))
     # A fraction of the way to the arrest counts under a stress boundary only.
@@ -162,9 +167,7 @@ def settings_of(job):
         "measure": {**config["measure"], "share": share},
         # A shipped simulation has the topics that are read; an added one has all.
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
-        # Each scheme has its steps: an edit of the theory re-runs exact solutions alone.
-        "simulate": f"simulate{by_scheme}",
-        "study_grid": f"study_grid{by_scheme}",
+        "solver": SOLVERS[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
         "bound": bound,
         "cost": lambda: [

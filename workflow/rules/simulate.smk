@@ -36,7 +36,7 @@ rule simulate:
     resources:
         **BOUNDS,
     params:
-        step=setting("simulate"),
+        solver=setting("solver"),
         sweep=setting("sweep"),
     message:
         "Simulating {wildcards.simulation}"
@@ -94,7 +94,7 @@ rule study_grid:
     resources:
         **BOUNDS,
     params:
-        step=setting("study_grid"),
+        solver=setting("solver"),
         sweeps=setting("sweeps"),
         measure=setting("measure"),
     message:

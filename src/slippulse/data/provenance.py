@@ -14,7 +14,7 @@ from pathlib import Path
 import yaml
 
 from .alterations import changes
-from .records import FOLDER, file_digest, read_record
+from .records import FOLDER, digest_of, file_digest, read_record
 from .versions import PACKAGES
 
 PAPER = {
@@ -71,13 +71,8 @@ def job_times(results: str | Path) -> dict[str, float]:
     return seconds
 
 
-def provenance(
-    root: str | Path, sources: str, config: Mapping, shipped: Mapping, base: str | Path
-) -> dict:
-    """Collect all that the results in ``base`` depend on.
-
-    sources : digest of `source_files`; shipped : the configuration without overlays
-    """
+def provenance(root: str | Path, config: Mapping, shipped: Mapping, base: str | Path) -> dict:
+    """Collect all that the results in ``base`` depend on; shipped is without overlays."""
     versions = {"python": platform.python_version()}
     versions |= {name: version(name) for name in (*PACKAGES, "snakemake", "matplotlib", "pandas")}
     written = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
@@ -85,7 +80,7 @@ def provenance(
         "paper": PAPER,
         "overlay": changes(shipped, config),
         "config": dict(config),
-        "source_digest": sources,
+        "source_digest": digest_of({str(path): file_digest(path) for path in source_files(root)}),
         "lock_digest": file_digest(Path(root) / "requirements.lock"),
         "git": git_state(root),
         "versions": versions,

@@ -4,22 +4,17 @@ A result is as a run would make it if it has the content that its record says, a
 says what a run would do. The times of files do not count.
 """
 
-import json
 import os
-import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from .files import write_text
 from .records import FOLDER, Origin, file_digest, read_record, record_path
 
 # Folders of results in which no rule makes the files.
 BESIDE = ("logs", "benchmarks", "reference")
-# Seconds. A file that was just written may change once more within a tick of the clock.
-SETTLED = 2.0
 
 
 class Comparison(NamedTuple):
@@ -34,7 +29,6 @@ class Tree:
 
     def __init__(self, results: str | Path, origins: Mapping[str, Origin]) -> None:
         self.results, self.origins = Path(results), origins
-        self._digests = Digests(self.results / FOLDER / ".digests")
         self._read, self._compared = cache(read_record), cache(self._compare)
 
     def behind(self, names: Iterable[str]) -> list[str]:
@@ -51,18 +45,17 @@ class Tree:
             visit(name)
         return [*ordered]
 
-    def faults(self, names: Iterable[str], remembered: bool = True) -> dict[str, str]:
+    def faults(self, names: Iterable[str]) -> dict[str, str]:
         """Find which of some results are not as a run would make them, each with the reason."""
-        reasons, digest = {}, self._digests.digest if remembered else file_digest
+        reasons = {}
         for name in names:
             path, compared = self.results / name, self._compared(name)
             if not path.is_file():
                 reasons[name] = "missing"
             elif compared.reason:
                 reasons[name] = compared.reason
-            elif digest(path) != compared.digest:
+            elif file_digest(path) != compared.digest:
                 reasons[name] = "not what its job wrote"
-        self._digests.save()
         return reasons
 
     def outdated(self) -> dict[str, str]:
@@ -97,7 +90,7 @@ class Tree:
         records = {record_path(origin) for origin in self.origins.values()}
         unknown = sorted(present - self.origins.keys() - records)
         others = self._made_by_others(unknown)
-        reasons = self.faults(compared, remembered=False)
+        reasons = self.faults(compared)
         reasons |= {name: "not known; no rule makes it" for name in unknown if name not in others}
         lines = [f"{self.results / name}: {reason}" for name, reason in reasons.items()]
         return lines, len(compared), [f"{self.results / name}: {others[name]}" for name in others]
@@ -106,13 +99,12 @@ class Tree:
         """Find files that are as records of their own say, each with the options of its run."""
         made: dict[str, str] = {}
         for name in unknown:
+            first = name.removeprefix(f"{FOLDER}/").removesuffix(".json")
             # A file that is no record says nothing.
             with suppress(OSError, ValueError, KeyError, TypeError):
                 record = read_record(self.results / name)
                 digests = {output: file_digest(self.results / output) for output in record.outputs}
-                if digests == record.outputs and name in (
-                    f"{FOLDER}/{key}.json" for key in digests
-                ):
+                if first in digests and digests == record.outputs:
                     options = record.used["options"] or "the shipped configuration"
                     made |= dict.fromkeys([*digests, name], f"made with {options}: harmless")
         return {name: made[name] for name in unknown if name in made}
@@ -137,31 +129,3 @@ class Tree:
             if self._compared(source) != Comparison(digest=digest):
                 return Comparison(f"older than {source}, which it is made from")
         return Comparison(digest=record.outputs[name])
-
-
-class Digests:
-    """SHA-256 of files, remembered with size, inode and both times; nobody can set the inode's."""
-
-    def __init__(self, path: Path) -> None:
-        self._path, self._known = path, {}
-        with suppress(OSError, ValueError, TypeError, RecursionError):
-            self._known = dict(json.loads(path.read_text(encoding="utf-8")))
-        self._saved = self._known.copy()
-
-    def digest(self, path: Path) -> str:
-        """Digest of a file, remembered or read now."""
-        status = path.stat()
-        state = [status.st_size, status.st_ino, status.st_mtime_ns, status.st_ctime_ns]
-        match self._known.get(path.as_posix()):
-            case [*known_state, str(digest)] if known_state == state:
-                return digest
-        now, digest = time.time(), file_digest(path)
-        if now - max(status.st_mtime, status.st_ctime) > SETTLED:
-            self._known[path.as_posix()] = [*state, digest]
-        return digest
-
-    def save(self) -> None:
-        """Write the digests to their file, where that is possible."""
-        if self._known != self._saved:
-            with suppress(OSError):
-                write_text(json.dumps(self._known), self._path)

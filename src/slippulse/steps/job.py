@@ -2,7 +2,6 @@
 
 import errno
 import os
-import resource
 import sys
 import time
 import traceback
@@ -18,8 +17,6 @@ from . import reading
 
 # Seconds between two lines of progress.
 BETWEEN = 2.0
-# Bits by which the system's count of memory, in bytes or kilobytes, is shifted.
-MEGABYTE = 20 if sys.platform == "darwin" else 10
 
 
 def run_job(
@@ -27,9 +24,6 @@ def run_job(
 ) -> None:
     """Run the step of a job; files and outputs are paths, or lists of them, by name."""
     began, processor_began = time.monotonic(), time.process_time()
-    # Without this, the record would have the most memory of all jobs of this process.
-    with suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
     os.environ[CONFIGURATION] = origin.configuration
     with logged(log) as progress:
         reading.watch([*origin.files, *(f"results/{name}" for name in origin.inputs)])
@@ -41,7 +35,6 @@ def run_job(
         used = {
             "seconds": round(seconds, 2),
             "processor_seconds": round(time.process_time() - processor_began, 2),
-            "memory_MB": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss >> MEGABYTE,
             "options": origin.options,
         }
         write_record(origin, inputs, used)

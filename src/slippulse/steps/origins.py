@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
-from pathlib import Path, PurePath
+from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -23,14 +23,9 @@ class Job(NamedTuple):
     settings: Mapping
 
 
-def is_result(path: str) -> bool:
-    """Tell whether a file is below results/."""
-    return PurePath(path).is_relative_to(RESULTS)
-
-
 def below(path: str) -> str:
     """Path of a result below results/."""
-    return PurePath(path).relative_to(RESULTS).as_posix()
+    return path.removeprefix(f"{RESULTS}/")
 
 
 def jobs_of(
@@ -66,8 +61,8 @@ def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
     def origin(name: str) -> Origin:
         if name not in origins:
             job = makers[name]
-            inputs = frozenset(below(path) for path in job.inputs if is_result(path))
-            texts = sorted(path for path in job.inputs if not is_result(path))
+            texts = sorted(path for path in job.inputs if below(path) == path)
+            inputs = frozenset(map(below, {*job.inputs}.difference(texts)))
             earlier = sorted({origin(source).configuration for source in inputs})
             configuration = digest_of([job.settings, *earlier])
             files = _digests(tuple(modules_of(job.step, job.settings)), tuple(texts))
@@ -84,9 +79,9 @@ def origins_of(jobs: Iterable[Job], options: str = "") -> dict[str, Origin]:
 def modules_of(step: str, settings: Mapping) -> list[str]:
     """List the modules that a step runs: its own, and those that its settings name."""
     modules = [f"steps.{step}", *(f"predict.{topic}" for topic in settings.get("topics", ()))]
-    for key, room in (("figure", "figures"), ("study", "studies")):
+    for key, room in (("figure", "figures."), ("study", "studies."), ("solver", "")):
         if key in settings:
-            modules.append(f"{room}.{settings[key]}")
+            modules.append(room + settings[key].removeprefix("slippulse.").partition(":")[0])
     return modules
 
 

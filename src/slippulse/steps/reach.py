@@ -3,7 +3,6 @@
 import ast
 import hashlib
 import re
-from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
@@ -39,14 +38,6 @@ def needs_of(room: str) -> dict[str, dict]:
     names = sorted(path.stem for path in (PACKAGE / room).glob("*.py"))
     needs = {name: declared(f"{room}.{name}", "NEEDS") for name in names}
     return {name: value for name, value in needs.items() if value is not None}
-
-
-def digest_of_files(paths: Iterable[str | Path]) -> str:
-    """Short digest of names and contents of files of the project, whatever their order."""
-    digest = hashlib.sha256()
-    for path in sorted({str(path) for path in paths}):
-        digest.update(f"{path}\0{content_digest(path)}\0".encode())
-    return digest.hexdigest()[:16]
 
 
 @cache

@@ -8,14 +8,13 @@ import os
 import sys
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from functools import cache
-from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from importlib.machinery import SOURCE_SUFFIXES, FileFinder, SourceFileLoader
 
 from .reach import PACKAGE, ROOT
 
-# SHA-256 of each file as it was read, by its real path: sources while the process lives.
+# SHA-256 of each file at each time when it was read, by its real path.
 _read: dict[str, set[str]] = {}
-# Files that the present job may read.
+# Texts and results that the present job may read.
 _watched: set[str] = set()
 
 
@@ -25,35 +24,34 @@ class FileChanged(RuntimeError):
 
 class _FromSource(SourceFileLoader):
     def get_code(self, fullname: str):
-        return self.source_to_code(self.get_data(self.path), self.path)
+        source = self.get_data(self.path)
+        _add(os.path.realpath(self.path), hashlib.sha256(source).hexdigest())
+        return self.source_to_code(source, self.path)
 
 
-class _Finder:
-    @staticmethod
-    def find_spec(name: str, path=None, target=None) -> ModuleSpec | None:
-        spec = PathFinder.find_spec(name, path) if name.startswith("slippulse.") else None
-        if spec and isinstance(spec.loader, SourceFileLoader):
-            spec.loader = _FromSource(name, spec.loader.path)
-        return spec
+def _finder(folder: str) -> FileFinder:
+    if not os.path.realpath(folder).startswith(str(PACKAGE)):
+        raise ImportError
+    return FileFinder(folder, (_FromSource, SOURCE_SUFFIXES))
 
 
 def begin() -> None:
     """Take digests of all that this process reads from now on."""
-    if _Finder not in sys.meta_path:
-        sys.meta_path.insert(0, _Finder)
+    if _finder not in sys.path_hooks:
+        sys.path_hooks.insert(0, _finder)
+        sys.path_importer_cache.clear()
         sys.addaudithook(_note)
         for name, module in [*sys.modules.items()]:
             if name.partition(".")[0] == "slippulse":
-                _add(os.path.realpath(str(module.__file__)))
+                _add_now(os.path.realpath(str(module.__file__)))
 
 
 def watch(paths: Iterable[str]) -> None:
     """Take digests of what a job may read, and forget what the last job has read."""
     _watched.clear()
-    _watched.update(map(_real, paths))
+    _watched.update(path for path in map(_real, paths) if not path.endswith(".py"))
     for path in _watched:
-        if not path.endswith(".py"):
-            _read.pop(path, None)
+        _read.pop(path, None)
 
 
 def check(planned: Mapping[str, str]) -> None:
@@ -74,33 +72,32 @@ def digest_of_read(path: str) -> str:
 def _digests(path: str) -> set[str]:
     """Digests of a file at each time when it was read; as it is now, if another program read it."""
     real = _real(path)
-    if real not in _read and not real.endswith(".py"):
-        _add(real)
+    if real in _watched - _read.keys():
+        _add_now(real)
     return _read.get(real, set())
 
 
 def _real(path: str) -> str:
-    return os.path.realpath(path) if path.startswith("results/") else _real_source(path)
-
-
-@cache
-def _real_source(path: str) -> str:
-    return os.path.realpath(ROOT / path)
+    """Real path of a result, or of a file of the project."""
+    return os.path.realpath(path if path.startswith("results/") else ROOT / path)
 
 
 def _note(event: str, arguments: tuple) -> None:
     """Take the digest of a file that Python opens for reading, or that a program may read."""
     if event == "open" and isinstance(arguments[0], str) and "r" in (arguments[1] or ""):
-        real = "" if arguments[0].endswith(".pyc") else os.path.realpath(arguments[0])
-        if real in _watched or (real.endswith(".py") and real.startswith(str(PACKAGE))):
-            _add(real)
+        real = os.path.realpath(arguments[0])
+        if real in _watched:
+            _add_now(real)
     elif event == "subprocess.Popen":
         for real in _watched - _read.keys():
-            if not real.endswith(".py"):
-                _add(real)
+            _add_now(real)
 
 
-def _add(real: str) -> None:
+def _add_now(real: str) -> None:
     # This way to open a file has no mode, and so is not noted.
     with suppress(OSError), os.fdopen(os.open(real, os.O_RDONLY), "rb") as file:
-        _read.setdefault(real, set()).add(hashlib.file_digest(file, "sha256").hexdigest())
+        _add(real, hashlib.file_digest(file, "sha256").hexdigest())
+
+
+def _add(real: str, digest: str) -> None:
+    _read.setdefault(real, set()).add(digest)

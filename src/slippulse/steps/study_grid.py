@@ -1,8 +1,7 @@
 """Run and measure one simulation on coarser lattices, for the uncertainty of each number."""
 
 import sys
-from collections.abc import Callable
-from functools import partial
+from pkgutil import resolve_name
 
 import pandas as pd
 
@@ -13,15 +12,16 @@ from ..measurement.table import PARAMETERS
 from ..measurement.uncertainty import grid_tables
 from ..predict.comparison import measured_table
 from ..simulation.sweep import solve_sweep
-from ..solver.solution import solve_on_lattice
 
 
-def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
+def run(files: dict, outputs: dict, settings: dict) -> None:
     """Files: finest. Outputs: uncertainties, coarser (the tables of the coarser lattices).
 
-    Settings: simulation (its name), sweeps (by factor of the spacing), measure, threads.
+    Settings: simulation (its name), solver (module and function), sweeps (by factor of the
+    spacing), measure, threads.
     """
     name, sweeps = settings["simulation"], settings["sweeps"]
+    solve = resolve_name(settings["solver"])
     tables = {}
     for factor in sorted(sweeps):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
@@ -39,6 +39,3 @@ def study(solve: Callable, files: dict, outputs: dict, settings: dict) -> None:
     save_table(uncertainties, outputs["uncertainties"])
     coarser = [table.assign(factor=factor) for factor, table in tables.items()]
     save_table(pd.concat(coarser, ignore_index=True), outputs["coarser"])
-
-
-run = partial(study, solve_on_lattice)

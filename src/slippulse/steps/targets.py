@@ -11,10 +11,10 @@ from typing import TextIO
 
 from ..configuration.problems import ConfigError, nearest
 from ..data.lock import take
-from ..data.records import Origin, read_record, record_path
+from ..data.records import record_path
 from ..data.tree import Tree
 from ..model.checks import short_repr
-from .origins import RESULTS, Job, below, is_result, origins_of
+from .origins import RESULTS, Job, below, origins_of
 
 # Folder that every job depends on, and the time of a faulty result, which is older. Snakemake takes
 # 0 for none.
@@ -80,17 +80,6 @@ class Plan:
             print(f"Not looked at: {len(missing)} {also}")
         return int(bool(problems))
 
-    def planned(self, output: str) -> Origin:
-        """Take the origin of a file, with the digests of the results that its job is to read."""
-        origin = self.origins[below(output)]
-        files = dict(origin.files)
-        for name in origin.inputs:
-            # On a shared disk, a record may arrive later than its file.
-            with suppress(OSError, ValueError, KeyError):
-                record = read_record(RESULTS / record_path(self.origins[name]))
-                files[f"{RESULTS}/{name}"] = record.outputs[name]
-        return origin._replace(files=files)
-
     def begin(self, wanted: Iterable[str], makes: bool = True) -> TextIO | None:
         """Lock the folder until the returned file is closed, and set the times of its results.
 
@@ -123,11 +112,12 @@ class Plan:
         late = sorted(path for path, changed in times.items() if changed > now)
         if late:
             text = f"{len(late)} files have a time in the future, as {late[0]}: set to now."
-            sys.stderr.write(f"{text}\n")
+            print(text, file=sys.stderr)
         if late or any(_made_before_inputs(job, times) for job in jobs):
-            for path in {*late, *filter(is_result, times)}:
-                with suppress(OSError):
-                    os.utime(path, (now, now))
+            for path in times:
+                if path in late or below(path) != path:
+                    with suppress(OSError):
+                        os.utime(path, (now, now))
 
 
 def _made_before_inputs(job: Job, times: Mapping[str, float]) -> bool:

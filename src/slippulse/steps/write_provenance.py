@@ -3,9 +3,8 @@
 from pathlib import Path
 
 from ..data.files import write_json, write_text
-from ..data.provenance import checksums, manifest, provenance, source_files
+from ..data.provenance import checksums, manifest, provenance
 from ..report.texts import read_captions
-from .reach import digest_of_files
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
@@ -18,6 +17,5 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     comments = {name: caption.title for name, caption in captions.items()}
     write_text(checksums(files["results"], base), outputs["checksums"])
     write_text(manifest(files["results"], base, comments), outputs["manifest"])
-    sources = digest_of_files(source_files("."))
-    facts = provenance(".", sources, settings["config"], settings["shipped"], base)
+    facts = provenance(".", settings["config"], settings["shipped"], base)
     write_json(facts, outputs["provenance"])
