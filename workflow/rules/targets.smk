@@ -66,9 +66,6 @@ def begin_with(targets):
     for line in ALTERED.untaken() if ALTERED else ():
         print(line, file=sys.stderr)
     if makes:
-        if workflow.local_exec:
-            # Each job would start a timer, for which Snakemake waits at its end.
-            workflow.scheduling_settings.max_jobs_per_timespan = None
         JOBS.begin()
         # `make verify` and the last line of a run read how the run was called.
         called = {"options": OPTIONS, "targets": targets, "page": "index.html" in wanted}

@@ -34,11 +34,7 @@ class Alterations:
         return [one for one in changes(old, new) if one["key"] not in without]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
-        """One line on what differs, such as 'altered: b = 0.05'; empty where nothing does.
-
-        simulations : names of all that are used
-        keys : dotted keys of the configuration that are used besides
-        """
+        """One line on what differs, such as 'altered: b = 0.05'; empty where nothing does."""
         differences = {
             _equation(change): None
             for name in simulations

@@ -39,10 +39,7 @@ def read_config(
 ) -> Configuration:
     """Merge and check the configuration; ConfigError has one line a problem.
 
-    shipped : contents of config/config.yaml
-    overlays : changes, one after the other; null removes a key
     said : values given by --config, in which Snakemake leaves nested numbers text
-    every_run : whether the scenes of all simulations are checked, too
     """
     merged = dict(shipped)
     for overlay in (*overlays, _typed(said or {})):

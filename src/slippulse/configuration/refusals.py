@@ -58,16 +58,12 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
 def _elsewhere(key: str | int) -> str:
     """Hint at the blocks of named entries that have a key, such as gamma."""
     blocks: dict[str, type[BaseModel]] = {
-        "simulations": Simulation,
-        "scenes": NamedScene,
+        "simulations.NAME": Simulation,
+        "scenes.NAME": NamedScene,
         "model": Model,
         "measure": Measure,
     }
-    places = [
-        f"{block}.{key}" if block in ("model", "measure") else f"{block}.NAME.{key}"
-        for block, entries in blocks.items()
-        if key in entries.model_fields
-    ]
+    places = [f"{block}.{key}" for block, keys in blocks.items() if key in keys.model_fields]
     return f" (it is set by {' and '.join(places)})" if places else ""
 
 

@@ -30,11 +30,7 @@ def resolve(
     accuracy: Mapping,
     coarser: float = 1.0,
 ) -> dict[str, Any]:
-    """A simulation with everything that its data depend on, as builtins; chunks do not count.
-
-    accuracy : return value of `accuracy_of`
-    coarser : factor of the spacing, at fixed beta/dx and step/dx; of the step if dx is fixed
-    """
+    """A simulation with everything that its data depend on, as builtins; chunks do not count."""
     defaults = Model.model_validate(model).plain()
     defaults["damping_ratio"] = [defaults["damping_ratio"]]
     given = Simulation.model_validate(simulation).plain()

@@ -54,11 +54,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path, last: Sequence[
 def join_grid_studies(
     paths: Sequence[str], finest: str, keys: Sequence[str], quantities: Callable, joined: str
 ) -> None:
-    """Join the grid studies of the chunks of a sweep whose joined measurements are ``finest``.
-
-    keys : columns that name a run
-    quantities : function of table and keys: the rows of its study; a chunk may have other rows
-    """
+    """Join the grid studies of the chunks of a sweep whose joined measurements are ``finest``."""
     (measured,) = _texts([finest])
     chunks = _texts(paths)
     runs = _run_numbers(paths, [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks])
@@ -67,6 +63,7 @@ def join_grid_studies(
     for chunk, numbers in zip(chunks, runs, strict=True):
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
+    # The joined study has the rows of all runs; a chunk may have others.
     names = quantities(load_table(finest), keys)
     rows = pd.MultiIndex.from_product([range(len(measured)), names], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()

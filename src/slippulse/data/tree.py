@@ -77,11 +77,7 @@ class Tree:
         return {name: reasons[name] for name in present if not (self.results / name).is_dir()}
 
     def problems(self, complete: Iterable[str]) -> tuple[list[str], int, list[str]]:
-        """Compare all files that are there or ``complete``, whose contents are read.
-
-        Returns one line a fault, the number of files, and one line for each that another overlay
-        has made.
-        """
+        """Say what is wrong with files that are there or ``complete``, count them, name others'."""
         files = [path for path in self.results.rglob("*") if path.is_file() and path.name[0] != "."]
         paths = [path.relative_to(self.results) for path in files]
         present = {path.as_posix() for path in paths if path.parts[0] not in BESIDE}

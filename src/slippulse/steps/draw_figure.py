@@ -8,10 +8,7 @@ from .inputs import given
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as of `given`. Outputs: csv, png, pdf.
-
-    Settings: figure (its module), values, altered (what differs from the shipped configuration).
-    """
+    """Files: as of `given`. Outputs: csv, png, pdf. Settings: figure, values, altered."""
     module, note = import_module(f"slippulse.figures.{settings['figure']}"), settings["altered"]
     table = module.table(*given(files), settings["values"])
     save_table(table.assign(altered=note) if note else table, outputs["csv"])

@@ -13,10 +13,7 @@ FILES = ("report/templates/parts.html", "report/templates/scene.html")
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: data, measured, predicted, uncertainties. Outputs: numbers, csv, png, pdf, html.
-
-    Settings: scene (its name), title, altered (what differs from the shipped configuration).
-    """
+    """Files: one of each kind. Outputs: numbers, csv, png, pdf, html. Settings: title, altered."""
     title, note = settings["title"], settings["altered"]
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]

@@ -13,11 +13,7 @@ from ..data.tables import load_table
 
 
 def given(files: Mapping) -> tuple[dict[str, xr.Dataset], dict[str, pd.DataFrame]]:
-    """Load Datasets by simulation, and tables by simulation or study, from lists of paths by kind.
-
-    Tables of grid studies are named uncertainties/NAME and coarser/NAME; predictions are joined to
-    the measurements of the same runs. Further kinds: data, studies, lists (YAML or JSON).
-    """
+    """Load Datasets and tables by name, from lists of paths by kind; predictions are joined."""
     tables: dict[str, pd.DataFrame] = {}
     for kind in ("measured", "studies", "predicted", "uncertainties", "coarser"):
         for path in map(Path, files.get(kind, [])):

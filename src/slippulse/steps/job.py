@@ -60,10 +60,7 @@ def progress_of(name: str, stream: TextIO) -> Callable[[float, int], None]:
 
 @contextmanager
 def logged(path: str | Path) -> Iterator[TextIO]:
-    """Log what a job writes; a failure ends in SystemExit with one line.
-
-    Yields the stream for its progress.
-    """
+    """Log what a job writes, and yield a stream for its progress; a failure is one line."""
     # Snakemake prints the log: the traceback has a file of its own.
     terminal, details = sys.stderr, Path(path).with_suffix(".traceback")
     try:

@@ -31,10 +31,7 @@ def below(path: str) -> str:
 def jobs_of(
     name: str, inputs: Iterable, outputs: Sequence[str], params: Mapping, values: Mapping
 ) -> Iterator[Job]:
-    """Yield the jobs of a rule, one for each of the ``values`` of its wildcard, if it has one.
-
-    Its inputs and params may be functions of the wildcards, as in Snakemake.
-    """
+    """Yield the jobs of a rule, one for each of the ``values`` of its wildcard, if it has one."""
     wildcard = next((key for key in values if f"{{{key}}}" in outputs[0]), "none")
     for value in values.get(wildcard, [""]):
         wildcards = SimpleNamespace(**{wildcard: value})

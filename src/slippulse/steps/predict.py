@@ -23,11 +23,9 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def predictions(topics: Iterable[str], scenes: Sequence[Scene], settings: Mapping) -> pd.DataFrame:
-    """Join the predictions of some modules of `predict`, one row a run; NaN where there is none.
-
-    Theory does not know the laws of friction that the exact continuum does not.
-    """
+    """Join the predictions of some modules of `predict`, one row a run; NaN where there is none."""
     modules = [import_module(f"slippulse.predict.{topic}") for topic in topics]
     table = pd.concat([module.predictions(scenes, settings) for module in modules], axis=1)
+    # Theory does not know the laws of friction that the exact continuum does not.
     unknown = ["continuum" not in scene.friction.schemes for scene in scenes]
     return table.mask(np.array(unknown)) if any(unknown) else table

@@ -11,11 +11,7 @@ from ..simulation.sweep import solve_sweep
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: data.
-
-    Settings: simulation (its name), solver (module and function), sweep (resolved), threads,
-    progress.
-    """
+    """Outputs: data. Settings: solver (module and function), sweep, threads, progress."""
     solve, sweep, threads = resolve_name(settings["solver"]), settings["sweep"], settings["threads"]
     scenes, samples = expand(sweep)
     data = solve_sweep(solve, scenes, samples, sweep["record"], threads, settings.get("progress"))

@@ -15,11 +15,7 @@ from ..simulation.sweep import solve_sweep
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: finest. Outputs: uncertainties, coarser (the tables of the coarser lattices).
-
-    Settings: simulation (its name), solver (module and function), sweeps (by factor of the
-    spacing), measure, threads.
-    """
+    """Files: finest. Outputs: uncertainties, coarser. Settings: solver, sweeps, measure."""
     name, sweeps = settings["simulation"], settings["sweeps"]
     solve = resolve_name(settings["solver"])
     tables = {}

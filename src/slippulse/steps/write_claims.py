@@ -14,11 +14,7 @@ FILES = ("report/templates/claims.html", "report/templates/parts.html")
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: as of `given`; texts, statements. Outputs: json, findings, html.
-
-    Settings: claims (tolerances in place of those of the texts), measure, published, damping_ratio,
-    altered (values that an overlay changed).
-    """
+    """Files: as of `given`; texts, statements. Outputs: json, findings, html."""
     texts = read_entries(files["texts"], settings["claims"])
     sentences = read_text(files["statements"])["statements"]
     _, tables = given(files)

@@ -8,10 +8,7 @@ from ..report.texts import read_captions
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: results, captions. Outputs: provenance, checksums, manifest.
-
-    Settings: config, shipped (the configuration without overlays).
-    """
+    """Files: results, captions. Outputs: provenance, checksums, manifest."""
     base = Path(outputs["provenance"]).parent
     captions = read_captions(files["captions"])
     comments = {name: caption.title for name, caption in captions.items()}

@@ -34,11 +34,7 @@ HEAD += "from the run of the shipped one."
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Files: sources, claims, findings, shipped, citation, figures, and as of `given`.
-
-    Outputs: html and pdf, lists with a file for each document; verdicts.
-    Settings: figures (names), config.
-    """
+    """Outputs: html and pdf, lists with a file for each document; verdicts."""
     inputs = inputs_of(files, settings)
     # The writers wait for processes of their own, and so overlap.
     with ThreadPoolExecutor() as pool:
