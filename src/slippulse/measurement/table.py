@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.friction import friction_of
 from ..model.prestress import prestress_from
+from ..model.recorded_law import law_of
 from .fronts import fit_front, position_at
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify
@@ -36,7 +36,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     Returns its parameters and all numbers that the recorded data allow, NaN where one does not
     apply; and its leading pulse, where slip velocity is recorded.
     """
-    attributes = run.attrs | {"friction": json.dumps(friction_of(run.attrs).mapping())}
+    attributes = run.attrs | {"friction": json.dumps(law_of(run.attrs))}
     row = {name: attributes[name] for name in PARAMETERS}
     steps = prestress_from(run.attrs).steps
     row["beyond"] = steps[-1][1] if steps else row["right"]

@@ -1,6 +1,5 @@
 """The laws of friction by name, and the law that a mapping or a data file names."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
@@ -13,6 +12,7 @@ from .friction_laws.law import Friction
 from .friction_laws.linear_rate import LinearRate
 from .friction_laws.rate_weakening import RateWeakening
 from .friction_laws.slip_weakening import SlipWeakening
+from .recorded_law import law_of
 
 # A new law is one more line here.
 LAWS: tuple[type[Friction], ...] = (
@@ -78,8 +78,5 @@ def friction_from(mapping: Mapping[str, Any]) -> Friction:
 
 
 def friction_of(attributes: Mapping[str, Any]) -> Friction:
-    """The law of a run's attributes; older files have the linear one alone, or none."""
-    if "friction" in attributes:
-        return friction_from(json.loads(attributes["friction"]))
-    alpha = attributes.get("rate_strengthening", 0.0)
-    return LinearRate(alpha) if alpha else COULOMB
+    """The law of a run's attributes."""
+    return friction_from(law_of(attributes))

@@ -4,7 +4,8 @@ import numpy as np
 import pandas as pd
 
 from ..model.scene import Scene
-from ..theory.pulse import SteadyPulse, paper_pulse, steady_pulse
+from ..theory.closed_pulse import SteadyPulse, paper_pulse
+from ..theory.pulse import steady_pulse
 from .front import exact_speeds
 from .numbers import NAN, known, level
 

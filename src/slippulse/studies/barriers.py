@@ -11,7 +11,8 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..solver.solution import solve_on_lattice
 from ..theory.barrier import barrier_depth, barrier_depth_estimate
-from ..theory.pulse import SteadyPulse, steady_pulse
+from ..theory.closed_pulse import SteadyPulse
+from ..theory.pulse import steady_pulse
 
 NEEDS = {}  # type: dict[str, list[str]]
 

@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 
 from ..configuration.expand import expand
+from ..theory.closed_pulse import paper_pulse
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import paper_pulse, steady_pulse
+from ..theory.pulse import steady_pulse
 
 # The curves have the parameters of these simulations.
 NEEDS = {"sweeps": ["pulse_damping", "continuum_fixed_ratio"]}

@@ -10,7 +10,11 @@ import pandas as pd
 
 from ..model.prestress import Prestress
 from ..solver.layer import LayerRun, LayerScene, simulate_layer
-from ..theory.pulse import paper_pulse, paper_transition_displacement, paper_transition_stress
+from ..theory.closed_pulse import (
+    paper_pulse,
+    paper_transition_displacement,
+    paper_transition_stress,
+)
 from ..theory.weakening import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {}  # type: dict[str, list[str]]

@@ -8,9 +8,9 @@ from ..model.prestress import Prestress
 from ..model.roots import roots_between
 from ..model.scene import Scene
 from ..theory.arrest import ArrestingCrack
+from ..theory.closed_pulse import paper_transition_displacement
 from ..theory.front_speeds import front_speed
 from ..theory.fronts import Fronts, slip_velocity
-from ..theory.pulse import paper_transition_displacement
 
 NEEDS = {
     "lists": ["manuscript/open_choices.yaml"],

@@ -15,8 +15,9 @@ from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice
+from ..theory.closed_pulse import critical_rate_strengthening
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import critical_rate_strengthening, steady_pulse
+from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
 
 NEEDS = {"settings": ["measure"]}

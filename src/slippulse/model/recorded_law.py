@@ -1,0 +1,13 @@
+"""The law of friction that a data file names; what only reads it does not depend on any law."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+
+def law_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Name and parameters of a run's law; older files have the linear one alone, or none."""
+    if "friction" in attributes:
+        return json.loads(attributes["friction"])
+    alpha = attributes.get("rate_strengthening", 0.0)
+    return {"law": "linear_rate", "alpha": alpha} if alpha else {"law": "coulomb"}
