@@ -1,6 +1,7 @@
 """Differences of single simulations and figures from the shipped configuration, in words."""
 
 from collections.abc import Iterable, Mapping
+from itertools import chain
 from typing import Any
 
 from ..data.alterations import changes
@@ -20,31 +21,23 @@ class Alterations:
 
     def __init__(self, shipped: Configuration, here: Configuration) -> None:
         self.shipped, self.here = shipped, here
-        self.simulations = {
-            name: self._changes(name, simulation)
-            for name, simulation in all_simulations(here).items()
-        }
-
-    def _changes(self, name: str, simulation: Any) -> list[dict]:
-        """Changes of a resolved simulation; an added one is compared under the shipped model."""
-        before = all_simulations(self.shipped).get(name, simulation)
-        pair = (before, self.shipped.model), (simulation, self.here.model)
-        old, new = (resolve(sweep, model, {}) for sweep, model in pair)
-        without = (*DERIVED, "damping_ratio") if "beta" in new else DERIVED
-        return [one for one in changes(old, new) if one["key"] not in without]
+        self.simulations, self._runs = {}, all_simulations(here)
+        before = all_simulations(shipped)
+        for name, simulation in self._runs.items():
+            # An added one is compared under the shipped model.
+            old = resolve(before.get(name, simulation), shipped.model, {})
+            new = resolve(simulation, here.model, {})
+            without = (*DERIVED, "damping_ratio") if "beta" in new else DERIVED
+            altered = [one for one in changes(old, new) if one["key"] not in without]
+            self.simulations[name] = altered
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
         """One line on what differs, such as 'altered: b = 0.05'; empty where nothing does."""
-        differences = {
-            _equation(change): None
-            for name in simulations
-            for change in self.simulations.get(name, ())
-        }
         given, used = changes(self.shipped.given(), self.here.given()), tuple(keys)
-        for change in given:
-            if change["key"].startswith(used):
-                differences[_equation(change)] = None
-        named = [*differences][:MOST]
+        altered = [change for change in given if change["key"].startswith(used)]
+        of_runs = chain.from_iterable(self.simulations.get(name, ()) for name in simulations)
+        differences = [*dict.fromkeys(map(_equation, [*of_runs, *altered]))]
+        named = differences[:MOST]
         if len(differences) > MOST:
             named.append(f"{len(differences) - MOST} more")
         return f"altered: {', '.join(named)}" if named else ""
@@ -55,11 +48,7 @@ class Alterations:
         for change in changes(self.shipped.model.plain(), self.here.model.plain()):
             key = change["key"]
             alone = {key, "beta"} if key == "damping_ratio" else {key}
-            own = [
-                name
-                for name, simulation in all_simulations(self.here).items()
-                if alone & {*simulation.plain()}
-            ]
+            own = [name for name, run in self._runs.items() if alone & {*run.plain()}]
             if own:
                 lines.append(
                     f"model.{key} = {change['here']} is a default; simulations that give {key}"

@@ -12,9 +12,10 @@ from ..simulation.sweep import solve_sweep
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Outputs: data. Settings: solver (module and function), sweep, threads, progress."""
-    solve, sweep, threads = resolve_name(settings["solver"]), settings["sweep"], settings["threads"]
+    solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
     scenes, samples = expand(sweep)
-    data = solve_sweep(solve, scenes, samples, sweep["record"], threads, settings.get("progress"))
+    how = settings["threads"], settings.get("progress")
+    data = solve_sweep(solve, scenes, samples, sweep["record"], *how)
     flags = Counter(filter(None, data["run_flags"].values))
     for kind in sorted(flags):
         flagged = f"{flags[kind]} of {len(scenes)} runs are flagged {kind}, run by run in the data"

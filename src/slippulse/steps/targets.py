@@ -114,10 +114,9 @@ class Plan:
             text = f"{len(late)} files have a time in the future, as {late[0]}: set to now."
             print(text, file=sys.stderr)
         if late or any(_made_before_inputs(job, times) for job in jobs):
-            for path in times:
-                if path in late or below(path) != path:
-                    with suppress(OSError):
-                        os.utime(path, (now, now))
+            for path in {*late, *(path for path in times if below(path) != path)}:
+                with suppress(OSError):
+                    os.utime(path, (now, now))
 
 
 def _made_before_inputs(job: Job, times: Mapping[str, float]) -> bool:
