@@ -1,6 +1,7 @@
 """Versions of the packages that a number depends on."""
 
 import re
+from contextlib import suppress
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -15,19 +16,16 @@ def versions() -> str:
 
 
 def unlike(lock: str | Path) -> str:
-    """First package whose installed version is not in a lock, in one line; empty if there is none.
-
-    Another system, or another Python, needs other packages: the lock names those of all.
-    """
+    """First package whose installed version is not in a lock, in one line; or an empty text."""
     named: dict[str, set[str]] = {}
-    for name, wanted in re.findall(r"^([\w.-]+)==([^\s;\\]+)", Path(lock).read_text(), re.M):
-        named.setdefault(name, set()).add(wanted)
+    for name, pinned in re.findall(r"^([\w.-]+)==([^\s;\\]+)", Path(lock).read_text(), re.M):
+        named.setdefault(name, set()).add(pinned)
     for name, wanted in named.items():
-        try:
+        # Another system, or another Python, needs other packages: the lock names those of all.
+        with suppress(PackageNotFoundError):
             installed = version(name)
-        except PackageNotFoundError:
-            continue
-        if installed not in wanted:
-            allowed = f"{' or '.join(sorted(wanted))}, as in requirements.lock"
-            return f"{name}: {installed} is installed; allowed: {allowed} (rm -r .venv; make setup)"
+            if installed not in wanted:
+                allowed = f"{' or '.join(sorted(wanted))}, as in requirements.lock"
+                remedy = "(rm -r .venv; make setup)"
+                return f"{name}: {installed} is installed; allowed: {allowed} {remedy}"
     return ""
