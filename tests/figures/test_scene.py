@@ -52,6 +52,7 @@ def drawn(shipped, tmp_path_factory):
         factors = (1.0, *accuracy["coarser"])
         sweeps = {factor: resolve(simulation, model, accuracy, factor) for factor in factors}
         settings = {"simulation": name, "sweep": sweeps.pop(1.0), "sweeps": sweeps} | common
+        settings["solver"] = simulate.SOLVERS[settings["sweep"]["scheme"]]
         simulate.run({}, files, settings)
         measure.run(files, files, settings)
         predict.run({}, files, settings | shipped["measure"] | {"topics": predict.TOPICS})

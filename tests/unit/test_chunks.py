@@ -92,6 +92,7 @@ def made(shipped, tmp_path_factory):
         if not files[0].exists():
             data, measured, study, coarser = files
             settings = {"simulation": name, "measure": shipped["measure"], "threads": 1}
+            settings["solver"] = simulate.SOLVERS[blocks[1.0]["scheme"]]
             with pytest.MonkeyPatch.context() as patch:
                 patch.setenv(VARIABLE, CONFIGURATION)
                 simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})

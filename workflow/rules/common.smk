@@ -107,12 +107,6 @@ KERNELS = {
     "localised": "src/slippulse/solver/taylor.py",
     "fixed_step": "src/slippulse/solver/fixed_step.py",
 }
-# Module and function by scheme: an edit of the theory re-runs exact solutions alone.
-SOLVERS = {
-    "localised": "slippulse.solver.solution:solve_on_lattice",
-    "fixed_step": "slippulse.solver.fixed_step:solve_by_scheme",
-    "continuum": "slippulse.simulation.continuum:solve_exactly",
-}
 
 
 def made(kind, names):
@@ -167,7 +161,7 @@ def settings_of(job):
         "measure": {**config["measure"], "share": share},
         # A shipped simulation has the topics that are read; an added one has all.
         "topics": sorted(set().union(*(read.get(name, ()) for read in READ)) or TOPICS),
-        "solver": SOLVERS[scheme],
+        "solver": declared("steps.simulate", "SOLVERS")[scheme],
         "kernels": made("kernels", {scheme} & {*KERNELS}),
         "bound": bound,
         "cost": lambda: [

@@ -9,9 +9,16 @@ from ..data.store import save_dataset
 from ..data.variables import described
 from ..simulation.sweep import solve_sweep
 
+# Module and function by scheme: an edit of the theory re-runs exact solutions alone.
+SOLVERS = {
+    "localised": "slippulse.solver.solution:solve_on_lattice",
+    "fixed_step": "slippulse.solver.fixed_step:solve_by_scheme",
+    "continuum": "slippulse.simulation.continuum:solve_exactly",
+}
+
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Outputs: data. Settings: solver (module and function), sweep, threads, progress."""
+    """Outputs: data. Settings: simulation, solver (of SOLVERS), sweep, threads, progress."""
     solve, sweep = resolve_name(settings["solver"]), settings["sweep"]
     scenes, samples = expand(sweep)
     how = settings["threads"], settings.get("progress")
