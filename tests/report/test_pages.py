@@ -14,6 +14,7 @@ from slippulse.data.provenance import provenance
 from slippulse.report.claims_page import claims_page
 from slippulse.report.index_page import index_page
 from slippulse.report.scene_page import scenes_page
+from slippulse.report.texts import ERRATUM
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 FAILED = CLAIM | {"id": "width", "verdict": "not reproduced", "why": "It is *off*."}
@@ -80,23 +81,38 @@ def results(project, tmp_path_factory):
         {
             "topic": "Yes",
             "named": "fronts run",
-            "claims": ["speed"],
+            "claims": {"speed": "speeds"},
             "text": "Gap {{ found('ours').gap }}.",
         },
-        {"topic": "Fronts", "named": "a width", "claims": ["speed", "width"], "text": "No."},
-        {"topic": "Back", "named": "a length", "claims": ["length"], "text": "No."},
-        {"topic": "Ahead", "named": "a front", "claims": ["length"], "text": "No."},
+        {
+            "topic": "Fronts",
+            "named": "a front",
+            "said": {"not reproduced": "a width is not met"},
+            "claims": {"speed": "fronts", "width": "their width"},
+            "text": "No.",
+        },
+        {"topic": "Back", "named": "a length", "claims": {"length": ""}, "text": "No."},
+        {
+            "topic": "Ahead",
+            "named": "a front",
+            "claims": {"length": ""},
+            "beside": {"always": ""},
+            "text": "No.",
+        },
     ]
     summary = {
+        "question": "Do they run?",
+        "symbols": "$H$ is a height.",
         "picture": "fig01_one",
-        "accuracy": "Of {{ claim('speed').runs }} runs.",
+        "accuracy": "Of {{ claim('speed').runs }} runs, {{ misprints | length }} misprint.",
         "verdict": lines,
     }
     captions = {name: caption | {"title": title} for name, title in NAMES.items()}
     contents = {"claims": CLAIMS, "findings": [FINDING], "provenance": facts}
     for name, content in contents.items():
         (results / f"{name}.json").write_text(json.dumps(content), encoding="utf-8")
-    for name, content in {"captions": captions, "summary": summary}.items():
+    erratum = dict.fromkeys(ERRATUM, "text")
+    for name, content in {"captions": captions, "summary": summary, "errata": [erratum]}.items():
         text = yaml.safe_dump(content)
         (results.parent / f"{name}.yaml").write_text(text, encoding="utf-8")
     return results
@@ -106,6 +122,7 @@ def written(results, captions: str = "captions") -> str:
     texts = {
         "captions": results.parent / f"{captions}.yaml",
         "summary": results.parent / "summary.yaml",
+        "errata": results.parent / "errata.yaml",
     }
     galleries = {"Figures of the paper": ["fig01_one"], "Studies": ["fig02_two"]}
     scenes = {"made": "A scene <that> is there", "not_made": "A scene that is not"}
@@ -174,11 +191,11 @@ def test_links_lead_somewhere_and_only_the_paper_is_outside(page, results):
 
 def test_it_says_what_was_found_and_from_what(page):
     assert "3 claims: 1 reproduced, 1 not reproduced, 1 not testable." in page
-    exceptions = "A width is not reproduced. A length and a front are not tested in this run."
-    assert f"<strong>Yes</strong>: fronts run. {exceptions}" in page
-    assert "Gap 0.500." in page
+    exceptions = "A width is not met. A length and a front are not tested in this run."
+    assert "Do they run? <strong>Yes</strong>: fronts run.</p>" in page
+    assert page.index('id="verdict"') < page.index(exceptions) < page.index("Gap 0.500.")
     assert "A scene &lt;that&gt; is there" in page and "One &lt;figure&gt;" in page
-    assert "Found in 4 runs." in page and "Of 4 runs." in page
+    assert "Found in 4 runs." in page and "Of 4 runs, 1 misprint." in page
     assert "1 values differ" in page and "<td>preset</td><td>paper</td><td>draft</td>" in page
     assert (
         page.index("values differ")
@@ -186,8 +203,9 @@ def test_it_says_what_was_found_and_from_what(page):
         < page.index("Figures of the paper</h2>")
     )
     assert "results/scenes/not_made.html" in page
-    # A line has the worst verdict of its claims.
-    assert re.search(r'href="claims\.html#width">. not reproduced<', page)
+    # A line tells every verdict of its claims, and what has it if there are several.
+    first = r'#speed">. reproduced<span class="unseen">, speed</span></a> \(fronts\);'
+    assert re.search(first + r' <a [^>]*#width">. not reproduced<.*?</a> \(their width\)<', page)
 
 
 def test_the_ledger_has_a_page_with_failures_first():
@@ -203,7 +221,7 @@ def test_the_ledger_has_a_page_with_failures_first():
     assert "20 %, tolerance 0.1 %" in text and 'aria-label="200 × tolerance"' in text
     assert '<p class="why">It is <em>off</em>.</p>' in text and "3 of 5, 2 undecided" in text
     assert '<li id="ours">a gap of <math' in text and "follows from <code>speed</code>" in text
-    assert "1 not testable. 1 more follow from these." in text
+    assert "1 not testable. 1 more are not counted" in text
     assert "1.25010(10)" in text and "not measured" in text
     assert "\\gamma" not in re.sub("<annotation.*?</annotation>", "", text)
     assert '<a href="figures/fig01_one.png">figure 1, one</a>' in text

@@ -61,6 +61,7 @@ PAGES_OF |= {"draw_scene": ["scene.html"], "write_scenes_page": ["scenes.html"]}
 READ_BY = {
     "captions.yaml": {"write_report", "write_index"},
     "summary.yaml": {"write_report", "write_index"},
+    "errata.yaml": {"write_report", "write_index"},
     "claims.yaml": {"write_report", "write_claims"},
     "statements.yaml": {"write_report", "write_claims"},
     "open_choices.yaml": {"study_of_open_choices"},

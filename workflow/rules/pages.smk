@@ -145,6 +145,7 @@ rule write_index:
         environment,
         captions="manuscript/captions.yaml",
         summary="manuscript/summary.yaml",
+        errata="manuscript/errata.yaml",
         # The provenance is made from all other files that the page shows or leads to.
         provenance="results/provenance.json",
     output:

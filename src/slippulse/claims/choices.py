@@ -1,8 +1,8 @@
 """A claim at every combination of what the paper leaves open, and the choice that decides it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import permutations
 from typing import Any, NamedTuple
 
@@ -107,27 +107,44 @@ class OverChoices(ByNumber):
         verdict, why = self.verdict(), self.shown.why
         if verdict == rules.DEPENDS:
             causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
-            why = f"It holds at {held} of {len(rows)} combinations. It depends on {causes}."
+            why += f" It holds at {held} of {len(rows)} combinations{self.reach(rows)}."
+            why = f"{why} It depends on {causes}.".strip()
         elif verdict == rules.CAVEAT:
-            unsure = next(row for row in rows if row["verdict"] == verdict)
-            places = [f"{NAMES[name]} {named(unsure[name])}" for name in NAMES if name in unsure]
-            why = f"With {' and '.join(places)} it is within the tolerance,"
-            why += " but not together with its uncertainty."
+            unsure = next(one for one in self.combinations if one.result["verdict"] == verdict)
+            places = [
+                f"{NAMES[name]} {named(unsure.choice[name])}"
+                for name in NAMES
+                if name in unsure.choice
+            ]
+            why = unsure.claim.why or "it is within the tolerance, but not with its uncertainty"
+            why = f"With {' and '.join(places)}, {why}."
         out = {"choices": rows, "choice": next(iter(decided), ""), "verdict": verdict, "why": why}
         return self.shown.fields() | out | {"combinations": len(rows), "holds_at": held}
 
     def written(self) -> dict[str, Any]:
         return self.shown.written() | self.fields() | {"flips_at": self.flips()}
 
+    def size(self, deviation: float) -> str:
+        """A deviation in words."""
+        if isinstance(self.shown, Scaling):
+            return f"exponent off by {number(deviation, 2)}"
+        against = " of the runs against" if isinstance(self.shown, Qualitative) else ""
+        return f"{percent(deviation, 3)}{against}"
+
+    def reach(self, rows: Iterable[Mapping]) -> str:
+        """The largest deviation that holds, and the smallest that fails."""
+        holding, failing = (
+            [row["deviation"] for row in rows if row["holds"] is side] for side in (True, False)
+        )
+        least, most = min(failing), max(holding)
+        words = partial(number, digits=2) if isinstance(self.shown, Scaling) else percent
+        return f", with deviations up to {words(most)}, and fails with {words(least)} or more"
+
     def cause(self, name: str, change: Change | None) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""
         sides = []
         for one in (change.before, change.after) if change else ():
-            size = percent(one.result["deviation"], 3)
-            if isinstance(self.shown, Scaling):
-                size = f"exponent off by {number(one.result['deviation'], 2)}"
-            elif isinstance(self.shown, Qualitative):
-                size += " of the runs against"
+            size = self.size(one.result["deviation"])
             if name != "fraction" and one.choice.get("fraction") == LAST:
                 size += ", at the last release"
             verb = "holds" if one.result["holds"] else "fails"

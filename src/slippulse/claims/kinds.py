@@ -17,12 +17,14 @@ NAN = float("nan")
 class Claim(ABC):
     """The result about one claim; every kind may have further numbers by name, and two texts.
 
-    ``why`` is one sentence on the verdict, ``note`` replaces that in manuscript/claims.yaml.
+    ``why`` is a sentence or two on the verdict, ``note`` replaces that in manuscript/claims.yaml,
+    ``at_earlier`` is the verdict at an earlier tolerance, where no number is compared with it.
     """
 
     further: Mapping[str, float] = field(default_factory=dict)
     why: str = ""
     note: str = ""
+    at_earlier: str = ""
 
     @abstractmethod
     def verdict(self) -> str:
@@ -39,20 +41,23 @@ class Claim(ABC):
     def written(self) -> dict[str, Any]:
         """All fields in claims.json that the result sets."""
         rest = {"further": dict(self.further), "why": self.why, "flips_at": self.flips()}
-        return self.fields() | rest | ({"note": self.note} if self.note else {})
+        rest |= {"at_earlier": self.at_earlier} | ({"note": self.note} if self.note else {})
+        return self.fields() | rest
 
 
 @dataclass(frozen=True, kw_only=True)
 class Qualitative(Claim):
     """An always, never or every, by the numbers of runs in which it holds, fails or is open.
 
-    ``condition`` is true if it needs a condition that the paper does not state.
+    ``condition`` is true if it needs a condition that the paper does not state, ``premise`` if the
+    paper does not say that it holds, but takes it for granted.
     """
 
     held: int
     failed: int = 0
     undecided: int = 0
     condition: bool = False
+    premise: bool = False
 
     @classmethod
     def counted(cls, decided: Iterable[bool | None], **fields: Any) -> Self:
@@ -64,7 +69,8 @@ class Qualitative(Claim):
         return cls(held=held, failed=failed, undecided=undecided, **fields)
 
     def verdict(self) -> str:
-        return rules.qualitative(self.held, self.failed, self.undecided, self.condition)
+        verdict = rules.qualitative(self.held, self.failed, self.undecided, self.condition)
+        return rules.UNMET if self.premise and verdict == rules.FAILED else verdict
 
     def fields(self) -> dict[str, Any]:
         runs, counts = self.held + self.failed + self.undecided, {"held": self.held}
@@ -72,27 +78,6 @@ class Qualitative(Claim):
         out = {"verdict": self.verdict(), "predicted": runs, "measured": self.held}
         out |= {"uncertainty": self.undecided, "deviation": self.failed / runs if runs else None}
         return out | {"runs": runs} | counts
-
-
-@dataclass(frozen=True, kw_only=True)
-class Existence(Qualitative):
-    """A claim that there are runs of some cases: one of each is enough.
-
-    ``cases`` has by name the number of runs that show a case and of those that might have.
-    """
-
-    cases: Mapping[str, tuple[int, int]]
-
-    @classmethod
-    def shown(cls, cases: Mapping[str, tuple[int, int]], **fields: Any) -> Self:
-        """The claim from the numbers of runs of each case."""
-        shown, runs = (sum(counts) for counts in zip(*cases.values(), strict=True))
-        return cls(held=shown, failed=runs - shown, cases=cases, **fields)
-
-    def verdict(self) -> str:
-        if not all(shown for shown, _ in self.cases.values()):
-            return rules.INCONCLUSIVE
-        return rules.CAVEAT if self.condition else rules.REPRODUCED
 
 
 @dataclass(frozen=True, kw_only=True)

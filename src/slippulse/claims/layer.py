@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from ..data.numerals import number, percent
 from .evidence import Evidence
 from .kinds import Approximate, Qualitative
 
@@ -54,13 +55,25 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     pulses = finest(runs, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
+    damped = pulses["damped_pulse_width"] / pulses["paper_pulse_width"]
+    levels = pulses.reset_index()
+    fracture = float((levels["gamma"] * levels["weakening"] / levels["tau0"] ** 2).max())
     uncertainty = float((change(runs, "pulse", "pulse_width") * ratio).median())
+    why = "The paper does not say it. In the plane, under a slip weakening that takes "
+    why += rf"{percent(fracture)} of the energy $\tau_0^2/2\gamma$, pulses are "
+    why += f"{number(ratio.min(), 2)} to {number(ratio.max(), 2)} times as wide as the formula for "
+    why += "Coulomb friction in one dimension; the one-dimensional model with the same weakening "
+    why += f"and the paper's damping has {number(damped.min(), 2)} to {number(damped.max(), 2)}: "
+    why += "friction and plane are not separated."
     further = {
         f"median of plane over formula, {quantity.replace('_', ' ')}": float(
             (pulses[quantity] / pulses[f"paper_{quantity}"]).median()
         )
         for quantity in ("speed", "pulse_slip", "first_stick")
     }
+    for name, widths in (("in the plane", ratio), ("in one dimension, as weakened", damped)):
+        further |= {f"narrowest {name}, over the formula": float(widths.min())}
+        further |= {f"widest {name}": float(widths.max())}
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
@@ -68,6 +81,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         median=(float(deviations.median()), uncertainty),
         ratio=(float(ratio.median()), uncertainty),
         further=further,
+        why=why,
     )
 
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
+from ..data.numerals import number, setting
 from ..measurement.regime import REGIMES
 from .evidence import Evidence, agreeing
 from .kinds import Approximate, Exact, Qualitative
@@ -162,10 +163,17 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     width, slowest = table["pulse_width"], table["front_speed_right"].min()
     further = {"narrowest pulse, in H": width.min(), "widest pulse": width.max()}
     further["slowest front, over the fastest wave"] = slowest
-    why = (
-        "The paper assumes it; by its own formula of the width it holds near static friction alone."
+    allowed = evidence.tolerance(id)
+    thin = 1.0 / width <= allowed
+    gammas, ratios = (
+        " and ".join(setting(value) for value in np.unique(table[name]))
+        for name in ("gamma", "damping_ratio")
     )
-    return Qualitative.counted(1.0 / width <= evidence.tolerance(id), further=further, why=why)
+    why = "The paper assumes it and gives no range. "
+    why += rf"At $\gamma$ = {gammas} and $b$ = {ratios} it is met at {thin.sum()} of {len(thin)} "
+    why += r"levels; by the formula of the width it is where $\gamma(1-\tau_0^2)/\tau_0^2$ is "
+    why += f"at most {number((np.pi * allowed) ** 2)}."
+    return Qualitative.counted(thin, premise=True, further=further, why=why)
 
 
 # With the displacement held

@@ -15,8 +15,6 @@ from .rules import VERDICTS
 
 # Reasons for a sentence to have no claim; a repetition names the sentence that it repeats.
 WHY_NONE = ("background", "definition", "other work", "no model", "not asked")
-# The verdict on a tested sentence as it is printed, apart from that on its claim.
-AS_PRINTED = ("holds", "holds corrected", "depends on an open choice", "does not hold", "open")
 # What tests check beside the claims: algebra, and what the model imposes.
 CHECKS = ("algebra", "imposed")
 # A tolerance below this is for rounding alone.
@@ -120,9 +118,10 @@ class Ledger:
         """The number of counted claims with one of these verdicts, or of all of them."""
         return sum(claim.counted and (not verdicts or claim.verdict in verdicts) for claim in self)
 
-    def following(self) -> int:
-        """The number of claims that follow from others."""
-        return len(self.claims) - self.count()
+    def relaxed(self, *verdicts: str) -> int:
+        """The number of claims whose tolerance was stricter, or of these verdicts at that one."""
+        earlier = [claim.at_earlier for claim in self if claim.at_earlier]
+        return sum(not verdicts or verdict in verdicts for verdict in earlier)
 
     def summary(self) -> str:
         """The number of claims of each verdict, in words."""
@@ -189,11 +188,9 @@ def why_text(claim: SimpleNamespace) -> str:
         return "This run leaves no number to judge by."
     if claim.kind == "qualitative":
         held, _, rest = measured_text(claim).partition(", ")
-        condition = claim.note.partition("condition: ")[2]
         if rest:
             return f"It holds in {held} cases, with {rest}."
-        text = "It needs a condition that the paper does not state"
-        return f"{text}: {condition}." if condition else f"{text}."
+        return "It needs a condition that the paper does not state."
     if claim.kind == "reading":
         return f"At the best fit {compared_text(claim)} is asked."
     return f"It is off by {compared_text(claim)}; its uncertainty is {uncertainty_text(claim)}."
@@ -226,6 +223,8 @@ def evidence_text(claim: SimpleNamespace) -> str:
     if claim.follows_from:
         names = ", ".join(f"`{id}`" for id in claim.follows_from)
         parts.append(f"follows from {names} and is not counted again")
+    if claim.beyond:
+        parts.append("beyond the paper, and not counted")
     return "; ".join(filter(None, parts))
 
 

@@ -13,7 +13,7 @@ from ..claims.reading import Ledger, read_text
 from ..data.prose import fill
 from .claims_page import shown
 from .html import page
-from .texts import answer, judged_lines, parameters, read_captions
+from .texts import answer, judged_lines, parameters, read_captions, read_errata
 
 # A reader goes to the first files; the others follow below.
 FIRST = {
@@ -47,17 +47,20 @@ def index_page(
     ledger = Ledger(_json(results / "claims.json"), _json(results / "findings.json"))
     config = facts["config"]
     names = {"claim": ledger, "found": ledger.found, "config": config}
+    names["misprints"] = read_errata(texts["errata"])
     filled = partial(fill, names=names | {"runs": partial(parameters, config)})
     captions, summary = read_captions(texts["captions"], filled), read_text(texts["summary"])
     lines = judged_lines(summary, ledger, filled)
     in_short, accuracy = answer(lines[:1]), filled(summary["accuracy"])
+    question, symbols = summary["question"], summary["symbols"]
+    exceptions = answer(lines).removeprefix(in_short).strip()
     figures = {
         # A user-defined sweep has no caption but its name.
         name: captions.get(name)
         or captions["user_defined_sweep"]._replace(title=name.removeprefix("sweep_"))
         for name in chain.from_iterable(galleries.values())
     }
-    written = [in_short, accuracy]
+    written = [question, in_short, exceptions, symbols, accuracy]
     for line in lines:
         written += [line.topic, line.text]
     for caption in figures.values():
@@ -65,7 +68,10 @@ def index_page(
     return page(
         "index.html",
         altered=facts["overlay"],
+        question=question,
         answer=in_short,
+        exceptions=exceptions,
+        symbols=symbols,
         lines=lines,
         accuracy=accuracy,
         figures=figures,

@@ -111,6 +111,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     altered = changes(inputs.shipped, config)
     # A number is a link to its claim or finding, and the tables behind it.
     cite = "[{1}](../claims.html#{0})".format
+    misprints = read_errata(folder / "errata.yaml")
     names: dict[str, object] = {
         **FILTERS,
         "config": config,
@@ -126,6 +127,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "entries": read_text(folder / "claims.yaml"),
         "statements": statements,
         "sentences": coverage(statements),
+        "misprints": misprints,
         "tolerances_altered": any(change["key"].startswith("claims.") for change in altered),
     }
     # The errata see names that cells add later.
@@ -133,16 +135,20 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
     gallery = Gallery(inputs.figures, texts, captions, inputs.figures_folder, document)
-    lines = judged_lines(read_text(folder / "summary.yaml"), ledger, filled)
+    summary = read_text(folder / "summary.yaml")
+    lines = judged_lines(summary, ledger, filled)
     shipped = read_text(folder / "shipped_verdicts.yaml") or {}
     names |= {
         "figure": lambda name: show(gallery.figure(name)),
         "further": lambda: show(gallery.further()),
         "see": gallery.see,
         "alteration_note": lambda: alteration_note(altered, ledger, shipped),
+        "question": summary["question"],
         "answer": answer(lines),
+        "symbols": summary["symbols"],
+        "accuracy": filled(summary["accuracy"]),
         "verdicts": lambda: verdicts(lines),
-        "errata": lambda: errata(read_errata(folder / "errata.yaml"), filled),
+        "errata": lambda: errata(misprints, filled),
     }
     return names
 

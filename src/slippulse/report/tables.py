@@ -80,7 +80,10 @@ def code(names: Iterable[str]) -> str:
 def verdicts(lines: Iterable[Line]) -> str:
     """The lines of the answer, each verdict with a link to the claim that it comes from."""
     link = "[{0.verdict}](../claims.html#{0.id})".format
-    rows = [(line.topic, link(line.claim), line.text) for line in lines]
+    rows = []
+    for line in lines:
+        told = [f"{link(claim)}{f' ({names})' if names else ''}" for claim, names in line.verdicts]
+        rows.append((line.topic, "; ".join(told), line.text))
     return table("what the paper says l28 | verdict l16 | what was found l56", rows)
 
 
@@ -177,7 +180,8 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
     rows = []
     for entry in entries:
         rows.append([fill(entry[key]) for key in ERRATUM])
-    return table("where l14 | printed l27 | right l33 | what shows it l26", rows)
+    head = "where l13 | printed l25 | right l31 | what shows it l22 | alters l9"
+    return table(head, rows)
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:

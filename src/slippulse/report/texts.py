@@ -9,9 +9,17 @@ from ..claims.reading import Ledger, read_text
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import setting
 
-ERRATUM = ("where", "printed", "right", "shown")
+# What an erratum has: `alters` says what changes by it.
+ERRATUM = ("where", "printed", "right", "shown", "alters")
 # A text names only the ends of more values than this.
 FEW = 3
+# Verdicts that one sentence of the answer names together.
+SENTENCES = (
+    ("depends on an open choice",),
+    ("not reproduced", "premise not met"),
+    ("inconclusive",),
+    ("not testable",),
+)
 # Words of the answer for one thing with a verdict, and for several.
 EXCEPTIONS = {
     "depends on an open choice": (
@@ -19,6 +27,7 @@ EXCEPTIONS = {
         "depend on choices that the paper leaves open",
     ),
     "not reproduced": ("is not reproduced", "are not reproduced"),
+    "premise not met": ("is not met", "are not met"),
     "inconclusive": ("stays open", "stay open"),
     "not testable": ("is not tested in this run", "are not tested in this run"),
 }
@@ -111,12 +120,19 @@ def _values(values: Sequence[float]) -> str:
 
 
 class Line(NamedTuple):
-    """A line of manuscript/summary.yaml, with the worst of the claims that it rests on."""
+    """A line of manuscript/summary.yaml.
+
+    ``claim`` is the worst of the claims that decide it, ``said`` the clause of the answer for that
+    verdict, if there is one. ``verdicts`` has a claim of each verdict, those told beside included,
+    with what has that verdict, in words if there are several.
+    """
 
     topic: str
     named: str
+    said: str
     text: str
     claim: SimpleNamespace
+    verdicts: Sequence[tuple[SimpleNamespace, str]]
 
 
 def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
@@ -125,8 +141,22 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     for entry in summary["verdict"]:
         claims = [ledger(id) for id in entry["claims"]]
         worst = min(claims, key=lambda claim: WORST_FIRST.index(claim.verdict))
-        lines.append(Line(entry["topic"], entry["named"], fill(entry["text"]), worst))
+        said = entry.get("said", {}).get(worst.verdict, "")
+        told = told_verdicts(entry["claims"] | entry.get("beside", {}), ledger)
+        lines.append(Line(entry["topic"], entry["named"], said, fill(entry["text"]), worst, told))
     return lines
+
+
+def told_verdicts(names: Mapping[str, str], ledger: Ledger) -> list[tuple[SimpleNamespace, str]]:
+    """The first claim of each verdict, and the names of all that have it; claims by id."""
+    groups: dict[str, list[str]] = {}
+    for id in names:
+        groups.setdefault(ledger(id).verdict, []).append(id)
+    several = len(groups) > 1
+    return [
+        (ledger(ids[0]), listed([*dict.fromkeys(names[id] for id in ids)]) if several else "")
+        for ids in groups.values()
+    ]
 
 
 def answer(lines: Sequence[Line]) -> str:
@@ -134,10 +164,15 @@ def answer(lines: Sequence[Line]) -> str:
     first, *rest = lines
     start = "Yes" if first.claim.verdict.startswith("reproduced") else "Not in this run"
     sentences = [f"**{start}**: {first.named}."]
-    for verdict, (one, several) in EXCEPTIONS.items():
-        named = [line.named for line in rest if line.claim.verdict == verdict]
-        if named:
-            words = listed(named)
-            verb = several if len(named) > 1 else one
-            sentences.append(f"{words[0].upper()}{words[1:]} {verb}.")
+    for verdicts in SENTENCES:
+        clauses = []
+        for verdict in verdicts:
+            these = [line for line in rest if line.claim.verdict == verdict]
+            clauses += [line.said for line in these if line.said]
+            named = [line.named for line in these if not line.said]
+            if named:
+                clauses.append(f"{listed(named)} {EXCEPTIONS[verdict][len(named) > 1]}")
+        if clauses:
+            words = ", and ".join(clauses)
+            sentences.append(f"{words[0].upper()}{words[1:]}.")
     return " ".join(sentences)
