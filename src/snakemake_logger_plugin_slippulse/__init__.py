@@ -1,5 +1,6 @@
 """Progress bars in a terminal, else one line a job. Snakemake finds the plugin by its name."""
 
+import logging
 import re
 import sys
 
@@ -10,6 +11,8 @@ class LogHandler(Rich):
     """Logger without the line that a run is complete, and without tracebacks of what users give."""
 
     def emit(self, record):
+        if "all" in map(str, self.common_settings.quiet or ()) and record.levelno < logging.ERROR:
+            return
         message = record.getMessage()
         if getattr(record, "done", None) and not sys.stderr.isatty():
             print(f"{record.done} of {record.total}", file=sys.stderr)
