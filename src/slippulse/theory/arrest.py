@@ -51,11 +51,10 @@ class ArrestingCrack:
         check_number("position", position, above=self.balance_position, at_most=self.zero)
         last = self.end - 1e-9
         if self.prestress.integral(position, last) <= 0.0:
-            raise ValueError(
-                f"position: {position!r}; allowed: farther from x_minus ="
-                f" {self.balance_position:.10g}, where characteristics that entered before"
-                f" {last:g} end"
+            allowed = (
+                f"farther from x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
             )
+            raise ValueError(f"position: {position!r}; allowed: {allowed}")
 
         def balance(entry: float) -> float:
             return self.prestress.integral(position, entry)
@@ -89,10 +88,7 @@ class ArrestingCrack:
         return 0.5 * self.prestress.integral(self.zero, self.end)
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
-        """Arrays of x - t and du/dt on the characteristics of the pulse that runs far to the right.
-
-        count points, 2 to 10000, are on each of three parts.
-        """
+        """Arrays of x - t and du/dt on characteristics of the pulse that runs far to the right."""
         check_number("count", count, integer=True, at_least=2, at_most=10_000)
         right = np.linspace(2.0 * self.reach, 0.0, count)
         left = np.linspace(0.0, self.zero, count)[1:]

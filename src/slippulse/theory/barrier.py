@@ -11,7 +11,7 @@ from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
 from .pulse import steady_pulse
-from .slow_front import advance
+from .slow_front import SlowFront
 
 # Length of a panel before the barrier, in units of 1/sqrt(gamma), and distance that the panels
 # cover, in units of the memory of the pulse.
@@ -64,7 +64,8 @@ def barrier_depth(
     # The depth is found at gamma = 1.
     stop = None
     while stop is None:
-        panel, stop, _ = advance(Curve(panels), level, tau_barrier, 1.0, math.inf)
+        front = SlowFront(Curve(panels), level, tau_barrier, gamma=1.0)
+        panel, stop, _ = front.next_panel(math.inf)
         if panel is not None:
             panels.append(panel)
     if stop != "dead":

@@ -46,7 +46,8 @@ class SteadyPulse:
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Arrays of slip, slip velocity and slip acceleration, at rest outside of the pulse."""
         xi = as_numbers("xi", xi)
-        p, q, v = self.growth, self.wavenumber, self.speed
+        p, q = self.growth, self.wavenumber
+        v = self.speed
         inside = (xi <= 0.0) & (xi >= -self.width)
         y = np.where(inside, xi, 0.0)
         size = v * self.tau0 * (p**2 + q**2) / (self.gamma * q)
@@ -68,16 +69,11 @@ def pulse_at_speed(
     check_number("beta", beta, at_least=0.0)
     check_number("speed", speed, above=1.0)
     check_number("rate_strengthening", rate_strengthening)
-    given = (float(tau0), float(gamma), float(beta), float(speed))
-    alpha = float(rate_strengthening)
+    given = float(tau0), float(gamma), float(beta), float(speed), float(rate_strengthening)
     try:
-        pulse = _solution(*given, alpha)
+        return _solution(*given)
     except (ArithmeticError, ValueError):
-        raise _no_pulse(*given, alpha) from None
-    # Floats of Python overflow without an error.
-    if not all(0.0 < size < math.inf for size in (pulse.width, pulse.slip, pulse.peak_velocity)):
-        raise _no_pulse(*given, alpha)
-    return pulse
+        raise _no_pulse(*given) from None
 
 
 def _no_pulse(tau0: float, gamma: float, beta: float, speed: float, alpha: float) -> ValueError:
@@ -107,6 +103,9 @@ def _solution(tau0: float, gamma: float, beta: float, speed: float, alpha: float
     modulus = np.hypot(p, q)
     peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
     sizes = float(width), float(slip), float(peak), float(gamma * slip)
+    # Floats of Python overflow without an error.
+    if not all(0.0 < size < math.inf for size in sizes[:3]):
+        raise OverflowError
     return SteadyPulse(tau0, gamma, beta, speed, *sizes, p, q, alpha)
 
 

@@ -18,13 +18,11 @@ SAME = 1e-9
 COUNT = 12
 NODES, WEIGHTS = legendre.leggauss(COUNT)
 TO_SERIES = np.linalg.inv(legendre.legvander(NODES, COUNT - 1))
-# Maps from values at the nodes to the Legendre series of the integral from the left end, and of the
-# derivative.
+# Maps from values at the nodes: to the series of the integral from the left end; to its values at
+# the nodes, to those of the derivative, and to the values at both ends.
 INTEGRATE = legendre.legint(TO_SERIES, lbnd=-1.0)
-DERIVE = legendre.legder(TO_SERIES)
-# Maps from values at the nodes to the integral from the left end, and to the derivative, there.
 CUMULATIVE = legendre.legvander(NODES, COUNT) @ INTEGRATE
-SLOPE = legendre.legvander(NODES, COUNT - 2) @ DERIVE
+SLOPE = legendre.legvander(NODES, COUNT - 2) @ legendre.legder(TO_SERIES)
 AT_ENDS = legendre.legvander(np.array([-1.0, 1.0]), COUNT - 1) @ TO_SERIES
 # Fields on a panel: x, T, T + x, T - x and tau dx/ds; all but the last are monotonic.
 FIELDS = ("x", "time", "late", "early", "source")
@@ -129,11 +127,6 @@ class Curve:
         """Coefficients of FIELDS, one after another, for `value_and_slope`."""
         return TO_POWERS @ np.concatenate([self.x, self.time, self.late, self.early, self.source]).T
 
-    @property
-    def right_end(self) -> Point:
-        """The last point of the curve."""
-        return Point(float(self.edges[-1]), float(self.edge_times[-1]))
-
     def row(self, name: str, panel: np.ndarray) -> np.ndarray:
         """Columns of a field on panels in `ends` and `powers`."""
         return panel + len(self.panels) * FIELDS.index(name)
@@ -222,11 +215,8 @@ class Curve:
 def _least_beyond(
     exits: np.ndarray, edges: np.ndarray, restarts: Iterable[float]
 ) -> list[np.ndarray]:
-    """The least exit of each panel and those after it in its region.
-
-    A region ends at a restart: a characteristic that leaves it across a slow front meets no source
-    beyond.
-    """
+    """The least exit of each panel and those after it in its region, which ends at a restart."""
+    # A characteristic that leaves its region across a slow front meets no source beyond.
     cuts = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
     return [np.minimum.accumulate(region[::-1])[::-1] for region in np.split(exits, cuts)]
 
@@ -234,10 +224,8 @@ def _least_beyond(
 def _first_rise(
     edges: np.ndarray, regions: list[np.ndarray], y: np.ndarray, level: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Panels, from y on, on which a field rises to a level for the last time, and whether any do.
-
-    The field falls to the front from above the level on nearer panels.
-    """
+    """Panels, from y on, on which a field rises to a level for the last time; a mask of those."""
+    # The field falls to the front from above the level on nearer panels.
     count = edges.size - 1
     start = np.minimum(np.searchsorted(edges, y, side="right") - 1, count - 1)
     panel, first = np.full(y.shape, count), 0
@@ -251,9 +239,10 @@ def _first_rise(
 
 
 def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Polynomials and their derivatives at one parameter each, for every fourth power at once.
+    """Polynomials p and their derivatives at one parameter each, by Estrin's scheme.
 
-    The coefficients are [n, 2 m + derivative, point] of the power 4 n + m.
+    p(s) is the sum of s^m q_m(s^4) over m < 4. The coefficients are [n, 2 m + derivative, point] of
+    the power 4 n + m; the number of powers is a multiple of 4.
     """
     square = s * s
     fourth = square * square

@@ -56,7 +56,7 @@ def exact_transition_displacement(
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.
     fronts = Fronts(prestress, damping_ratio, release, 2.5 * period, gamma)
-    stick = _first_stick_at_centre(fronts.curve, gamma, 2.0 * period)
+    stick = float(Part(fronts.curve, gamma, 2.0 * period).search(np.zeros(1))[0])
     if not stick < fronts.curve.edge_times[-1]:
         reach = float(front_speed(level, damping_ratio, release)) * stick + 20.0 * prestress.width
         fronts = Fronts(prestress, damping_ratio, release, reach, gamma)
@@ -91,8 +91,4 @@ def uniform_transition_time(
     reach = 12.0 / max(1.0 - slowness**2, 12.0 / FARTHEST)
     edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve(straight_panels(edges, slowness, tau))
-    return _first_stick_at_centre(curve, 1.0, 10.0) / float(np.sqrt(float(gamma)))
-
-
-def _first_stick_at_centre(curve: Curve, gamma: float, until: float) -> float:
-    return float(Part(curve, gamma, until).search(np.zeros(1))[0])
+    return float(Part(curve, 1.0, 10.0).search(np.zeros(1))[0] / np.sqrt(float(gamma)))

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -33,13 +32,6 @@ NARROW = 0.1
 FEATURES = np.array([-EXTENT, -4.5, -2.0, 0.0, 2.0, 4.5, EXTENT])
 
 
-class Path(NamedTuple):
-    """Panels of a front that goes right, and its position and time at the end."""
-
-    panels: list[Panel]
-    end: Point
-
-
 class FastFront:
     """The law of motion of a front that outruns the waves; it makes the panels of its path."""
 
@@ -59,11 +51,9 @@ class FastFront:
         check_number("refinement", refinement, integer=True, at_least=1, at_most=FINEST)
         check_number("rate_strengthening", alpha)
         check_runaway(gamma, alpha)
-        self.prestress = prestress
-        self.gamma = float(gamma)
-        self.alpha = float(alpha)
+        self.prestress, self.release = prestress, release
+        self.gamma, self.alpha = float(gamma), float(alpha)
         self.damping_ratio = float(damping_ratio)
-        self.release = release
         self.refinement = int(refinement)
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
         # An edge of a panel stands at each feature, so that none falls between two nodes.
@@ -105,8 +95,8 @@ class FastFront:
         longest = min(LONGEST / max(proper, 1e-3), LONGEST_AT_REST)
         return longest / self.kernel_rate / self.refinement
 
-    def rightwards(self, start: Point, stop: float, until: float) -> Path:
-        """The path from a point towards stop, as long as tau >= 0 and T < until."""
+    def rightwards(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
+        """Panels from a point towards stop, as long as tau >= 0 and T < until, and their end."""
         x, time = start
         panels: list[Panel] = []
         last_feature = float(self.features[-1])
@@ -123,7 +113,7 @@ class FastFront:
                 end = last_feature
             panels += self.between(piece.level, Point(x, time), end)
             x, time = end, panels[-1].time_ends[1]
-        return Path(panels, Point(x, time))
+        return panels, Point(x, time)
 
     def between(self, level: float, start: Point, end: float) -> list[Panel]:
         """Panels of a front that goes right from a point over a part of one piece."""

@@ -20,19 +20,18 @@ SUBSTEPS = 16
 
 @dataclass(frozen=True)
 class SteadyFront:
-    """A front at one speed, in lattice units: lengths in dx, slip in dx^2, velocity in dx.
+    """A front at one speed, in lattice units: lengths in dx, velocity in dx.
 
     Parameters
     ----------
     prestress : float, tau_0 into which the front runs
-    distance, slip, velocity : arrays, distance behind the front, slip and slip velocity there
+    distance, velocity : arrays, distance behind the front, and slip velocity there
     ahead : array, stress on the first stuck block at SUBSTEPS + 1 times from the last release to
         the release of this block, where it is 1
     """
 
     prestress: float
     distance: np.ndarray
-    slip: np.ndarray
     velocity: np.ndarray
     ahead: np.ndarray
 
@@ -93,7 +92,7 @@ def steady_front(
     system[count:size, -1] = 1.0
     step = expm(system / (speed * SUBSTEPS))
     period = np.linalg.matrix_power(step, SUBSTEPS)
-    # A period later each block is one place farther behind, and a block at rest leads.
+    # A period later each block is one position farther behind, and a block at rest leads.
     shift = np.kron(np.eye(2), np.eye(count, k=-1))
     state = np.linalg.solve(
         np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size]
@@ -110,7 +109,6 @@ def steady_front(
     return SteadyFront(
         prestress=float(tau),
         distance=np.arange(trusted * SUBSTEPS) / SUBSTEPS,
-        slip=tau * slip[:-1, :trusted].T.ravel(),
         velocity=tau * velocity[:-1, :trusted].T.ravel(),
         ahead=tau * ahead,
     )

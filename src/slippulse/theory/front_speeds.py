@@ -226,11 +226,7 @@ def _slowed_by_weak_springs(speed: float, ratio: float, lattice: Lattice) -> flo
 
 
 def _least_prestress(tau0: float, lattice: Lattice) -> tuple[float, float]:
-    """ln(v - 1) of a front, and the least pre-stress of fronts, which that front has.
-
-    Where tau_0 is above the pre-stress of the slowest front, which mostly has the least one, there
-    is one speed.
-    """
+    """ln(v - 1) of a front, and the least pre-stress of fronts, which that front has."""
     if lattice.springs > LARGEST_SPRINGS:
         return 0.0, 1.0
     slow = max(1.0, np.sqrt(4.0 + lattice.springs) / np.pi)
@@ -240,6 +236,7 @@ def _least_prestress(tau0: float, lattice: Lattice) -> tuple[float, float]:
         slow = max(slow, margin / np.sqrt(1.0 - 0.25 * lattice.drag**2 / lattice.springs))
     first = float(np.log(slow - 1.0)) if slow > 1.0 else SLOWEST
     least = float(np.exp(lattice.log_prestress(np.array([first]), lattice.ratio)[0]))
+    # The slowest front mostly has the least pre-stress; above it there is one speed.
     return (first, least) if tau0 > least else _fold(first, lattice)
 
 

@@ -45,13 +45,15 @@ class Fronts:
         starts = nucleations(prestress)
         if len(starts) > 1 or starts[0][0] != starts[0][1]:
             raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
-        right = law.rightwards(Point(0.0, 0.0), float(reach), np.inf)
-        left = right
+        start, reach = Point(0.0, 0.0), float(reach)
+        right, right_end = law.rightwards(start, reach, np.inf)
+        left, left_end = right, right_end
         if not prestress.symmetric:
-            left = law.mirrored().rightwards(Point(0.0, 0.0), float(reach), np.inf)
-        ends = {-1.0: left.end.x, 1.0: right.end.x}
-        self.ends = {side: x if x < reach else np.inf for side, x in ends.items()}
-        self.curve = Curve(seen_from(-1.0, left.panels) + right.panels)
+            left, left_end = law.mirrored().rightwards(start, reach, np.inf)
+        ends = np.array([left_end.x, right_end.x])
+        ends[ends >= reach] = np.inf
+        self.ends = dict(zip((-1.0, 1.0), ends.tolist(), strict=True))
+        self.curve = Curve(seen_from(-1.0, left) + right)
 
     def arrival(self, x) -> np.ndarray:
         """T(x): when the front reaches x, an array; NaN beyond where it outruns the waves."""

@@ -47,20 +47,6 @@ AT_ZERO = (1.0, -0.25, 1.0 / 32.0)
 LARGEST_EXPONENT = 300.0
 
 
-class RestNodes(NamedTuple):
-    """A state at rest at the nodes of a curve: p, p', and dT/ds, dg/ds and dh/ds there."""
-
-    p: np.ndarray
-    slope: np.ndarray
-    d_time: np.ndarray
-    d_early: np.ndarray
-    d_late: np.ndarray
-
-    def on(self, panels: slice) -> "RestNodes":
-        """The values on some panels, as flat arrays."""
-        return RestNodes._make(values[panels].ravel() for values in self)
-
-
 class Rest:
     """One solution p of p'' - gamma p + tau = 0 along a curve: which one makes no difference to u.
 
@@ -81,8 +67,13 @@ class Rest:
             left = left[::-1, ::-1]
             p, slope = (right + left) / (2.0 * k), 0.5 * (left - right)
         derivatives = (values @ SLOPE.T for values in (curve.time, curve.early, curve.late))
-        self.at_nodes = RestNodes(p, slope, *derivatives)
+        # p, p', and dT/ds, dg/ds and dh/ds, [quantity, panel, node].
+        self.at_nodes = np.stack([p, slope, *derivatives])
         self._powers = [TO_POWERS @ values.T for values in (p, slope)]
+
+    def on(self, panels: slice) -> np.ndarray:
+        """The values at the nodes of some panels, [quantity, node]."""
+        return self.at_nodes[:, panels].reshape(len(self.at_nodes), -1)
 
     def evaluate(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """p (order 0) or p' (1) at a parameter on panels."""
@@ -175,7 +166,7 @@ class Past:
         k, alpha = self.stiffness, self.alpha
 
         def integrand(sources: Sources) -> np.ndarray:
-            p, slope, d_time, d_early, d_late = rest.at_nodes.on(sources.panels)
+            p, slope, d_time, d_early, d_late = rest.on(sources.panels)
             out = sources.kernel(0) * (-slope * d_time - 0.25 * alpha * p * (d_late - d_early))
             if k:
                 sides = sources.d_eta * (k * p * d_early) - sources.d_xi * (k * p * d_late)
@@ -192,7 +183,7 @@ class Past:
             return out
 
         def integrand(sources: Sources) -> np.ndarray:
-            p, slope, d_time, d_early, d_late = rest.at_nodes.on(sources.panels)
+            p, slope, d_time, d_early, d_late = rest.on(sources.panels)
             d_xi, d_eta, first = sources.d_xi, sources.d_eta, sources.kernel(1)
             growth = k**2 * sources.kernel(2) * (d_eta * (p * d_early) - d_xi * (p * d_late))
             sides = first * (k * p * (d_early + d_late))
@@ -280,10 +271,7 @@ def decay(alpha: float, d_xi: np.ndarray, d_eta: np.ndarray) -> np.ndarray:
 
 
 def kernel_of(stiffness: float, z: np.ndarray, cut: np.ndarray) -> Callable:
-    """K and its derivatives at z, by order.
-
-    For k >= 0 only cut values, continued beyond the domain, may be below 0.
-    """
+    """K and its derivatives at z, by order; z below 0 counts where the domain is cut only."""
     if stiffness < 0.0:
         return partial(_bessel, z)
     return partial(riemann, z, (float(cut.min()), float(z.max())))

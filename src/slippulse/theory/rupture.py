@@ -92,13 +92,11 @@ class Rupture:
         check_number("rate_strengthening", rate_strengthening, at_most=MOST_DECAY / duration)
         self.prestress = prestress
         self.gamma = self.law.gamma
-        self.rate_strengthening = self.law.alpha
         self.duration = float(duration)
         # A time up to here is the duration but for rounding.
         self._last = self.duration * (1.0 + SAME)
         until = self.duration * (1.0 + BEYOND)
-        spreading = spread(self.law, until)
-        self.stretches, self._unknown = spreading.stretches, spreading.unknown
+        self.stretches, self._unknown = spread(self.law, until)
         self._parts = [self._part(stretch, until) for stretch in self.stretches]
         # A symmetric scene is solved at x >= 0.
         one_side = prestress.symmetric

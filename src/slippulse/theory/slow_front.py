@@ -32,38 +32,38 @@ REMAINDER = 1e-8
 # Fraction of the rupture: distance from a mark from which a front that speeds up to the waves is
 # continued at their speed.
 NEAR_MARK = 1e-5
+# Length of a whole panel in its parameter.
+WHOLE = 2.0
 # Relative distance of a look beyond the end of a panel of entries for the next one.
 LOOK = 1e-11
 # An event this close to the first entry of a chunk, in its parameter, has ended the last chunk.
 AT_START = 1e-6
+# A chunk ends at an event this close to its last entry, the less exactly after many corrections.
+AT_END, NEAR_END, MANY = 1e-9, 1e-6, 5
+# A chunk that was shortened to end at an event is searched a little beyond its end.
+BEYOND = 1.2
 MOST_CHUNKS = 60
 MOST_NEWTON_STEPS = 60
 
 
 class Advance(NamedTuple):
-    """The next panel of a slow front, the reason why it is the last one, and a length to try next.
-
-    The length is that of a chunk in its parameter.
-    """
+    """The next panel, the reason why it is the last one, and the length of a chunk to try next."""
 
     panel: Panel | None
     stop: str | None
-    longest: float = 2.0
+    longest: float = WHOLE
 
 
 class Chunk(NamedTuple):
-    """A range of entries: the panel of the curve, and the parameters of its first and last entry.
-
-    The last entry lies to the left of the first one.
-    """
+    """A range of entries on a panel of the curve, by their parameters, from right to left."""
 
     panel: int
     start: float
     stop: float
 
-    def parameters(self) -> np.ndarray:
-        """Parameters of the entries at the nodes."""
-        return self.start + 0.5 * (self.stop - self.start) * (1.0 + NODES)
+    def parameters(self, s: np.ndarray = NODES) -> np.ndarray:
+        """Parameters on the panel of the entries, from their parameters on the chunk."""
+        return self.start + 0.5 * (self.stop - self.start) * (1.0 + s)
 
     def half(self) -> "Chunk":
         """The first half."""
@@ -76,86 +76,17 @@ class Solution(NamedTuple):
     x: np.ndarray
     slope: np.ndarray
 
-    def first_event(self, mark: float, limit: float) -> tuple[float, str | None] | None:
-        """The first parameter, up to a limit, where the front stops or meets the mark."""
+    def first_event(self, mark: float, limit: float) -> tuple[float, str | None]:
+        """The first parameter, up to a limit, where the front stops or meets the mark, or inf."""
         events: list[tuple[float, str | None]] = [(s, None) for s in _roots_on(self.slope, limit)]
         if np.isfinite(mark):
             events += [(s, "mark") for s in _roots_on(self.x - mark, limit)]
-        return min(events, key=lambda event: event[0], default=None)
-
-    def rises_from(self, start: float) -> bool:
-        """Tell whether the front goes on from a position, node by node."""
-        return bool(np.all(np.diff(self.x, prepend=start) > 0.0))
+        return min(events, key=lambda event: event[0], default=(np.inf, None))
 
     def goes_back(self) -> bool:
         """Tell whether the front would go back from the start of the chunk on."""
         first = min(_roots_on(self.slope, 1.0), default=1.0)
         return bool(legendre.legval(0.5 * (first - 1.0), TO_SERIES @ self.slope) < 0.0)
-
-
-def advance(
-    curve: Curve,
-    prestress: Prestress,
-    level: float,
-    gamma: float,
-    mark: float,
-    alpha: float = 0.0,
-    longest: float = 2.0,
-) -> Advance:
-    """Continue the right end of a curve into negative pre-stress by one panel of entries at most.
-
-    level is the side level at the front, mark the end of the negative piece (may be infinite). The
-    stop is "mark" where the new panel ends there, "dead" where the front could only go back, as
-    the solution beyond shows, "unknown" where its characteristic comes from beyond the left end of
-    the curve, and "unresolved" where no panel is short enough. A panel ends where the front stops.
-    """
-    front = SlowFront(curve, prestress, level, gamma - 0.25 * alpha**2, alpha)
-    entry = front.entry()
-    if entry is None:
-        return Advance(None, "unknown")
-    panel, start = entry
-    return _first_panel(front, Chunk(panel, start, max(start - longest, -1.0)), mark)
-
-
-def _first_panel(front: "SlowFront", chunk: Chunk, mark: float) -> Advance:
-    """The panel of a chunk, or of the part of it that is resolved and ends at an event."""
-    corrections = 0
-    for _ in range(MOST_CHUNKS):
-        if chunk.start - chunk.stop < SHORTEST:
-            return front.straight(mark)
-        solution = front.solve(chunk)
-        back = solution is not None and solution.goes_back()
-        # This close to a mark rounding may send a front back.
-        if solution is None or (back and mark - front.x0 < NEAR_MARK * front.size):
-            chunk, corrections = chunk.half(), 0
-            continue
-        if back:
-            return Advance(None, "dead")
-        # A chunk that was shortened to end at an event is searched a little beyond its end.
-        event = solution.first_event(mark, 1.2 if corrections else 1.0)
-        # Where the equation hardly depends on the front rounding may put it behind its start.
-        if (event is None or _at_end(event[0], corrections)) and not solution.rises_from(front.x0):
-            chunk, corrections = chunk.half(), 0
-            continue
-        if event is None:
-            length = GROWTH * (chunk.start - chunk.stop) if chunk.stop > -1.0 else 2.0
-            return Advance(front.panel(chunk, solution), None, length)
-        s, stop = event
-        if _at_end(s, corrections):
-            end = mark if stop == "mark" else None
-            return Advance(front.panel(chunk, solution, end), stop)
-        # Beyond the event the solution may mean nothing: the chunk is solved again to end there.
-        length = chunk.stop - chunk.start
-        chunk = chunk._replace(stop=chunk.start + 0.5 * length * (1.0 + s))
-        corrections += 1
-    return Advance(None, "unresolved")
-
-
-def _at_end(s: float, corrections: int) -> bool:
-    """Tell whether an event is at the end of its chunk, as far as corrections bring it there."""
-    if corrections == 0:
-        return False
-    return abs(s - 1.0) < (1e-6 if corrections > 5 else 1e-9)
 
 
 def _roots_on(values: np.ndarray, limit: float) -> list[float]:
@@ -219,18 +150,61 @@ class FreeBoundary:
 
 @dataclass
 class SlowFront:
-    """The right end of a curve, continued for chunks of entries."""
+    """The right end of a curve, continued into negative pre-stress for chunks of entries."""
 
     curve: Curve
     prestress: Prestress
-    level: float
-    stiffness: float
-    alpha: float
+    level: float  # of the side where the front is
+    gamma: float
+    alpha: float = 0.0
 
     def __post_init__(self) -> None:
-        self.x0, self.t0 = self.curve.right_end
+        self.stiffness = self.gamma - 0.25 * self.alpha**2
         edges = self.curve.edges
+        self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
         self.size = max(float(edges[-1] - edges[0]), abs(self.x0))
+
+    def next_panel(self, mark: float, longest: float = WHOLE) -> Advance:
+        """Continue the front by one panel of entries at most, or a shorter length.
+
+        mark is the end of the negative piece (may be infinite). The stop is "mark" where the new
+        panel ends there, "dead" where the front could only go back, as the solution beyond shows,
+        "unknown" where its characteristic comes from beyond the left end of the curve, and
+        "unresolved" where no panel is short enough. A panel ends where the front stops.
+        """
+        entry = self.entry()
+        if entry is None:
+            return Advance(None, "unknown")
+        chunk, corrections = Chunk(*entry, max(entry[1] - longest, -1.0)), 0
+        for _ in range(MOST_CHUNKS):
+            if chunk.start - chunk.stop < SHORTEST:
+                return self.straight(mark)
+            solution = self.solve(chunk)
+            back = solution is not None and solution.goes_back()
+            # This close to a mark rounding may send a front back.
+            if solution is None or (back and mark - self.x0 < NEAR_MARK * self.size):
+                chunk, corrections = chunk.half(), 0
+                continue
+            if back:
+                return Advance(None, "dead")
+            s, stop = solution.first_event(mark, BEYOND if corrections else 1.0)
+            near = AT_END if corrections <= MANY else NEAR_END
+            if s < np.inf and (corrections == 0 or abs(s - 1.0) >= near):
+                # Beyond an event the solution may mean nothing: it is solved again to end there.
+                chunk, corrections = (
+                    chunk._replace(stop=float(chunk.parameters(np.array(s)))),
+                    corrections + 1,
+                )
+            elif np.any(np.diff(solution.x, prepend=self.x0) <= 0.0):
+                # Where the equation hardly depends on the front rounding may put it behind its
+                # start.
+                chunk, corrections = chunk.half(), 0
+            else:
+                whole = s < np.inf or chunk.stop == -1.0
+                length = WHOLE if whole else GROWTH * (chunk.start - chunk.stop)
+                end = mark if stop == "mark" else None
+                return Advance(self.panel(chunk, solution, end), stop, length)
+        return Advance(None, "unresolved")
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Pre-stress ahead of the front."""

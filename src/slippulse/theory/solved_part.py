@@ -18,8 +18,6 @@ WIDER, NARROWER = 1.2, 0.4
 # Slip is checked at positions this far apart, in units of `Part.scale`, to this fraction of itself.
 CHECKED, FALL = 0.25, 1e-6
 
-Horizon = Callable[[np.ndarray], np.ndarray]
-
 
 @dataclass
 class SolvedPart(Part):
@@ -49,10 +47,7 @@ class SolvedPart(Part):
         index: np.ndarray,
         time: np.ndarray,
     ) -> None:
-        """Put the values of this part into arrays of fields, by name, that hold 0 before.
-
-        Points are at distinct positions, by their index, and times.
-        """
+        """Put values into arrays of fields, by name, at distinct positions, by index, and times."""
         release = self.curve.arrival(positions)
         stick = np.nan_to_num(self.stick_time(positions), nan=np.inf)
         sliding = (time > release[index]) & (time < stick[index])
@@ -66,7 +61,7 @@ class SolvedPart(Part):
                 last[ended] = self.field(name, positions[ended], stick[ended])
                 values[stuck] = last[index[stuck]]
 
-    def falling_slip(self, horizon: Horizon) -> list[Point]:
+    def falling_slip(self, horizon: Callable) -> list[Point]:
         """Releases after which slip would fall before the stick and the horizon, in samples."""
         x = self.edge.knots.x
         x = x[np.unique(np.floor(x / (CHECKED * self.scale)), return_index=True)[1]]
@@ -77,11 +72,8 @@ class SolvedPart(Part):
         falls = np.minimum(middle, end - middle) < -FALL * np.max(end, initial=0.0)
         return [Point(*point) for point in np.stack([x, release], axis=1)[falls].tolist()]
 
-    def largest_velocity(self, end: float, horizon: Horizon) -> float:
-        """Largest slip velocity until an end and before a horizon, on a grid that is refined there.
-
-        The grid is one of positions and fractions of the time from release on.
-        """
+    def largest_velocity(self, end: float, horizon: Callable) -> float:
+        """Largest slip velocity until an end and before a horizon."""
 
         def sampled(x: np.ndarray, fraction: np.ndarray) -> np.ndarray:
             release = self.curve.arrival(x)[:, None]
@@ -91,15 +83,18 @@ class SolvedPart(Part):
             values[after] = self.velocity(x[after[0]], time[after])
             return values
 
+        # The grid is one of positions and fractions of the time from release on.
         x = self._positions_by_knots()
         fraction = np.tile(np.linspace(0.0, 1.0, 17), (x.size, 1))
         values = sampled(x, fraction)
         row, column = np.unravel_index(np.argmax(values), values.shape)
-        largest, centre_x, centre_fraction = values[row, column], x[row], fraction[row, column]
+        largest = values[row, column]
+        centre_x, centre_fraction = x[row], fraction[row, column]
         nearest = np.diff(x)[max(row - 1, 0) : row + 1]
         reach_x = float(np.max(nearest, initial=SAME_GRID * self.scale))
         reach_fraction = float(fraction[0, 1])
-        window, slope, factor = np.linspace(-1.0, 1.0, 7), 0.0, WIDER
+        window = np.linspace(-1.0, 1.0, 7)
+        slope, factor = 0.0, WIDER
         # Beyond this fraction the largest value changes by rounding only.
         while factor * reach_fraction > 1e-8:
             x = (centre_x + reach_x * window).clip(*self.edge.knots.x[[0, -1]])
@@ -112,13 +107,11 @@ class SolvedPart(Part):
             ridge = fraction[np.arange(x.size), np.argmax(values, axis=1)]
             away = x - np.mean(x)
             slope = float(away @ ridge / max(away @ away, 1e-300))
-            factor = WIDER if values[row, column] > largest * (1.0 + 1e-10) else NARROWER
-            if values[row, column] > largest:
-                largest, centre_x, centre_fraction = (
-                    values[row, column],
-                    x[row],
-                    fraction[row, column],
-                )
+            value = values[row, column]
+            factor = WIDER if value > largest * (1.0 + 1e-10) else NARROWER
+            if value > largest:
+                largest = value
+                centre_x, centre_fraction = x[row], fraction[row, column]
         return float(largest)
 
     def _positions_by_knots(self) -> np.ndarray:

@@ -9,7 +9,7 @@ from ..model.roots import root_between
 from .curve import SAME, Curve, Panel, Point, seen_from
 from .fast_front import FastFront
 from .prestress_pieces import nucleations
-from .slow_front import advance
+from .slow_front import WHOLE, SlowFront
 
 # Reasons why a slow front cannot be followed further.
 UNKNOWN = {
@@ -39,7 +39,7 @@ class Stretch:
     restarts: dict[float, list[float]] = field(default_factory=lambda: {LEFT: [], RIGHT: []})
     joins: list[float] = field(default_factory=list)
     # The longest chunk that a slow front tries next.
-    longest: dict[float, float] = field(default_factory=lambda: dict.fromkeys(SIDES, 2.0))
+    longest: dict[float, float] = field(default_factory=lambda: dict.fromkeys(SIDES, WHOLE))
 
     def curve(self) -> Curve:
         """The panels as one curve."""
@@ -64,43 +64,32 @@ class Stretch:
         time = kept[-1].time_ends[1] if kept else 0.0
         self.panels = seen_from(side, kept)
         self.ends[side] = Point(x, time)
-        self.restarts[side] = [
-            restart for restart in self.restarts[side] if side * restart < side * x
-        ]
+        self.restarts[side] = [start for start in self.restarts[side] if side * start < side * x]
 
 
-@dataclass(frozen=True)
-class Spreading:
-    """The connected parts from left to right, and points, with a reason, where no more is known."""
-
-    stretches: list[Stretch]
-    unknown: list[tuple[Point, str]]
-
-
-def spread(law: FastFront, until: float) -> Spreading:
-    """Let the rupture spread from every nucleation point until a time."""
+def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
+    """Connected parts from left to right at a time, and points beyond which nothing is known."""
     laws = {RIGHT: law, LEFT: law.mirrored()}
     stretches = _nucleated(law)
     for stretch, side in product(stretches, SIDES):
         _run(laws[side], stretch, side, until)
     stretches = _joined(stretches)
     # The earliest slow front goes on first: each follows from what the others did before.
-    while going := _going_fronts(stretches):
-        _, number, side = min(going)
-        _step(laws[side], stretches[number], side, until)
+    while going := [(s, side) for s, side in product(stretches, SIDES) if not s.end_reason[side]]:
+        stretch, side = min(going, key=lambda front: front[0].ends[front[1]].time)
+        _step(laws[side], stretch, side, until)
         stretches = _joined(stretches)
     stops = [(s.ends[side], str(s.end_reason[side])) for s, side in product(stretches, SIDES)]
     unknown = [(point, UNKNOWN[reason]) for point, reason in stops if reason in UNKNOWN]
-    return Spreading(stretches, unknown + _overrun(stretches))
+    return stretches, unknown + _overrun(stretches)
 
 
 def _nucleated(law: FastFront) -> list[Stretch]:
     """One stretch for each interval that is released at t = 0."""
     starts = nucleations(law.prestress)
     if not starts:
-        raise ValueError(
-            "prestress: below 1 everywhere; allowed: a profile that reaches 1 somewhere"
-        )
+        allowed = "a profile that reaches 1 somewhere"
+        raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
     out = []
     for number, (left, right) in enumerate(starts):
         before = starts[number - 1][1] if number > 0 else -np.inf
@@ -108,19 +97,10 @@ def _nucleated(law: FastFront) -> list[Stretch]:
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
         stretch = Stretch(ends, {LEFT: -before, RIGHT: after})
         if left < right:
-            path = law.rightwards(Point(left, 0.0), right, np.inf)
-            stretch.add(RIGHT, path.panels, Point(right, 0.0))
+            panels, _ = law.rightwards(Point(left, 0.0), right, np.inf)
+            stretch.add(RIGHT, panels, Point(right, 0.0))
         out.append(stretch)
     return out
-
-
-def _going_fronts(stretches: list[Stretch]) -> list[tuple[float, int, float]]:
-    """Times, numbers of stretches and sides of the fronts that can go further."""
-    return [
-        (stretch.ends[side].time, number, side)
-        for (number, stretch), side in product(enumerate(stretches), SIDES)
-        if stretch.end_reason[side] is None
-    ]
 
 
 def _overrun(stretches: list[Stretch]) -> list[tuple[Point, str]]:
@@ -153,9 +133,8 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.next_start[side])
     curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
-    panel, stop, stretch.longest[side] = advance(
-        curve, law.prestress, piece.level, law.gamma, mark, law.alpha, stretch.longest[side]
-    )
+    front = SlowFront(curve, law.prestress, piece.level, law.gamma, law.alpha)
+    panel, stop, stretch.longest[side] = front.next_panel(mark, stretch.longest[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     if stop in ("dead", *UNKNOWN):

@@ -63,10 +63,7 @@ class StickSearch:
     until: float
 
     def stick_time(self, x: np.ndarray, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
-        """Stick times at positions, released at these times, at which waves [position, wave] come.
-
-        NaN where there is none before the end.
-        """
+        """Stick times at released positions, NaN for none; waves come there: [position, wave]."""
         times = self._times(release, waves)
         out = np.full(x.shape, np.nan)
         # The last two samples are kept, since a minimum next to them may lie below 0. The first
@@ -110,10 +107,7 @@ class StickSearch:
         return VelocitySamples(x, time, velocity.reshape(time.shape))
 
     def _zeros_next_to_minima(self, samples: VelocitySamples, first: np.ndarray) -> np.ndarray:
-        """Zeros between the samples next to a minimum above 0; NaN where there is none.
-
-        The minima come before the first column below 0.
-        """
+        """Zeros between samples next to minima above 0, before a first column below 0; or NaN."""
         out = np.full(samples.x.shape, np.nan)
         rows, columns = samples.minima(first)
         low, high = samples.time[rows, columns - 1], samples.time[rows, columns + 1]
@@ -132,10 +126,8 @@ class StickSearch:
         return out
 
     def _zeros(self, brackets: Brackets) -> np.ndarray:
-        """Zeros of du/dt in time; the end of a bracket where du/dt never rises from 0.
-
-        A velocity that starts at 0, at release, is followed from where it has risen.
-        """
+        """Zeros of du/dt in time; the end of a bracket where du/dt never rises from 0."""
+        # A velocity that starts at 0, at release, is followed from where it has risen.
         from_rest = brackets.velocity_at_start <= 0.0
         flat = self._raise_starts(brackets, np.flatnonzero(from_rest))
         others = np.setdiff1d(np.arange(from_rest.size), flat)
@@ -152,10 +144,8 @@ class StickSearch:
         return out
 
     def _raise_starts(self, brackets: Brackets, flat: np.ndarray) -> np.ndarray:
-        """Move the starts of flat brackets, in place, to where du/dt has risen; return those left.
-
-        On a slow front that is about to stop du/dt rises for a short while only.
-        """
+        """Move starts of flat brackets, in place, to where du/dt has risen; return those left."""
+        # On a slow front that is about to stop du/dt rises for a short while only.
         for _ in range(40):
             if not flat.size:
                 break
