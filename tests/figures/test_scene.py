@@ -50,7 +50,8 @@ def drawn(shipped, tmp_path_factory):
         outputs = {ending: folder / f"one.{ending}" for ending in endings}
         simulation = scene_simulation(NamedScene.model_validate(scene | {"title": TITLE}), model)
         factors = (1.0, *accuracy["coarser"])
-        sweeps = {factor: resolve(simulation, model, accuracy, factor) for factor in factors}
+        resolved = resolve(simulation, model, accuracy)
+        sweeps = {factor: resolved | {"coarser": factor} for factor in factors}
         settings = {"simulation": name, "sweep": sweeps.pop(1.0), "sweeps": sweeps} | common
         settings["solver"] = simulate.SOLVERS[settings["sweep"]["scheme"]]
         simulate.run({}, files, settings)

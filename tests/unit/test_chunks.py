@@ -86,7 +86,8 @@ def made(shipped, tmp_path_factory):
     def make(name: str, chunk: list[int] | None = None) -> list:
         part = {"chunk": chunk} if chunk else {}
         plain = SWEEPS[name], shipped["model"], COARSE
-        blocks = {factor: resolve(*plain, factor) | part for factor in (1.0, 1.5, 2.0)}
+        whole = resolve(*plain) | part
+        blocks = {factor: whole | {"coarser": factor} for factor in (1.0, 1.5, 2.0)}
         endings = (".nc", ".csv", "_study.csv", "_coarser.csv")
         files = [folder / f"{name}{chunk or ''}{ending}" for ending in endings]
         if not files[0].exists():

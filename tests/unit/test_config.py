@@ -23,9 +23,8 @@ SMALL_FACTOR = 3.0
 
 
 def scenes_of(shipped: dict, name: str, coarser: float = 1.0):
-    sweep = resolve(
-        shipped["simulations"][name], shipped["model"], shipped["presets"]["paper"], coarser
-    )
+    simulation, accuracy = shipped["simulations"][name], shipped["presets"]["paper"]
+    sweep = resolve(simulation, shipped["model"], accuracy) | {"coarser": coarser}
     return sweep, expand(sweep)[0]
 
 
@@ -195,7 +194,8 @@ def test_with_an_accuracy_each_scene_has_its_own_spacing(config):
         fields = "fields" in simulation["record"]
         expected = sp.settings_for(1e-2, **physics, damping_ratio=0.1, fields=fields)
         assert {key: getattr(scene, key) for key in expected} == pytest.approx(expected)
-    coarser, _ = expand(promised(resolve(simulation, config["model"], accuracy, 2.0)))
+    block = resolve(simulation, config["model"], accuracy) | {"coarser": 2.0}
+    coarser, _ = expand(promised(block))
     assert [scene.dx for scene in coarser] == pytest.approx([2.0 * scene.dx for scene in scenes])
 
 

@@ -24,25 +24,18 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
     return preset | {"max_step": STEP, "order": ORDER, "promise": config.accuracy}
 
 
-def resolve(
-    simulation: Simulation | Mapping,
-    model: Model | Mapping,
-    accuracy: Mapping,
-    coarser: float = 1.0,
-) -> dict[str, Any]:
+def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
     """A simulation with everything that its data depend on, as builtins; chunks do not count."""
     defaults = Model.model_validate(model).plain()
-    defaults["damping_ratio"] = [defaults["damping_ratio"]]
+    defaults |= {key: [defaults[key]] for key in LISTED if key in defaults}
     given = Simulation.model_validate(simulation).plain()
     del given["chunks"]
-    if "friction" in defaults:
-        defaults["friction"] = [defaults["friction"]]
     if "rate_strengthening" in given:
         alphas = given.pop("rate_strengthening")
         laws = [LinearRate(alpha) if alpha else COULOMB for alpha in alphas]
         given["friction"] = [law.mapping() for law in laws]
     kept = {key: accuracy[key] for key in ("dx", "max_step", "order", "promise") if key in accuracy}
-    return {**defaults, **given, "accuracy": kept, "coarser": coarser}
+    return {**defaults, **given, "accuracy": kept, "coarser": 1.0}
 
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:
