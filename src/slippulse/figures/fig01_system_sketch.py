@@ -79,7 +79,7 @@ def draw_layer(axes: Axes, strip: float) -> None:
     label(axes, STRIP, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
     label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
     substrate = label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8)
-    substrate.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 1.0})
+    substrate.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.3})
     arrow(axes, (0.27 * LENGTH, 0.05), (0.13 * LENGTH, 0.05), BLACK, gid="friction")
     label(axes, 0.7, 0.1, "$f_f$", va="bottom")
     law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"

@@ -16,14 +16,11 @@ PANELS = {
 }
 LOOKS: dict[str, Look] = {
     "textbook": {"color": BLACK, "marker": "x", "linestyle": "-", "linewidth": 0.6},
-    "best": {"color": GREY, "linestyle": "-", "drawstyle": "steps-post"},
+    "best": {"color": GREY, "drawstyle": "steps-post"},
     "preset": {"color": ORANGE, "marker": "o", "linestyle": "none", "markersize": 5.0},
 }
-NAMES = {
-    "textbook": "textbook scheme",
-    "best": "smallest error of any setting of the localised scheme at this work",
-    "preset": "presets",
-}
+BEST = "smallest error of any setting of the localised scheme at this work"
+NAMES = {"textbook": "textbook scheme", "best": BEST, "preset": "presets"}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -95,4 +92,5 @@ def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
     # The legend stands above the marks.
     axes.set(ylim=(low, low + 1.32 * (high - low)), xlabel=r"time step $\Delta t\,/\,\Delta x$")
     axes.set_ylabel("front speed")
+    axes.set_title(r"$\Gamma = 0$", loc="right")
     axes.legend(loc="upper center", ncols=2, columnspacing=1.0, handlelength=1.6)

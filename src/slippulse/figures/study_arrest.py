@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from ..data.points import point
 from ..measurement.fronts import path
 from . import style
-from .style import GREY, ORANGE, PAGE, Look, entry
+from .style import GREY, MARKERS, OPEN, ORANGE, PAGE, Look, entry
 
 NEEDS = {
     "data": ["arrest"],
@@ -19,9 +19,7 @@ NEEDS = {
 }
 
 PATH_POINTS = 150
-MARKERS = ("o", "s", "^", "D", "v")
 PALE: Look = {"linewidth": 3.0, "alpha": 0.35}
-OPEN: Look = {"markerfacecolor": "white"}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -54,10 +52,9 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, 1, 2)
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     handles: list[Artist] = []
-    scale = style.colour_scale("damping_ratio")
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The scale of colours is logarithmic, and has none for 0.
-        look: Look = {"color": scale.to_rgba(ratio) if ratio else ORANGE}
+        look: Look = {"color": style.colour("damping_ratio", ratio) if ratio else ORANGE}
         handles.append(entry(f"$b$ = {ratio:g}", marker=marker, **look))
         simulated, exact = rows[rows["role"] == "path"], rows[rows["role"] == "exact_path"]
         exact = exact[exact["time"] <= longest]
@@ -76,8 +73,7 @@ def draw(table: pd.DataFrame) -> Figure:
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     path_axes.set_ylabel(r"still to go, $1-|x|/|x_{-}|$")
     left, right, width = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
-    levels = rf"$\tau_{{0,l}} = {left:g}$, $\tau_{{0,r}} = {right:g}$"
-    path_axes.set_title(rf"$\Gamma = 0$, {levels}, $W = {width:g}$", loc="right")
+    path_axes.set_title(style.conditions(False, tau_l=left, tau_r=right, width=width), loc="right")
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
     low, high = spacing_axes.get_ylim()
     spacing_axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))

@@ -7,9 +7,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from numpy.polynomial.chebyshev import chebvander
+from scipy.interpolate import barycentric_interpolate
 
-from .style import BLACK, PAGE, Look, colour_scale, few_ticks, new_panels
+from . import style
+from .style import BLACK, MARKERS, OPEN, PAGE, SMALL, Look, conditions, few_ticks
 
 NEEDS = {"studies": ["barriers"]}
 
@@ -19,8 +20,6 @@ FINE, BANDS = 41, 33
 CONTOURS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 11.0)
 # Above this depth the map is light, and lines and labels on it are dark.
 LIGHT = 3.5
-MARKERS = ("o", "s", "^")
-OPEN: Look = {"markersize": 3.8, "markerfacecolor": "white"}
 # Curves have this gamma, for which the estimate is drawn; exact depths scale to it.
 GAMMA = 0.65
 LEVELS = (0.2, 0.5, 0.8)
@@ -57,21 +56,15 @@ def _interpolated(
     columns = pairs.to_frame(index=False)
     for name, power in powers.items():
         depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
-        depth = np.exp(_weights(tau0, levels) @ np.log(depths) @ _weights(log_barrier, y).T)
+        over_level = barycentric_interpolate(tau0, np.log(depths), levels)
+        depth = np.exp(barycentric_interpolate(log_barrier, over_level, y, axis=1))
         columns[name] = depth.ravel() / gamma**power
     return columns.assign(gamma=gamma)
 
 
-def _weights(nodes: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Weights of the values at nodes (denser at the ends) in the polynomial through them."""
-    middle, half = 0.5 * (nodes[0] + nodes[-1]), 0.5 * (nodes[-1] - nodes[0])
-    by_node, by_point = (chebvander((x - middle) / half, nodes.size - 1) for x in (nodes, points))
-    return np.linalg.solve(by_node.T, by_point.T).T
-
-
 def draw(table: pd.DataFrame) -> Figure:
     """Draw maps without and with damping above; below curves with the estimate, and convergence."""
-    figure, (*maps, curve_axes, convergence_axes) = new_panels(PAGE, 5.4, 2, 2)
+    figure, (*maps, curve_axes, convergence_axes) = style.new_panels(PAGE, 5.4, 2, 2)
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()
@@ -80,26 +73,26 @@ def draw(table: pd.DataFrame) -> Figure:
     for axes, ratio in zip(maps, ratios, strict=True):
         drawn, marked = (rows[rows["damping_ratio"] == ratio] for rows in (fine, finest))
         image = _draw_map(axes, drawn, marked, scale, bands)
-        axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
+        axes.set_title(conditions(True, damping_ratio=ratio), loc="right")
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOURS)
     # The curves are at the larger damping ratio, the last above.
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
     _draw_curves(curve_axes, curves, marked)
-    curve_axes.set_title(rf"$\Gamma = 1$, $b = {ratio:g}$", loc="right")
+    curve_axes.set_title(conditions(True, damping_ratio=ratio), loc="right")
     _draw_convergence(convergence_axes, runs)
     return figure
 
 
 def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
     """Draw the depth on lattices over the exact one, a line a scene."""
-    for style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
-        look: Look = {"color": colour_scale("damping_ratio").to_rgba(ratio), "markersize": 2.4}
-        look |= {"linewidth": 0.7, "markerfacecolor": "white", "markeredgewidth": 0.7}
+    for line_style, (ratio, rows) in zip(("o-", "s--"), runs.groupby("damping_ratio"), strict=True):
+        look: Look = {"color": style.colour("damping_ratio", ratio), "markersize": 2.4}
+        look |= {"linewidth": 0.7, "markeredgewidth": 0.7} | OPEN
         for _, line in rows.groupby(["tau0", "barrier", "gamma"]):
             line = line.sort_values("dx")
-            axes.plot(line["dx"], line["measured"] / line["exact"], style, **look)
+            axes.plot(line["dx"], line["measured"] / line["exact"], line_style, **look)
         axes.lines[-1].set_label(rf"$b = {ratio:g}$")
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel=r"spacing $\Delta x$", ylabel="lattice depth / exact depth", xlim=(0.0, None))
@@ -116,7 +109,7 @@ def _draw_map(
     image = axes.contourf(x, y, grid.to_numpy(), levels=bands, norm=scale, cmap=MAP, extend="both")
     look: Look = {"levels": CONTOURS, "colors": _ink(CONTOURS), "linewidths": 0.5}
     lines = axes.contour(x, y, grid.to_numpy(), **look)
-    axes.clabel(lines, fmt="%g", fontsize=7.0, zorder=2.5)
+    axes.clabel(lines, fmt="%g", fontsize=SMALL, zorder=2.5)
     look = {"s": 26.0, "linewidths": 0.9, "norm": scale, "cmap": MAP, "zorder": 3.0}
     for marker, (gamma, group) in zip(MARKERS, finest.groupby("gamma"), strict=False):
         depth = group["measured"] * np.sqrt(gamma)
@@ -135,18 +128,19 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
     """Draw exact lines, the estimate, and the finest lattices scaled to one gamma."""
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):
-        colour = colour_scale("tau_0").to_rgba(tau0)
+        colour = style.colour("tau_0", tau0)
         axes.plot(-rows["barrier"], rows["exact"], color=colour, label=rf"$\tau_0 = {tau0:g}$")
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
         for gamma, runs in finest[finest["tau0"] == tau0].groupby("gamma"):
             depth = runs["measured"] * np.sqrt(gamma / GAMMA)
-            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN)
+            axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, markersize=3.8, **OPEN)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")
     for gamma, marker in markers.items():
-        axes.plot([], [], marker, color="0.3", label=rf"lattice, $\gamma = {gamma:g}$", **OPEN)
+        look: Look = {"color": "0.3", "markersize": 3.8} | OPEN
+        axes.plot([], [], marker, label=rf"lattice, $\gamma = {gamma:g}$", **look)
     axes.set(xscale="log", yscale="log", ylim=(0.33, 14.0), xlabel=r"barrier $-\tau_\text{b}$")
     axes.set_ylabel(rf"depth $\times\ (\gamma/{GAMMA:g})^{{1/2}}$")
     few_ticks(axes.xaxis, (0.1, 0.2, 0.5, 1.0))
     few_ticks(axes.yaxis, (0.5, 1, 2, 5, 10))
-    look: Look = {"ncols": 2, "columnspacing": 0.6, "handletextpad": 0.3, "handlelength": 1.3}
-    axes.legend(loc="lower left", borderaxespad=0.2, fontsize=7.0, **look)
+    look = {"ncols": 2, "columnspacing": 0.6, "handletextpad": 0.3, "handlelength": 1.3}
+    axes.legend(loc="lower left", borderaxespad=0.2, fontsize=SMALL, **look)

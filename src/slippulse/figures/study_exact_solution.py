@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 
 from ..data.numerals import setting
 from . import style
-from .style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, Look
+from .shared.space_time import draw_halves
+from .style import BLACK, BLUE, GREEN, GREY, OPEN, ORANGE, PAGE, SMALL, Look
 
 NEEDS = {"studies": ["exact_rupture"]}
 table = style.as_given
@@ -25,9 +26,8 @@ def draw(table: pd.DataFrame) -> Figure:
     scenes = table[table["role"] == "scene"]
     for scene, colour in SCENES.items():
         rows = table[table["scene"] == scene]
-        _draw_edge(edge_axes, rows, "release", colour)
-        _draw_edge(edge_axes, rows, "stick", colour)
-        _draw_edge(slip_axes, rows, "slip", colour)
+        for axes, quantity in ((edge_axes, "release"), (edge_axes, "stick"), (slip_axes, "slip")):
+            _draw_edge(axes, rows, quantity, colour)
     _draw_key(edge_axes, scenes["dx"].iloc[0])
     edge_axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
     slip_axes.set(xlabel=r"position $x$", ylabel=r"slip $u$", ylim=(0.0, None))
@@ -44,10 +44,9 @@ def draw(table: pd.DataFrame) -> Figure:
 
 def _scene_name(scene: Any) -> str:
     """Boundary condition and pre-stress of a row of role scene."""
-    held = rf"$\Gamma = 1$, $\gamma = {scene.gamma:g}$"
-    boundary = held if scene.gamma > 0.0 else r"$\Gamma = 0$"
+    gamma = {"gamma": scene.gamma} if scene.gamma > 0.0 else {}
     levels = dict.fromkeys([setting(scene.left), setting(scene.right)])
-    return rf"{boundary}, $\tau_0$ = {', '.join(levels)}"
+    return rf"{style.conditions(bool(gamma), **gamma)}, $\tau_0$ = {', '.join(levels)}"
 
 
 def _draw_key(axes: Axes, dx: float) -> None:
@@ -55,37 +54,30 @@ def _draw_key(axes: Axes, dx: float) -> None:
     looks = {"-": "front, exact", "--": "trailing edge, exact"}
     looks |= {"o": rf"front, lattice, $\Delta x = {dx:g}$", "s": "trailing edge, lattice"}
     for look, label in looks.items():
-        axes.plot([], [], look, color=GREY, markersize=2.5, markerfacecolor="white", label=label)
-    axes.legend(loc="upper left", fontsize=7.0)
+        axes.plot([], [], look, color=GREY, markersize=2.5, label=label, **OPEN)
+    axes.legend(loc="upper left", fontsize=SMALL)
 
 
 def _draw_map(figure: Figure, axes: Axes, rows: pd.DataFrame) -> None:
     samples = rows[rows["role"].isin(["map_exact", "map_lattice"])]
-    look: Look = {"cmap": style.VELOCITY_MAP, "shading": "nearest", "rasterized": True}
-    look |= {"vmin": 0.0, "vmax": samples["slip_velocity"].max()}
-    for _, half in samples.groupby("role"):
-        # Positions that do not slide stay white.
-        grid = half.pivot(index="position", columns="time", values="slip_velocity")
-        image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
+    draw_halves(figure, axes, samples, "role")
     exact = rows[rows["role"] == "exact"]
     for quantity, dashes in (("release", "-"), ("stick", "--")):
         axes.plot(exact[quantity], exact["position"], dashes, color=BLACK, linewidth=0.9)
-    axes.axhline(0.0, color=BLACK, linewidth=0.6, linestyle=":")
     for height, half in ((0.05, "exact"), (0.91, "lattice")):
         axes.text(0.03, height, half, transform=axes.transAxes)
-    figure.colorbar(image, ax=axes, pad=0.02).set_label(r"slip velocity $\dot u$")
-    axes.set(xlabel=r"time $t$", ylabel=r"position $x$", xlim=(0.0, None))
+    axes.set_xlim(0.0, None)
 
 
 def _draw_edge(axes: Axes, rows: pd.DataFrame, quantity: str, colour: str) -> None:
     """Draw the exact line and the marks of the lattice."""
-    look: Look = {"linewidth": 0.9, "markersize": 2.2, "markerfacecolor": "white"}
+    look: Look = {"linewidth": 0.9, "markersize": 2.2, "markeredgewidth": 0.6} | OPEN
     # Edges have time on the horizontal axis, as in every figure.
     x, y = ("position", "slip") if quantity == "slip" else (quantity, "position")
     marks = ("--", "s") if quantity == "stick" else ("-", "o")
     for role, mark in zip(("exact", "lattice"), marks, strict=True):
         line = rows[rows["role"] == role]
-        axes.plot(line[x], line[y], mark, color=colour, markeredgewidth=0.6, **look)
+        axes.plot(line[x], line[y], mark, color=colour, **look)
 
 
 def _draw_differences(axes: Axes, rows: pd.DataFrame, others: dict[str, str]) -> None:

@@ -55,7 +55,7 @@ def _draw_uniform(axes: Axes, rows: pd.DataFrame) -> None:
     axes.axhline(1.0, color=BLACK, linewidth=0.6)
     axes.plot(uniform["left"], uniform["over_paper"], "--", color=BLACK, label="uniform")
     for gamma, line in rows.groupby("gamma"):
-        look: Look = {"color": style.colour_scale("gamma").to_rgba(gamma)}
+        look: Look = {"color": style.colour("gamma", gamma)}
         axes.plot(line["left"], line["over_paper"], label=rf"$\gamma = {gamma:g}$", **look)
     axes.set(xlabel=r"pre-stress $\tau_0$", ylim=(0.85, 1.4))
     axes.set_ylabel(r"exact $T_\text{trans}\,\gamma^{1/2}/\pi$")

@@ -5,7 +5,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import BLACK, GREY, HALO, PAGE, Look, colour_scale, few_ticks, legend_above, new_panels
+from . import style
+from .style import BLACK, GREY, HALO, MARKERS, OPEN, PAGE, Look, colour, few_ticks
 
 NEEDS = {
     "measured": [
@@ -30,7 +31,6 @@ NEEDS = {
 RULES = ("total", "elastic")
 # Narrower pulses stick within the layer of lattice waves at their front, which theory leaves out.
 FEWEST_BLOCKS = 4.0
-MARKERS = ("o", "s", "^", "D", "v", "P")
 COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx"]
 COLUMNS += ["springs", "held", "fixed"]
 
@@ -70,8 +70,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
-    figure, grid = new_panels(PAGE, 5.2, 2, 2)
-    panels = dict(list(table.groupby("panel")))
+    figure, grid = style.new_panels(PAGE, 5.2, 2, 2)
+    panels = {str(panel): rows for panel, rows in table.groupby("panel")}
     for axes, rule in zip(grid, RULES, strict=False):
         _draw_prestress(axes, panels["prestress"][panels["prestress"]["release"] == rule])
         axes.set_title(rf"$\Gamma = 0$, release by {rule} stress", loc="right")
@@ -83,19 +83,20 @@ def draw(table: pd.DataFrame) -> Figure:
     grid[1].legend(handles=limit, loc="upper left")
     _draw_springs(grid[2], panels["springs"])
     _draw_refined(grid[3], panels["refined"], float(panels["limit"]["speed"].max()))
-    legend_above(figure, grid[0], title="damping ratio $b$")
+    style.legend_above(figure, grid[0], title="damping ratio $b$")
     return figure
-
-
-def _colour(ratio: float):
-    return colour_scale("damping_ratio").to_rgba(np.asarray(ratio))
 
 
 def _draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
     rows = rows.assign(over=rows["speed"] * np.sqrt(1.0 - rows["left"] ** 2))
     for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
         line = group[group["role"] == "theory"]
-        axes.plot(line["left"], line["over"], color=_colour(ratio), gid=f"theory {ratio:g}")
+        axes.plot(
+            line["left"],
+            line["over"],
+            color=colour("damping_ratio", ratio),
+            gid=f"theory {ratio:g}",
+        )
         _points(axes, group, "left", "over", marker, f"{ratio:g}")
     axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
 
@@ -105,16 +106,16 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     for (left, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
         style, marker = looks[left]
-        axes.plot(line["springs"], line["speed"], style, color=_colour(ratio))
+        axes.plot(line["springs"], line["speed"], style, color=colour("damping_ratio", ratio))
         known = line.dropna(subset="speed")
         if len(known) < len(line):
             last = known.iloc[-1:]
-            axes.plot(last["springs"], last["speed"], "x", color=_colour(ratio))
+            axes.plot(last["springs"], last["speed"], "x", color=colour("damping_ratio", ratio))
         _points(axes, group, "springs", "speed", marker)
     for left, (style, marker) in looks.items():
         axes.plot([], [], style, marker=marker, color=GREY, label=rf"$\tau_0 = {left:g}$")
     axes.plot([], [], "x", color=GREY, label="no front beyond")
-    axes.plot([], [], "s", color=GREY, markerfacecolor="white", label="too narrow for the theory")
+    axes.plot([], [], "s", color=GREY, label="too narrow for the theory", **OPEN)
     axes.set_title(r"$\Gamma = 1$, release by total stress", loc="right")
     _speed_axis(axes, r"leaf springs $\gamma\,\Delta x^2$", (1, 1.5, 2, 3, 4, 5))
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
@@ -131,11 +132,9 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
         _points(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=name, **look)
     undamped = rows["undamped"].max()
-    for value, style, name, side in (
-        (limit, ":", r"\tau_0", "bottom"),
-        (undamped, "--", r"\tau_0^2", "top"),
-    ):
-        axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=style)
+    limits = (limit, ":", r"\tau_0", "bottom"), (undamped, "--", r"\tau_0^2", "top")
+    for value, dashes, name, side in limits:
+        axes.axhline(value, color=BLACK, linewidth=0.8, linestyle=dashes)
         look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side, "fontsize": 8.0}
         axes.text(0.99, value, rf"$1/\sqrt{{1-{name}}}$", path_effects=HALO, **look)
     _speed_axis(axes, r"spacing $\Delta x$", (1.2, 1.5, 2, 2.5, 3))
@@ -155,5 +154,5 @@ def _points(
     """Mark simulated speeds in colours of damping ratios, open where theory should not hold."""
     runs = rows[rows["role"] == "simulation"]
     for (ratio, sound), group in runs.groupby(["damping_ratio", runs["sound"].astype(bool)]):
-        look: Look = {"label": label} if sound else {"markerfacecolor": "white"}
-        axes.plot(group[x], group[y], marker, color=_colour(ratio), **look)
+        look: Look = {"label": label} if sound else OPEN
+        axes.plot(group[x], group[y], marker, color=colour("damping_ratio", ratio), **look)

@@ -4,18 +4,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import (
-    BLACK,
-    GREY,
-    PAGE,
-    Look,
-    colour_scale,
-    entry,
-    few_ticks,
-    legend_below,
-    new_figure,
-    panel_letter,
-)
+from . import style
+from .style import BLACK, GREY, OPEN, PAGE, Look, entry
 
 NEEDS = {"studies": ["layer"]}
 
@@ -28,17 +18,12 @@ QUANTITIES = {
 }
 # Numbers of one dimension by the prefix of their columns: how they are drawn, and what they are.
 LOOKS: dict[str, Look] = {
-    "paper": {"linestyle": "-", "marker": "o"},
-    "damped": {"linestyle": ":", "marker": "s", "markerfacecolor": "white"},
-    "balance": {"linestyle": "--", "marker": "^", "markerfacecolor": "white"},
-    "strip": {"linestyle": "--", "marker": "v", "markerfacecolor": "white"},
+    "paper": {"linestyle": "-", "marker": "o", "label": "formula of the paper"},
+    "damped": {"linestyle": ":", "marker": "s"} | OPEN,
+    "balance": {"linestyle": "--", "marker": "^", "label": "balance of energy"} | OPEN,
+    "strip": {"linestyle": "--", "marker": "v", "label": "shear wave to the top and back"} | OPEN,
 }
-NAMES = {
-    "paper": "formula of the paper",
-    "damped": "1D, the same slip weakening, the paper's damping",
-    "balance": "balance of energy",
-    "strip": "shear wave to the top and back",
-}
+LOOKS["damped"]["label"] = "1D, the same slip weakening, the paper's damping"
 # Colours end at this fraction of the largest velocity, which is that of the tip alone.
 BRIGHT = 0.6
 KEYS = ["source", "tau0"]
@@ -63,28 +48,25 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the velocity over the layer, (b-e) ratios of one dimension to the plane."""
-    figure = new_figure(PAGE, 3.9)
-    panels = figure.subplot_mosaic("aaaa;bcde", height_ratios=(1.0, 2.9))
-    for letter, axes in panels.items():
-        panel_letter(axes, letter)
+    figure, panels = style.new_mosaic(PAGE, 3.9, "aaaa;bcde", height_ratios=(1.0, 2.9))
     _draw_field(panels["a"], table[table["part"] == "field"])
     ratios = table[table["part"] == "ratio"]
     ends = 0.8 * ratios["ratio"].min(), 1.25 * ratios["ratio"].max()
     for letter, (quantity, name) in zip("bcde", QUANTITIES.items(), strict=True):
         axes = panels[letter]
         for (source, tau0), line in ratios[ratios["quantity"] == quantity].groupby(KEYS):
-            line, colour = line.sort_values("pulse_width"), colour_scale("tau_0").to_rgba(tau0)
+            line, colour = line.sort_values("pulse_width"), style.colour("tau_0", tau0)
             axes.plot(line["pulse_width"], line["ratio"], color=colour, **LOOKS[source])
         axes.axhline(1.0, color=BLACK, linewidth=0.6)
         axes.set(xscale="log", yscale="log", ylim=ends, xlabel=r"width $W_\mathrm{p}/H$")
         axes.set_title(name, loc="right")
-        few_ticks(axes.xaxis, (2.0, 4.0, 8.0))
-        few_ticks(axes.yaxis, (0.2, 0.5, 1.0, 2.0, 5.0))
+        style.few_ticks(axes.xaxis, (2.0, 4.0, 8.0))
+        style.few_ticks(axes.yaxis, (0.2, 0.5, 1.0, 2.0, 5.0))
     panels["b"].set_ylabel("one dimension / plane")
-    handles = [entry(NAMES[source], color=GREY, **look) for source, look in LOOKS.items()]
+    handles = [entry(color=GREY, **look) for look in LOOKS.values()]
     for tau0 in ratios["tau0"].unique():
-        handles.append(entry(rf"$\tau_0 = {tau0:g}$", color=colour_scale("tau_0").to_rgba(tau0)))
-    legend_below(figure, handles, 4)
+        handles.append(entry(rf"$\tau_0 = {tau0:g}$", color=style.colour("tau_0", tau0)))
+    style.legend_below(figure, handles, 4)
     return figure
 
 
@@ -99,5 +81,5 @@ def _draw_field(axes: Axes, field: pd.DataFrame) -> None:
     bar.set_label(r"$\dot u_x$")
     axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
     time, tau0, gamma = field[["time", "tau0", "gamma"]].iloc[0]
-    numbers = rf"$\Gamma = 1$, $\tau_0 = {tau0:g}$, $\gamma = {gamma:.3g}$, $t = {time:g}$"
+    numbers = style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time)
     axes.set_title(numbers, loc="right")

@@ -3,20 +3,8 @@
 import pandas as pd
 from matplotlib.figure import Figure
 
-from .style import (
-    BLACK,
-    BLUE,
-    COLUMN,
-    GREEN,
-    GREY,
-    HALO,
-    ORANGE,
-    PURPLE,
-    Look,
-    entry,
-    legend_below,
-    new_figure,
-)
+from . import style
+from .style import BLACK, BLUE, COLUMN, GREEN, GREY, OPEN, ORANGE, PURPLE, Look, entry
 
 NEEDS = {"lists": ["results/claims.json"]}
 
@@ -34,7 +22,7 @@ LOOKS: dict[str, Look] = {
 }
 MARKERS: dict[str, Look] = {
     "exact": {"marker": "o", "markersize": 3.0},
-    "lattice": {"marker": "s", "markersize": 3.0, "markerfacecolor": "white"},
+    "lattice": {"marker": "s", "markersize": 3.0} | OPEN,
 }
 # Distance above its row at which a deviation is drawn, by release rule.
 APART = {"elastic": -0.17, "total": 0.17}
@@ -61,7 +49,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw deviation over tolerance, a claim a row, the largest deviation above."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
-    figure = new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
+    figure = style.new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
     axes = figure.subplots()
     axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
@@ -71,7 +59,9 @@ def draw(table: pd.DataFrame) -> Figure:
             height = position + rows["release"].map(APART).fillna(0.0)
             axes.plot(rows["over"].mask(rows["over"] < LEAST), height, linestyle="none", **look)
         if table.loc[table["id"] == id, "over"].min() < LEAST:
-            bound: Look = {"va": "center", "fontsize": 8.0, "gid": "bound", "path_effects": HALO}
+            bound: Look = {"va": "center", "fontsize": 8.0, "gid": "bound"}
+            # The line of the row does not strike the text through.
+            bound["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
             axes.text(LEAST, position, rf"$\leq$ {LEAST:g}", **bound)
     axes.set(xscale="log", xlabel="deviation over tolerance", xlim=(0.7 * LEAST, None))
     axes.set_yticks(range(len(farthest)), farthest.index.get_level_values("label"), fontsize=7.0)
@@ -81,5 +71,5 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = [name for name in LOOKS if (table["choice"] == name).any()]
     handles = [entry(marker="o", **LOOKS[name]) for name in shown]
     handles += [entry(name, color=BLACK, **look) for name, look in MARKERS.items()]
-    legend_below(figure, handles, 2)
+    style.legend_below(figure, handles, 2)
     return figure

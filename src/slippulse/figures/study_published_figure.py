@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..claims.inference import curve, likely
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_mosaic
 
 NEEDS = {
     "studies": ["published_figure"],
@@ -49,14 +49,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw chi-square and regions over the damping ratio above, and residuals below."""
-    figure = new_figure(PAGE, 4.7)
-    axes = figure.subplot_mosaic("abc;ddd", height_ratios=(1.0, 0.8))
+    figure, axes = new_mosaic(PAGE, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
     _draw_chi2(axes["a"], table)
     _draw_region(axes["b"], table, "tau0", r"pre-stress $\tau_0$")
     _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\gamma$")
     _draw_pulls(axes["d"], table)
-    for name, panel in axes.items():
-        panel_letter(panel, name)
     return figure
 
 

@@ -5,7 +5,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .style import CYCLE, GREY, PAGE, Look, colour_scale, legend_above, new_panels
+from . import style
+from .style import CYCLE, GREY, MARKERS, OPEN, PAGE, SMALL, Look, conditions
 
 NEEDS = {
     "measured": ["pulse_damping", "continuum_fixed_ratio"],
@@ -16,7 +17,6 @@ NEEDS = {
 QUANTITIES = {"peak_velocity": "largest velocity", "width": "width", "slip": "final slip"}
 # The columns that are measured on refined lattices.
 REFINED = {name: f"pulse_{name}" for name in QUANTITIES} | {"front_speed": "front_speed_right"}
-MARKERS = ("o", "s", "^", "D")
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -44,15 +44,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
-    figure, (*grid, refined_axes) = new_panels(PAGE, 4.6, 2, 2)
+    figure, (*grid, refined_axes) = style.new_panels(PAGE, 4.6, 2, 2)
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
         _draw_quantity(axes, table[table["quantity"] == quantity])
         gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]
-        axes.set_title(rf"$\Gamma = 1$, $\gamma = {gamma:g}$", loc="right")
+        axes.set_title(conditions(True, gamma=gamma), loc="right")
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
         axes.set_xlim(-0.02, None)
     grid[0].plot([], [], "o", color=GREY, label="simulation")
-    legend_above(figure, grid[0], columnspacing=1.0)
+    style.legend_above(figure, grid[0], columnspacing=1.0)
     _draw_refined(refined_axes, table[table["role"] == "refined"])
     return figure
 
@@ -60,12 +60,12 @@ def draw(table: pd.DataFrame) -> Figure:
 def _draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
     for left, group in rows.groupby("left"):
-        colour = colour_scale("tau_0").to_rgba(left)
+        colour = style.colour("tau_0", left)
         line, runs = group[group["role"] == "theory"], group[group["role"] == "simulation"]
         name = rf"exact, $\tau_0 = {left:g}$" if len(line) else None
         axes.plot(line["damping_ratio"], line["over_paper"], color=colour, label=name)
         for flagged, marks in runs.groupby(runs["run_flags"].notna()):
-            look: Look = {"color": colour} | ({"markerfacecolor": "white"} if flagged else {})
+            look: Look = {"color": colour} | (OPEN if flagged else {})
             axes.plot(marks["damping_ratio"], marks["value"] / marks["paper"], "o", **look)
 
 
@@ -81,7 +81,7 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$")
     axes.set_ylabel(r"|simulation / limit $-$ 1|")
     left, gamma, ratio = rows[["left", "gamma", "damping_ratio"]].iloc[0]
-    scene = rf"$\gamma = {gamma:g}$, $\tau_0 = {left:g}$, $b = {ratio:g}$"
-    axes.set_title(rf"$\Gamma = 1$, {scene}", loc="right")
-    axes.legend(loc="lower right", fontsize=7.0, labelspacing=0.1)
+    scene = conditions(True, gamma=gamma, tau_0=left, damping_ratio=ratio)
+    axes.set_title(scene, loc="right")
+    axes.legend(loc="lower right", fontsize=SMALL, labelspacing=0.1)
     axes.set_ylim(1e-6, None)

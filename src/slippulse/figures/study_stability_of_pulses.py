@@ -1,7 +1,5 @@
 """Pulses that enter another pre-stress: they settle (Gamma = 1), or grow, decay or keep (0)."""
 
-from typing import Any
-
 import numpy as np
 import pandas as pd
 import xarray as xr
@@ -12,7 +10,7 @@ from ..data.numerals import setting
 from ..data.points import point
 from ..model.prestress import prestress_from
 from . import style
-from .style import BLACK, GREY, PAGE, Look, colour_scale, entry, legend_below, new_panels
+from .style import BLACK, GREY, OPEN, PAGE, SMALL, Look, entry
 
 NEEDS = {"data": ["pulses_across_a_step", "regimes_beyond"], "studies": ["pulse_memory"]}
 
@@ -65,19 +63,18 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) slip across the step, (b) its distance from the new steady slip, (c) velocity."""
-    figure, (slip_axes, rest_axes, velocity_axes) = new_panels(PAGE, 3.2, 1, 3)
+    figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE, 3.2, 1, 3)
     slip = table[table["role"].isin(["exact", "lattice"])]
     for level, rows in slip.groupby("level"):
-        colour = colour_scale("tau_0").to_rgba(level)
-        _draw_level(slip_axes, rest_axes, rows.sort_values("x"), colour, f"{level:g}")
+        _draw_level(slip_axes, rest_axes, rows.sort_values("x"), level)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     handles = [*slip_axes.get_legend_handles_labels()[0], entry("exact", color=GREY)]
-    lattice: Look = {"color": GREY, "marker": "o", "markersize": 2.5, "markerfacecolor": "white"}
+    lattice: Look = {"color": GREY, "marker": "o", "markersize": 2.5} | OPEN
     handles.append(entry(rf"lattice, $\Delta x = {slip['dx'].max():g}$", **lattice))
     handles.append(entry("finite memory", color=GREY, marker="|", markersize=7.0))
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before", loc="right")
-    legend_below(figure, handles, 4)
+    style.legend_below(figure, handles, 4)
     rest_axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     # A distance of exactly 0 is drawn at ROUNDING.
     rest_axes.axhspan(0.1 * ROUNDING, 2.0 * ROUNDING, color="0.9", linewidth=0.0)
@@ -90,14 +87,13 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _draw_level(
-    slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, colour: Any, level: str
-) -> None:
+def _draw_level(slip_axes: Axes, rest_axes: Axes, rows: pd.DataFrame, level: float) -> None:
+    colour, label = style.colour("tau_0", level), rf"$\tau_0 = {level:g}$ beyond"
     exact, lattice = rows[rows["role"] == "exact"], rows[rows["role"] == "lattice"]
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    slip_axes.plot(exact["x"], exact["slip"], color=colour, label=rf"$\tau_0 = {level}$ beyond")
+    slip_axes.plot(exact["x"], exact["slip"], color=colour, label=label)
     marks = lattice.iloc[::MARKED]
-    look: Look = {"color": colour, "markerfacecolor": "white"}
+    look: Look = {"color": colour} | OPEN
     slip_axes.plot(marks["x"], marks["slip"], "o", markersize=1.8, markeredgewidth=0.5, **look)
     slip_axes.plot(memory, steady, "|", color=colour, markersize=9.0, markeredgewidth=1.2)
     # The exact distance is 0 beyond the memory.
@@ -118,7 +114,7 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = colours[float(np.sign(level))]
         x, y = line["time"], line["largest_velocity"]
         axes.plot(x, y, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        axes.annotate(setting(level), _end_in_panel(line), color=BLACK, fontsize=7.0, **look)
+        axes.annotate(setting(level), _end_in_panel(line), color=BLACK, fontsize=SMALL, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     highest = rows["largest_velocity"].max()

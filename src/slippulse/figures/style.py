@@ -156,6 +156,17 @@ def small_inset(axes: Axes, box: Box, title: str) -> Axes:
     return inset
 
 
+def new_mosaic(
+    width: float, height: float, rows: str, **options: Any
+) -> tuple[Figure, dict[str, Axes]]:
+    """Make an empty figure whose panels are as wide as their letters in ``rows`` say."""
+    figure = new_figure(width, height)
+    panels = figure.subplot_mosaic(rows, **options)
+    for letter, axes in panels.items():
+        panel_letter(axes, letter)
+    return figure, panels
+
+
 def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
     """Set the only ticks with numbers, on a logarithmic axis too."""
     axis.set_ticks(ticks, [f"{tick:g}" for tick in ticks])
