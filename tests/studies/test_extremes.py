@@ -54,7 +54,7 @@ def test_the_verdict_is_computed(monkeypatch, expected, outcome, verdict):
     monkeypatch.setattr(extremes, "measured", measured)
     monkeypatch.setattr(Case, "expected", lambda case: expected)
     case = Case("family", "where", "front speed", "right", 0.1, 1.0)
-    assert extremes.row(case, 0.3)["verdict"] == verdict
+    assert extremes.judged(case, 0.3)["verdict"] == verdict
 
 
 def test_every_case_ends_as_it_should(study):

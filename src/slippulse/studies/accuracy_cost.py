@@ -7,7 +7,7 @@ machine. The exact solution is sampled at the spacing of the textbook scheme.
 import math
 from functools import cache, partial
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -21,8 +21,7 @@ from ..model.stability import MARGIN, largest_step
 from ..simulation.simulate import simulate
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
-from ..theory.front_speeds import front_speed as exact_speed
-from ..theory.front_speeds import front_speed_undamped
+from ..theory.front_speeds import front_speed, front_speed_undamped
 from ..theory.pulse import steady_pulse
 
 NEEDS = {"settings": ["measure.front_window", "presets"]}
@@ -50,9 +49,9 @@ PULSE_QUANTITIES = ("front_speed", "peak_velocity", "width", "final_slip", "tran
 QUANTITIES = (*PULSE_QUANTITIES, "share_time", "arrest_position", "energy")
 
 # These are the same for every setting.
-transition_of = cache(exact_transition_displacement)
-crack_of = cache(ArrestingCrack)
-speed_of = cache(exact_speed)
+cached_transition = cache(exact_transition_displacement)
+cached_crack = cache(ArrestingCrack)
+cached_speed = cache(front_speed)
 
 
 class Setting(NamedTuple):
@@ -69,15 +68,16 @@ class Setting(NamedTuple):
         order = max(self.order, 3)
         bound = MARGIN * largest_step(self.scheme, order, ratio, gamma * self.dx**2)
         boundary = "displacement" if gamma > 0.0 else "stress"
-        layer = (boundary, profile, duration, self.dx, gamma, ratio * self.dx)
-        step = min(self.step, bound)
-        return simulate(Scene(*layer, scheme=self.scheme, max_step=step, order=order))
+        rules: dict[str, Any] = {"scheme": self.scheme, "order": order}
+        rules["max_step"] = min(self.step, bound)
+        return simulate(
+            Scene(boundary, profile, duration, self.dx, gamma, ratio * self.dx, **rules)
+        )
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of part "trade": scheme, order, step, dx, preset (its name where it is one), work
-    (stencil passes over one block), block_updates and one error a quantity; of part "locking":
-    scheme, step, front_speed, exact. Exact is the continuum limit at fixed beta/dx.
+    """Rows of parts trade (work and errors of each setting; preset: its name) and locking (front
+    speed by the step). Exact is the continuum limit at fixed beta/dx.
     """
     window = settings["measure"]["front_window"]
     return pd.concat([trade(settings["presets"], window), locking(window)], ignore_index=True)
@@ -131,17 +131,17 @@ def pulse_errors(setting: Setting, ratio: float, window: float) -> dict[str, flo
     pulse = leading_pulse(run, window)
     # At fixed beta/dx damping acts at the front alone in the continuum.
     beta = 0.0 if setting.scheme == "continuum" else ratio * setting.dx
-    steady = steady_pulse(EVEN.left, GAMMA, beta, float(speed_of(EVEN.left, ratio)))
+    steady = steady_pulse(EVEN.left, GAMMA, beta, float(cached_speed(EVEN.left, ratio)))
     names = ("speed", "peak_velocity", "width", "slip")
     ratios = [getattr(pulse, name) / getattr(steady, name) for name in names]
-    ratios.append(run.attrs["first_stick_time"] / transition_of(EVEN, GAMMA, ratio).time)
+    ratios.append(run.attrs["first_stick_time"] / cached_transition(EVEN, GAMMA, ratio).time)
     return costs(run) | dict(zip(PULSE_QUANTITIES, np.abs(np.array(ratios) - 1.0), strict=True))
 
 
 def crack_errors(setting: Setting) -> dict[str, float]:
     """Costs and relative errors of the crack whose left front slows down."""
     ratio = max(DAMPING_RATIOS)
-    crack = crack_of(UNEVEN, ratio)
+    crack = cached_crack(UNEVEN, ratio)
     time, distance = crack.time_at_fraction(FRACTION), abs(crack.balance_position)
     coarser = setting._replace(dx=CRACK_SPACING * setting.dx)
     run = coarser.run(UNEVEN, CRACK_DURATION * time, 0.0, ratio)

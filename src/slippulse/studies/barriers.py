@@ -35,10 +35,8 @@ CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of part "map": tau0, barrier, damping_ratio, exact (depth at gamma = 1, which scales
-    like 1/sqrt(gamma)) and paper (the later estimate, which scales like 1/gamma); "depth": gamma,
-    dx, measured, exact, paper; "passing": length (of the barrier, over the exact depth), measured
-    (1 where the front went past, 0 where it did not).
+    """Rows by part: map (depths at gamma = 1), depth (on lattices), passing (whether the front went
+    past a barrier of a length, in units of the exact depth).
     """
     rows, passing = [], []
     for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):
@@ -48,12 +46,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         known = depths(tau0, barrier, GAMMAS[(line + column) % len(GAMMAS)], ratio)
         pulse = steady_pulse(tau0, known["gamma"], damping_ratio=ratio)
         for dx in SPACINGS:
-            depth = entered(known, pulse, dx, (0.0, barrier))
+            depth = depth_on_lattice(known, pulse, dx, (0.0, barrier))
             rows.append(known | {"part": "depth", "dx": dx, "measured": depth})
         passes = known | {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING}
         for length in LENGTHS:
             steps = (0.0, barrier), (length * known["exact"], tau0)
-            depth = entered(known, pulse, PASSING_SPACING, *steps)
+            depth = depth_on_lattice(known, pulse, PASSING_SPACING, *steps)
             went_past = float(depth > (length + 0.5) * known["exact"])
             passing.append(passes | {"length": length, "measured": went_past})
     return pd.DataFrame(rows + passing)
@@ -72,7 +70,7 @@ def depths(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str,
     }
 
 
-def entered(
+def depth_on_lattice(
     known: dict[str, Any], pulse: SteadyPulse, dx: float, *steps: tuple[float, float]
 ) -> float:
     """Depth at which a pulse has entered a barrier on a lattice, to half a block past the last one.

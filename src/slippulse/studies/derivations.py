@@ -44,12 +44,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     level, gamma = step.prestress.left, step.gamma
     ratio, release = published.damping_ratio, published.release
     rupture = cache(lambda: exact_rupture(published))
-    halfway = cache(lambda: 0.5 * rupture().transition.time)
     one_way = Rupture(Prestress(-level, level), gamma, ratio, release, ONE_WAY_DURATION)
     stop, first_stick = one_way.front_ends[0][0], one_way.first_stick or (math.nan, math.nan)
     # It is undamped, at the speed with damping.
     pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=ratio, release=release))
     fronts = [steady_front(*keys) for keys in product(*FOLLOWED, RELEASES)]
+    # Each number is computed alone: it is NaN where theory refuses an altered configuration.
     numbers: dict[str, Callable[[], float]] = {
         "front_speed_elastic": lambda: front_speed(published.prestress.left, ratio, "elastic"),
         "pulse_width": lambda: pulse().width,
@@ -72,7 +72,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "transition_peak_level": lambda: over_paper(level, 1.0),
         "transition_peak_level_soft": lambda: over_paper(level, SOFT),
         # The curvature of slip at the nucleation point, halfway to the transition; tau is 1 there.
-        "strain_term": lambda: abs(float(rupture().strain(STEP, halfway())) / STEP),
+        "strain_term": lambda: abs(
+            float(rupture().strain(STEP, 0.5 * rupture().transition.time)) / STEP
+        ),
         "fronts_block_by_block": lambda: len(fronts),
         "fronts_admissible": lambda: sum(front.admissible for front in fronts),
     }

@@ -17,11 +17,11 @@ CURVE_POINTS, MARKS = 201, 41
 POSITIONS = 41
 STOPPING, RUNNING = 0.8, 0.9
 # Time after the release and before the stick that belongs to the layers at both edges.
-LAYER = 0.4
+NEAR_EDGES = 0.4
 # The map and the marks are of the run that is nearest this spacing.
 SHOWN = 0.04
 # Variables of a run, by the name of what is compared.
-EDGES = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
+COLUMNS = {"release": "release_time", "stick": "stick_time", "slip": "slip"}
 PARAMETERS = ["boundary", "left", "right", "gamma", "damping_ratio", "dx"]
 
 
@@ -45,7 +45,7 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
         fraction = STOPPING if stops else RUNNING
         x = np.linspace(left.x * fraction, right.x * RUNNING, POSITIONS)
         known = _exact(rupture, x)
-        known["stick"][known["stick"] > rupture.duration - LAYER] = np.nan
+        known["stick"][known["stick"] > rupture.duration - NEAR_EDGES] = np.nan
         rows += [_differences(run, rupture, x, known) for run in runs]
         parts.append(pd.concat(rows).assign(scene=name))
     return pd.concat(parts, ignore_index=True)
@@ -62,7 +62,7 @@ def _edges(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     x = np.linspace(left, right, CURVE_POINTS)[1:-1]
     released = np.flatnonzero(np.isfinite(run["release_time"].values))
     kept = run.isel(x=released[:: max(1, released.size // MARKS)])
-    marks = {name: kept[variable].values for name, variable in EDGES.items()}
+    marks = {name: kept[variable].values for name, variable in COLUMNS.items()}
     return [
         pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)),
         pd.DataFrame({"position": kept["x"].values} | marks).assign(role="lattice"),
@@ -88,13 +88,15 @@ def _differences(
 ) -> pd.DataFrame:
     """Differences of a run from the exact solution of its scene, in each quantity that it has."""
     blocks = run["x"].values
-    lattice = {name: np.interp(x, blocks, run[column].values) for name, column in EDGES.items()}
+    lattice = {name: np.interp(x, blocks, run[column].values) for name, column in COLUMNS.items()}
     # Slip velocity is compared at the sampled points that slide, away from both edges.
     sampled, times = run["sample_position"].values, run["sample_time"].values
     inside = np.flatnonzero((sampled >= x[0]) & (sampled <= x[-1]))
     x = sampled[inside]
     release, stick = rupture.release_time(x), np.nan_to_num(rupture.stick_time(x), nan=np.inf)
-    row, column = np.nonzero((times[:, None] > release + LAYER) & (times[:, None] < stick - LAYER))
+    row, column = np.nonzero(
+        (times[:, None] > release + NEAR_EDGES) & (times[:, None] < stick - NEAR_EDGES)
+    )
     lattice["velocity"] = run["sample_velocity"].values[row, inside[column]]
     known = exact | {"velocity": rupture.slip_velocity(x[column], times[row])}
     rows = []

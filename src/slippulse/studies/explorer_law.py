@@ -19,10 +19,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """One row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)),
     excess_log (ln(v - 1)), logit (ln(tau/(1 - tau)) of the pre-stress, to 6 decimals).
     """
-    positions = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
-    position, excess = (grid.ravel() for grid in np.meshgrid(positions, EXCESS, indexing="ij"))
-    ratio = SCALE * np.sinh(position)
-    columns = {"damping_ratio": ratio, "ratio_arsinh": position, "excess_log": excess}
+    arsinhs = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
+    arsinh, excess = (grid.ravel() for grid in np.meshgrid(arsinhs, EXCESS, indexing="ij"))
+    ratio = SCALE * np.sinh(arsinh)
+    columns = {"damping_ratio": ratio, "ratio_arsinh": arsinh, "excess_log": excess}
     parts = []
     for release in RELEASES:
         tau = prestress_for_speed(1.0 + np.exp(excess), ratio, release)

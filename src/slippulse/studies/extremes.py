@@ -51,10 +51,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     verdict, message (flags or the refusal), block_updates.
     """
     window = settings["measure"]["front_window"]
-    return pd.DataFrame([row(case, window) for case in CASES])
+    return pd.DataFrame([judged(case, window) for case in CASES])
 
 
-def row(case: Case, window: float) -> dict[str, Any]:
+def judged(case: Case, window: float) -> dict[str, Any]:
     """Run a case and judge it."""
     tolerance = TOLERANCES.get(case.family, TOLERANCES.get(case.quantity, 0.0))
     expected, error = case.expected(), math.nan
@@ -66,19 +66,10 @@ def row(case: Case, window: float) -> dict[str, Any]:
         verdict, outcome = "stopped", Outcome(message=str(stopped))
     except ValueError as refusal:
         verdict, outcome = "refused", Outcome(message=str(refusal))
-    return {
-        "family": case.family,
-        "value": case.where,
-        "quantity": case.quantity,
-        "should": case.should,
-        "tolerance": tolerance,
-        "expected": expected,
-        "measured": outcome.value,
-        "error": error,
-        "verdict": verdict,
-        "message": outcome.message,
-        "block_updates": outcome.block_updates,
-    }
+    row: dict[str, Any] = {"family": case.family, "value": case.where, "quantity": case.quantity}
+    row |= {"should": case.should, "tolerance": tolerance, "expected": expected}
+    row |= {"measured": outcome.value, "error": error, "verdict": verdict}
+    return row | {"message": outcome.message, "block_updates": outcome.block_updates}
 
 
 def judge(outcome: Outcome, within: bool) -> str:

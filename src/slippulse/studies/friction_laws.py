@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from functools import cache
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -20,7 +20,7 @@ from ..model.scene import Scene
 from ..simulation.simulate import simulate
 from ..theory.rate_dependent import rate_pulse
 from ..theory.weakening import weakening_pulse
-from .rate_dependence import CRACK, CREEPING, STICKING
+from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 
 NEEDS = {"settings": ["measure"]}
 
@@ -42,7 +42,7 @@ STEP, FINE_STEP = 0.1, 0.0127
 # which outlives a decaying tail, makes blocks stick at odd times.
 OVERSHOOT = 1.01
 # Front and trailing edge advance by more than this factor over the second half of a run.
-GROWTH, NONE = 1.1, "no rupture"
+GROWTH, NO_RUPTURE = 1.1, "no rupture"
 # Front speed against d_c/dx at fixed beta: levels, spacings, and distances.
 SELECTED, SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
 RESOLUTIONS = (1.0, 2.0, 4.0, 8.0)
@@ -56,32 +56,14 @@ CASES: tuple[tuple[float, Friction], ...] = (
 )
 
 
-class LawRun(NamedTuple):
-    """One run on a lattice: strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2."""
-
-    law: str
-    level: float
-    strength: float
-    dx: float
-    beta: float
-    regime: str
-    speed: float
-    pulse_width: float
-    pulse_slip: float
-    energy_residual: float
-    run_flags: str
-
-
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Role: plane, selection (with d_c and exact_speed) and case (LawRun each), and theory (law,
-    level, strength, speed, pulse_width, pulse_slip, of each case).
-    """
+    """Roles plane, selection (with d_c and exact_speed), case and theory."""
     still = settings["measure"]["still"]
     plane = [_run(level, law, DX, STEP, still) for level, law in _plane()]
     scenes = product(SELECTED, SPACINGS, RESOLUTIONS)
     selection = [_selected(*scene, still) for scene in scenes]
     cases = [
-        _run(level, law, dx, _case_step(law), still)
+        _run(level, law, dx, STEP if isinstance(law, SlipWeakening) else FINE_STEP, still)
         for (level, law), dx in product(CASES, SPACINGS)
     ]
     parts = {
@@ -109,10 +91,6 @@ def _damping(law: Friction, dx: float) -> float:
     return BETA if isinstance(law, SlipWeakening) else RATIO * dx
 
 
-def _case_step(law: Friction) -> float:
-    return STEP if isinstance(law, SlipWeakening) else FINE_STEP
-
-
 def _strength(level: float, law: Friction) -> float:
     parameters = law.mapping()
     if "d_c" in parameters:
@@ -121,45 +99,35 @@ def _strength(level: float, law: Friction) -> float:
     return sign * parameters["limit"] / level
 
 
-def _run(level: float, law: Friction, dx: float, step: float, still: float) -> LawRun:
-    """One run, its regime and its pulse; width and slip are NaN where nothing sticks."""
+def _run(level: float, law: Friction, dx: float, step: float, still: float) -> dict[str, Any]:
+    """One run, its regime and its pulse; width and slip are NaN where nothing sticks.
+
+    Strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2.
+    """
     step = min(step, 0.9 * law.longest_step / dx)
     beta = _damping(law, dx)
     profile = Prestress(level, level)
     values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}
     scene = Scene("displacement", profile, DURATION, dx, GAMMA, beta, **values)
     run = simulate(scene)
-    right = run.isel(x=run["x"].values > 0.5 * dx)
+    right = right_of_centre(run)
     regime = _regime(right, level / GAMMA, still)
-    width = slip = np.nan
-    if regime == STICKING:
-        width, slip = _pulse(right)
-    row = law.law, level, _strength(level, law), dx, beta, regime, _speed(right), width, slip
-    return LawRun(*row, run.attrs["energy_residual"], run.attrs["run_flags"])
+    width, slip = pulse_at(right, DURATION) if regime == STICKING else (np.nan, np.nan)
+    strength = _strength(level, law)
+    row = {"law": law.law, "level": level, "strength": strength, "dx": dx, "beta": beta}
+    row |= {"regime": regime, "speed": _speed(right), "pulse_width": width, "pulse_slip": slip}
+    return row | {name: run.attrs[name] for name in ("energy_residual", "run_flags")}
 
 
 def _regime(right: xr.Dataset, rest: float, still: float) -> str:
     """Classify a rupture, whose slip comes to rest at ``rest`` where it overshoots nothing."""
-    before, after = (_sliding_part(right, time) for time in (0.5 * DURATION, DURATION))
+    before, after = (sliding_part(right, time) for time in (0.5 * DURATION, DURATION))
     if after[1] <= NUCLEATION + GROWTH * (before[1] - NUCLEATION):
-        return NONE
-    if after[0] > GROWTH * before[0] and _pulse(right)[1] > OVERSHOOT * rest:
+        return NO_RUPTURE
+    if after[0] > GROWTH * before[0] and pulse_at(right, DURATION)[1] > OVERSHOOT * rest:
         return STICKING
     velocity = right["slip_velocity"].values
     return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still) else CRACK
-
-
-def _pulse(right: xr.Dataset) -> tuple[float, float]:
-    """Width of the sliding part at the end, and slip behind it."""
-    stuck, front = _sliding_part(right, DURATION)
-    return front - stuck, float(right["slip"].values[np.argmin(np.abs(right["x"].values - stuck))])
-
-
-def _sliding_part(right: xr.Dataset, time: float) -> tuple[float, float]:
-    """The outermost blocks on the right that have stuck and that have been released by a time."""
-    x = right["x"].values
-    stuck = x[right["stick_time"].values <= time].max(initial=0.0)
-    return stuck, x[right["release_time"].values <= time].max(initial=0.0)
 
 
 def _speed(right: xr.Dataset) -> float:
@@ -172,7 +140,7 @@ def _speed(right: xr.Dataset) -> float:
 def _theory(level: float, law: Friction) -> dict:
     """Exact numbers of a case."""
     if isinstance(law, SlipWeakening):
-        pulse = weakening_pulse(level, GAMMA, BETA, law.d_c)
+        pulse = _weakening(level, law.d_c)
     else:
         pulse = rate_pulse(level, GAMMA, RATIO, law)
     row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
@@ -184,10 +152,10 @@ def _selected(level: float, dx: float, resolution: float, still: float) -> dict:
     """One run with d_c of so many spacings, and the exact speed where there is a rupture."""
     d_c = resolution * dx
     law = SlipWeakening(d_c, NUCLEATION)
-    exact = _exact_speed(level, d_c) if _strength(level, law) < 1.0 else np.nan
-    return _run(level, law, dx, STEP, still)._asdict() | {"d_c": d_c, "exact_speed": exact}
+    exact = _weakening(level, d_c).speed if _strength(level, law) < 1.0 else np.nan
+    return _run(level, law, dx, STEP, still) | {"d_c": d_c, "exact_speed": exact}
 
 
 @cache
-def _exact_speed(level: float, d_c: float) -> float:
-    return weakening_pulse(level, GAMMA, BETA, d_c).speed
+def _weakening(level: float, d_c: float) -> WeakeningPulse:
+    return weakening_pulse(level, GAMMA, BETA, d_c)

@@ -23,7 +23,6 @@ NEEDS = {
 SPEEDS = 1.0 + np.geomspace(1e-3, 299.0, 60)
 # gamma dx^2, denser where the speed falls and the lines end.
 SPRINGS = np.concatenate([np.geomspace(3e-3, 0.3, 8), np.geomspace(0.34, 6.0, 34)])
-SPRINGS_RELEASE = "total"
 SPACINGS = 33
 # Refined lattices of one level; at a larger beta the pulse is as narrow as the layer at its front.
 REFINED = "left == 0.5 and beta <= 0.1"
@@ -31,9 +30,8 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Panel, release, left (the level), damping_ratio, speed. Panels are prestress (over left),
-    springs (over springs = gamma dx^2; NaN where no front outruns the waves), refined (over dx;
-    held: b or beta, at the value fixed) and limit (dx -> 0 under the elastic rule at fixed beta).
+    """Speeds by panel: prestress (over left), springs (over gamma dx^2), refined (over dx, at a
+    held b or beta) and limit (dx -> 0 under the elastic rule at fixed beta).
     """
     sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
     parameters = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
@@ -58,9 +56,9 @@ def over_springs(scenes: pd.DataFrame) -> pd.DataFrame:
     """Lines over gamma dx^2, one for each level and damping ratio."""
     parts = []
     for left, ratio in scenes[["left", "damping_ratio"]].drop_duplicates().values:
-        line = {"panel": "springs", "release": SPRINGS_RELEASE, "left": left}
+        line = {"panel": "springs", "release": "total", "left": left}
         line |= {"damping_ratio": ratio, "springs": SPRINGS}
-        line["speed"] = [_speed(left, spring, 1.0, ratio, SPRINGS_RELEASE) for spring in SPRINGS]
+        line["speed"] = [_speed(left, spring, 1.0, ratio, "total") for spring in SPRINGS]
         parts.append(pd.DataFrame(line))
     return pd.concat(parts)
 
@@ -82,6 +80,6 @@ def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _speed(*scene) -> float:
+def _speed(left: float, gamma: float, dx: float, ratio: float, release: str) -> float:
     """The lattice's front speed; NaN where no front outruns the waves."""
-    return or_nan(lambda: lattice_front_speed(*scene))
+    return or_nan(lambda: lattice_front_speed(left, gamma, dx, ratio, release))

@@ -48,32 +48,30 @@ SNAPSHOT, EVERY = 12.0, 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of part "pulse" (held displacement), "free" (the same, the top free to rise), "coupled"
-    (strength by normal stress, on either side), "fine" (one pulse on a finer grid), "crack" and
-    "barrier" (held stress): speed, pulse_width and pulse_slip at three stations, first_stick, end
-    of the rupture; numbers of one dimension by the paper's formulas (paper_), with the same
-    weakening at the paper's damping (damped_), by the balance of energy, and of a strip that slides
-    as one. Part "field": velocity at x and y.
+    """Rows of a run at its stations by part, beside one dimension (pulse), and the part field.
+
+    Parts: pulse (held displacement), free (its top free to rise), coupled (strength by normal
+    stress), fine (one pulse on a finer grid), crack and barrier (held stress).
     """
     rows = []
     for gamma in GAMMAS:
         for tau0 in LEVELS:
             scene = uniform("displacement", gamma, tau0, TOUGHNESS * tau0**2 / gamma)
-            beside = one_dimension(scene)
-            rows += [row | beside for row in on_grids("pulse", scene, CELLS)]
+            in_one_dimension = one_dimension(scene)
+            rows += [row | in_one_dimension for row in on_grids("pulse", scene, CELLS)]
     rows += on_grids("free", replace(uniform("displacement", GAMMA, *FREE), top="free"), CELLS)
     rows += on_grids("crack", uniform("stress", GAMMA, *CRACK), CELLS)
-    closest = uniform("displacement", GAMMA, 0.8, TOUGHNESS * 0.8**2 / GAMMA)
-    rows += on_grids("fine", closest, FINE)
+    main = uniform("displacement", GAMMA, 0.8, TOUGHNESS * 0.8**2 / GAMMA)
+    rows += on_grids("fine", main, FINE)
     for coupling in COUPLINGS:
-        rows += on_grids("coupled", replace(closest, coupling=coupling), FINE[:2], (1, -1))
+        rows += on_grids("coupled", replace(main, coupling=coupling), FINE[:2], (1, -1))
     for weakening in WEAKENINGS:
         barrier = Prestress(BARRIER, 0.0, WIDTH)
         scene = replace(uniform("stress", GAMMA, *CRACK), prestress=barrier, weakening=weakening)
         balance = {"balance_distance": paper_transition_stress(barrier)[0]}
         stopped = on_grids("barrier", replace(scene, duration=1.8 * DURATION), CELLS, (1, -1))
         rows += [row | balance for row in stopped]
-    return pd.concat([pd.DataFrame(rows), field(replace(closest, duration=SNAPSHOT))])
+    return pd.concat([pd.DataFrame(rows), field(replace(main, duration=SNAPSHOT))])
 
 
 def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:

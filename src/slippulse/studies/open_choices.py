@@ -19,12 +19,10 @@ NEEDS = {
 
 # The first stick, over pi/sqrt(gamma), lies between these; the error of its time.
 STICK, TIME = np.array([0.3, 1.7]), 1e-12
-# Beyond so many widths a Gaussian is 0 to rounding.
+# A Gaussian is 0 to rounding beyond this number of its widths.
 FAR = 12.0
 # Nodes and weights of the time that a front takes across a tent.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
-
-
 # Columns of the paper's estimates.
 PAPER = ["paper_transition_time", "paper_transition_length"]
 
@@ -63,12 +61,13 @@ def displacement(grid: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame
 
         times = roots_between(velocity, first, last, velocity(first), velocity(last), xtol=TIME)
         # The pre-stress is uniform beyond the Gaussian.
-        end = FAR * width
-        reached = end + float(front_speed(left, ratio, release)) * (times - fronts.arrival(end))
-        for i in np.flatnonzero(reached <= end):
-            reached[i] = fronts.reached(times[i], 1.0)
+        uniform_from = FAR * width
+        time_beyond = times - fronts.arrival(uniform_from)
+        positions = uniform_from + float(front_speed(left, ratio, release)) * time_beyond
+        for i in np.flatnonzero(positions <= uniform_from):
+            positions[i] = fronts.reached(times[i], 1.0)
         rows = rows[["boundary"]].assign(nucleation="Gaussian", left=left, width=width)
-        rows = rows.assign(gamma=gammas, transition_time=times, transition_length=2.0 * reached)
+        rows = rows.assign(gamma=gammas, transition_time=times, transition_length=2.0 * positions)
         rows[PAPER] = [paper_transition_displacement(left, gamma) for gamma in gammas]
         parts.append(rows)
     return pd.concat(parts)
@@ -86,18 +85,13 @@ def stress(grid: pd.DataFrame, ratio: float, release: str, fractions: list[float
     for left, rows in grid.groupby("left"):
         crack = ArrestingCrack(Prestress(left, 0.0), ratio, release)
         way = -crack.balance_position
-        arrests = [
-            (
-                "Gaussian",
-                part,
-                crack.time_at_fraction(part),
-                crack.length_at_fraction(part),
-                way,
-                2.0 * way,
-            )
-            for part in fractions
-        ]
+        arrests = []
+        for part in fractions:
+            exact = crack.time_at_fraction(part), crack.length_at_fraction(part)
+            arrests.append(("Gaussian", part, *exact, way, 2.0 * way))
+        # The stress of the tent is 1/2 on the right and (1 + left)/2 on the left of x = 0.
         way = 1.0 + (1.0 + 0.5 * left) / -left
+        # Beyond x = 1 the right front runs at the wave speed.
         arrests.append(("tent", 1.0, way + 1.0 + crossing, 2.0 * way + 2.0, way, 2.0 * way))
         scenes = rows[["boundary", "left", "width"]]
         rows = scenes.merge(pd.DataFrame(arrests, columns=columns), how="cross")

@@ -56,11 +56,8 @@ DIFFERENCE, FIRST = 0.01, 2
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Best fits of every reading of the left panel over the damping ratio, and of the right panel.
 
-    Returns rows by part, one a reading, with drawn, reading_error, exact, correction (lattice less
-    exact), pull and weight (0 where it is not fitted). "profile": release, damping_ratio, dx =
-    beta/damping_ratio, and tau0 and gamma that fit all but the drawn arrows best, with errors;
-    "arrows": the same of all readings; "notebook": as "profile", by NOTEBOOK; "stress": the right
-    panel at the levels and width read off it.
+    Rows of a reading by part: profile (tau0 and gamma that fit all but the drawn arrows best),
+    arrows (that fit all readings), notebook (as profile, by NOTEBOOK), stress (the right panel).
     """
     panel = LeftPanel(readings_of(settings["published"], "space_time_displacement"))
     parts = []

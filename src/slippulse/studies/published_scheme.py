@@ -17,8 +17,6 @@ PROFILE = Prestress(0.6, 0.6)
 GAMMA, BETA = 0.65, 0.01
 DURATION, STEP = 15.0, 1e-3
 BLOCKS, SPACING = 1000, 0.05005
-# Columns of a run: positions, release and stick times, and slip at the end.
-RECORDED = ["x", "release_time", "stick_time", "slip"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -26,7 +24,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     pulse = steady_pulse(PROFILE.left, GAMMA, BETA, damping_ratio=BETA / SPACING)
     first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
     run = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
-    localised = pd.DataFrame({name: run[name].values for name in RECORDED})
+    localised = run[["release_time", "stick_time", "slip"]].to_dataframe().reset_index()
     window = settings["measure"]["front_window"]
     return pd.DataFrame(
         {
@@ -39,7 +37,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def published_run() -> pd.DataFrame:
-    """A run, RECORDED, of a lattice whose ends are both held.
+    """A run of a lattice whose ends are both held: x, release and stick times, slip at the end.
 
     Source: total force, released where it reaches 1 in size; Euler-Cromer steps of 1e-3, events at
     their ends.
@@ -61,7 +59,7 @@ def published_run() -> pd.DataFrame:
         velocity[stopped], sliding[stopped] = 0.0, False
         stick[stopped] = (step + 1) * STEP
         slip = slip + STEP * velocity
-    return pd.DataFrame(dict(zip(RECORDED, (x, release, stick, slip), strict=True)))
+    return pd.DataFrame({"x": x, "release_time": release, "stick_time": stick, "slip": slip})
 
 
 def numbers(run: pd.DataFrame, window: float) -> list[float]:

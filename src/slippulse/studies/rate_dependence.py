@@ -2,7 +2,7 @@
 
 from functools import cache
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,6 +19,7 @@ from ..theory.closed_pulse import critical_rate_strengthening
 from ..theory.front_speeds import front_speed
 from ..theory.pulse import steady_pulse
 from ..theory.rupture import Rupture
+from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 
 NEEDS = {"settings": ["measure"]}
 
@@ -36,7 +37,6 @@ SHORTEST, MEMORIES = 30.0, 5.0
 # The sliding part behind a front that nothing follows grows by more than this over the second half
 # of a run, or its velocity decays below this fraction of the largest before it ends.
 GROWTH, QUIET = 1.1, 1e-9
-STICKING, CREEPING, CRACK = "sticking pulse", "creeping pulse", "crack"
 # Widths, slips and maps are shown at this level; the maps at these fractions, to this end.
 LEVEL, END = 0.5, 14.0
 MAPPED, MAP_SHAPE = {STICKING: 0.6, CREEPING: 1.5}, (57, 96)
@@ -45,24 +45,9 @@ ALPHAS, ARRESTING = (0.0, 0.5, 2.0), Prestress(-0.5, 0.0)
 SPACINGS, TIMES = (0.05, 0.025), np.geomspace(2.0, 100.0, 21)
 
 
-class LatticePulse(NamedTuple):
-    """The end of one run; over_critical is its rate strengthening over the critical one."""
-
-    level: float
-    rate_strengthening: float
-    over_critical: float
-    dx: float
-    regime: str
-    run_flags: str
-    pulse_width: float
-    pulse_slip: float
-
-
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Role: lattice (LatticePulse), limit (the critical rate_strengthening at each level), steady
-    (rate_strengthening, pulse_width, pulse_slip), map (regime, time, position, slip_velocity),
-    arrest (dx, rate_strengthening, time, largest_velocity, gap: distance of the left front from the
-    balance of the pre-stress) and asymptote (the same).
+    """Roles lattice (the end of a run), limit (the critical rate_strengthening), steady and map (at
+    LEVEL), arrest and asymptote (without leaf springs; gap: of the left front to the balance).
     """
     lattices = []
     for level, fraction in product(LEVELS, FRACTIONS):
@@ -95,7 +80,7 @@ def _front(level: float) -> tuple[float, float]:
     return speed, critical_rate_strengthening(GAMMA, speed)
 
 
-def _lattice(level: float, fraction: float, still: float) -> LatticePulse:
+def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
     """One run, its regime and its pulse; NaN for the numbers of what does not stick."""
     speed, critical = _front(level)
     alpha, dx = fraction * critical, SPACING * level
@@ -104,25 +89,24 @@ def _lattice(level: float, fraction: float, still: float) -> LatticePulse:
     profile = Prestress(level, level)
     scene = Scene("displacement", profile, duration, dx, GAMMA, RATIO * dx, **numbers)
     run = simulate_on_lattice(scene)
-    right = run.isel(x=run["x"].values > 0.5 * dx)
-    now, halfway = _sliding_part(right, duration), _sliding_part(right, 0.5 * duration)
+    right = right_of_centre(run)
+    (stuck, front), halfway = (sliding_part(right, time) for time in (duration, 0.5 * duration))
     velocity = right["slip_velocity"].values
     # The last block that slides, from the front backwards.
     slowest = velocity[velocity > 0.0][0] / velocity.max()
-    row = (level, alpha, fraction, dx)
-    if now[1] - now[0] >= GROWTH * (halfway[1] - halfway[0]) or slowest <= QUIET:
+    regime, (width, slip) = STICKING, pulse_at(right, duration)
+    if front - stuck >= GROWTH * (halfway[1] - halfway[0]) or slowest <= QUIET:
         centre = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
         regime = CREEPING if is_pulse(centre, velocity.max(), still) else CRACK
-        return LatticePulse(*row, regime, run.attrs["run_flags"], np.nan, np.nan)
-    slip = right["slip"].values[np.argmin(np.abs(right["x"].values - now[0]))]
-    return LatticePulse(*row, STICKING, run.attrs["run_flags"], now[1] - now[0], slip)
-
-
-def _sliding_part(right: xr.Dataset, time: float) -> tuple[float, float]:
-    """The outermost blocks on the right that have stuck and that have been released by a time."""
-    x = right["x"].values
-    stuck = x[right["stick_time"].values <= time].max(initial=0.0)
-    return stuck, x[right["release_time"].values <= time].max(initial=0.0)
+        width = slip = np.nan
+    row: dict[str, Any] = {
+        "level": level,
+        "rate_strengthening": alpha,
+        "over_critical": fraction,
+        "dx": dx,
+    }
+    row |= {"regime": regime, "run_flags": run.attrs["run_flags"]}
+    return row | {"pulse_width": width, "pulse_slip": slip}
 
 
 def _map(regime: str, alpha: float) -> pd.DataFrame:

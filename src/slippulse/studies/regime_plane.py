@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import product
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -27,19 +27,13 @@ PROFILES = [
 TIME, POINTS = 12.0, 241
 
 
-class Outline(NamedTuple):
-    """An area or a line of a plane: its corners in order, and a pair of levels inside."""
-
-    role: str
-    boundary: str
-    corners: np.ndarray
-    inside: np.ndarray
+# Role, boundary, corners in order and a pair of levels inside of an area or a line of a plane.
+Outline: TypeAlias = tuple[str, str, np.ndarray, np.ndarray]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Boundary, series, regime, left, right; role area (series: its number; its corners in order),
-    line (the ends of a line on which one level is 0 and the other negative) and profile (time, x,
-    slip_velocity, at W = 1).
+    """Regimes by role: area (corners in order), line (ends of a line on which one level is 0 and
+    the other negative), and profile (slip velocity over x at W = 1).
     """
     still, model = settings["measure"]["still"], settings["model"]
     rules = model["damping_ratio"], model["release"]
@@ -68,10 +62,11 @@ def outlines(border: np.ndarray) -> Iterator[Outline]:
     line = np.array([(-1.0, 0.0), (0.0, 0.0)])
     for boundary, gamma in GAMMAS.items():
         for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
+            # The corners of the quadrant of these signs.
             corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
-            yield Outline("area", boundary, corners, 0.5 * levels)
-        # Each is on the right as on the left.
+            yield "area", boundary, corners, 0.5 * levels
+        # Each is on the right as on the left: sides (1, 0) mirrors it.
         for sides in ([0, 1], [1, 0]):
             if gamma == 0.0:
-                yield Outline("area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides])
-            yield Outline("line", boundary, line[:, sides], 0.5 * line[0, sides])
+                yield "area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides]
+            yield "line", boundary, line[:, sides], 0.5 * line[0, sides]

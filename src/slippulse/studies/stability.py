@@ -17,7 +17,7 @@ NEEDS = {}  # type: dict[str, list[str]]
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
 # Bisected between these fractions of the derived bound, down to a resolution.
 BETWEEN, RESOLUTION = (0.7, 1.2), 0.01
-# A mode beyond the bound grows from rounding in so many steps, before a wave crosses the blocks.
+# A mode beyond the bound grows from rounding in STEPS steps, before a wave crosses the blocks.
 BLOCKS, STEPS = 400, 400
 # Blocks never slide this far below any stress.
 HELD = -1.0e9
@@ -33,9 +33,8 @@ PROFILES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a scheme, order and damping ratio: derived (the bound, in units of dx), measured (the
-    largest sound step of a chain between walls, without events), measured_rupture (of a crack),
-    and their ratios to the bound.
+    """One row a scheme, order and damping ratio: the bound and the largest step, in units of dx, at
+    which nothing sticks in a chain between walls, without events, and in a crack.
     """
     rows = []
     for scheme, order in [("fixed_step", 1), *(("localised", order) for order in ORDERS)]:
@@ -43,13 +42,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             bound = largest_step(scheme, order, ratio, 0.0)
             row = {"scheme": scheme, "order": order, "damping_ratio": ratio, "derived": bound}
             for name, profile in PROFILES.items():
-                fraction = boundary(partial(sound, profile, bound, scheme, order, ratio), *BETWEEN)
+                fraction = largest_stable(
+                    partial(nothing_sticks, profile, bound, scheme, order, ratio), *BETWEEN
+                )
                 row |= {name: bound * fraction, f"{name}_ratio": fraction}
             rows.append(row)
     return pd.DataFrame(rows)
 
 
-def boundary(stable: Callable[[float], bool], lower: float, upper: float) -> float:
+def largest_stable(stable: Callable[[float], bool], lower: float, upper: float) -> float:
     """Largest stable value by bisection between two; an end where it lies beyond."""
     if not stable(lower):
         return lower
@@ -61,13 +62,14 @@ def boundary(stable: Callable[[float], bool], lower: float, upper: float) -> flo
     return lower
 
 
-def sound(
+def nothing_sticks(
     profile: Prestress, bound: float, scheme: str, order: int, ratio: float, fraction: float
 ) -> bool:
     """True if nothing sticks: velocities are positive until a growing mode makes one negative."""
     step = fraction * bound
     # A chain between walls turns back after a wave has crossed it.
     duration = min(STEPS * step, 0.8 * BLOCKS)
+    # The textbook scheme has no order to choose.
     order = max(order, 3)
     scene = Scene("stress", profile, duration, 1.0, 0.0, ratio, "total", scheme, 1e-4, order)
     # A Scene refuses a step beyond the bound.
@@ -75,7 +77,7 @@ def sound(
     lattice = LATTICES[scheme](scene, None, scene.beta)
     lattice.call_steps = LOOK_AFTER
 
-    def stop_at_the_first_stick(fraction: float) -> None:
+    def stop_at_the_first_stick(_progress: float) -> None:
         if lattice.tally.sticks > 0:
             raise UnstableRun
 
