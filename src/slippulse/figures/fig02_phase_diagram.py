@@ -41,10 +41,9 @@ DRAWN = {"regimes_displacement": 3, "regimes_displacement_asymmetric": 3, "regim
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Study of the planes, and runs: of a symmetric pre-stress all (role symmetric), else some.
+    """The planes of the study, and runs: all of equal levels (role symmetric), else some (run).
 
-    Those with leaf springs have role run at the largest gamma. The regime is that at the end of the
-    run, exact_regime the final one by exact theory.
+    The regime is that at the end of the run, exact_regime the final one by exact theory.
     """
     parts = [tables["regime_plane"]]
     kept = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]

@@ -26,11 +26,9 @@ COLUMNS = ["role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of `run_rows` for the first run of both sweeps, with theory and the transition.
+    """Rows of `run_rows` for the first run of both sweeps, with exact edges and the transition.
 
-    Panel is the boundary. Further roles are exact_front and exact_trailing, those of
-    `transition_rows`, and fraction (value: the fraction of |x_minus| that the left front has
-    covered at T_trans under a stress boundary).
+    Role fraction: of |x_minus|, that the left front has covered at T_trans under held stress.
     """
     parts = []
     for panel in PANELS:
@@ -48,10 +46,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
-    """Positions of both fronts (series) at T_trans, with its time and L_trans (value).
-
-    Role measured is the transition as measured, paper the paper's estimate, and last_release the
-    last release on the left, where the run has one.
+    """Both fronts (series) at T_trans, and L_trans, by role: measured, paper, and last_release (the
+    last release on the left, where the run has one).
     """
     rows: list[tuple] = []
 
@@ -74,7 +70,8 @@ def draw(table: pd.DataFrame) -> Figure:
     figure = style.new_figure(PAGE, 3.3)
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
-    panels: dict[str, str] = {}
+    # Letters of the panels that have a label.
+    shown_in: dict[str, str] = {}
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
@@ -92,13 +89,14 @@ def draw(table: pd.DataFrame) -> Figure:
         title = f"{space_time.description(roles)}\n" + rf"$T_\text{{trans}}$: {when}"
         side.suptitle(title, fontsize=9.0)
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
-            handles[label], panels[label] = handle, panels.get(label, "") + letter
+            handles[label] = handle
+            shown_in[label] = shown_in.get(label, "") + letter
     for label, colour in (("not yet slipped", "white"), ("stuck again", space_time.STUCK)):
         handles[label] = Patch(facecolor=colour, edgecolor=BLACK, linewidth=0.5)
     # The stuck part is grey behind a trailing edge.
-    panels |= {"not yet slipped": "ab", "stuck again": panels.get("trailing edge", "a")}
+    shown_in |= {"not yet slipped": "ab", "stuck again": shown_in.get("trailing edge", "a")}
     for label, handle in handles.items():
-        handle.set_label(label if panels[label] == "ab" else f"{label} ({panels[label]})")
+        handle.set_label(label if shown_in[label] == "ab" else f"{label} ({shown_in[label]})")
     style.legend_below(figure, list(handles.values()), len(handles))
     return figure
 

@@ -39,10 +39,8 @@ TITLES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """First run of each sweep, one row a panel, instant and block.
+    """First run of each sweep, one row a panel, instant and block; x is the position at rest.
 
-    x is the position at rest, arresting_block the first block that the left front never releases,
-    scale the drawn displacement over the slip.
     Source: the paper's discussion of the Burridge-Knopoff model.
     """
     parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PITCH]
@@ -100,6 +98,7 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     sides = sum(bool((velocity[last, side] > 0.0).any()) for side in (x < 0.0, x > 0.0))
     ending = ("arrested", "pulse", "two pulses")[sides] if stuck[last, x == 0.0].all() else "crack"
     later = (stick + last) // 2
+    # Instants that are the same sample keep the last name.
     names = {0: "start", stick // 2: "crack", stick: "first stick", later: "later", last: ending}
     return [(name, sample) for sample, name in sorted(names.items())]
 

@@ -23,11 +23,9 @@ PREFIXES = {"left": "exact_left", "right": "exact"}
 
 
 def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str) -> pd.DataFrame:
-    """Rows of a run with fields: the roles of `run_rows`, profile, steady, number and title.
+    """Rows of a run by role: those of `run_rows`, profile (a field at the end), steady (its largest
+    value in the exact steady pulse of each side), number (`shared.numbers.scene_numbers`), title.
 
-    Role profile has a field at the end (series: the field), role steady the largest value of the
-    exact steady pulse of each side (at the end of that side), role number the rows of
-    `shared.numbers.scene_numbers` (series: the quantity), role title the text (in series).
     ``theory`` is the row of measured and predicted numbers of the run.
     """
     lower, upper = space_time.limits(run)

@@ -24,10 +24,7 @@ NAMES = {"textbook": "textbook scheme", "best": BEST, "preset": "presets"}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Work and error of each quantity for each role of LOOKS, and the rows of part locking.
-
-    Role best has the localised settings of which none with less work has a smaller error.
-    """
+    """Role best has the localised settings of which none with less work has a smaller error."""
     study = tables["accuracy_cost"]
     trade = study[study["part"] == "trade"].sort_values("work", kind="stable")
     localised = trade[trade["scheme"] == "localised"]

@@ -23,10 +23,8 @@ PALE: Look = {"linewidth": 3.0, "alpha": 0.35}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Paths and times of the left front in units of |x_minus|.
-
-    Roles path (at the finest spacing) and exact_path have time and to_go. Role run has dx,
-    last_release, and fraction_time and exact_fraction_time of the fraction that counts as arrest.
+    """Times in units of |x_minus|, by role: path (of the left front at the finest spacing),
+    exact_path, and run (its last release, and when it has gone the fraction that is arrest).
     """
     runs = tables["arrest"]
     # The paper estimates the time of the transition by |x_minus|.

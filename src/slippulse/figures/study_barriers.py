@@ -26,11 +26,7 @@ LEVELS = (0.2, 0.5, 0.8)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Part depth as in the study, and the interpolated parts fine and curve.
-
-    Part fine has exact depths at gamma = 1; part curve has exact depths and the later estimate
-    (paper) over the barrier's level at gamma = GAMMA.
-    """
+    """Part depth of the study; parts fine (a finer map) and curve (at GAMMA), by interpolation."""
     study = tables["barriers"]
     parts = [study[study["part"] == "depth"]]
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):

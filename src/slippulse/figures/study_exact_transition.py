@@ -25,10 +25,7 @@ QUANTITIES = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """T_trans and L_trans, measured and predicted, of runs; and the study (role gaussian).
-
-    Runs have role sweep or refinement.
-    """
+    """T_trans and L_trans of runs (role sweep or refinement); and the study (role gaussian)."""
     kept = ["boundary", "left", "width", "gamma", "damping_ratio", "dx", "run_flags"]
     for source in ("transition", "paper_transition", "exact_transition"):
         kept += [f"{source}_{quantity}" for quantity in QUANTITIES]

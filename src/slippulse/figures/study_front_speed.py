@@ -36,10 +36,9 @@ COLUMNS += ["springs", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Role theory is the study front_law, role simulation the runs; panels by the study.
+    """Lines of the study front_law (role theory), and runs (role simulation) by its panels.
 
-    Runs have speed, theory (except on refined lattices), undamped (the paper's formula) and sound
-    (true where the theory should hold); panel is prestress, springs or refined.
+    Runs are sound where the theory should hold; undamped is the paper's formula.
     """
     lines = tables["front_law"].assign(role="theory")
     uniform = pd.concat([tables["front_speed"], tables["front_speed_slow"]])

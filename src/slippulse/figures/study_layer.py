@@ -30,9 +30,7 @@ KEYS = ["source", "tau0"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Part "ratio": ``ratio`` of a number of one dimension to one in the plane (quantity, source,
-    gamma, tau0, pulse_width), finest grid and last station; part "field" as in the study.
-    """
+    """One dimension over the plane on the finest grid (part ratio), and a field (part field)."""
     study = tables["layer"]
     runs = study[study["part"] == "pulse"]
     runs = runs[(runs["cells"] == runs["cells"].max()) & (runs["station"] == runs["station"].max())]

@@ -29,11 +29,7 @@ APART = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a claim and combination of choices; a claim without choices has one row.
-
-    over is deviation over tolerance, choice the choice that matters most, release the rule,
-    solution exact or lattice.
-    """
+    """One row a claim and combination of choices; a claim without choices has one row."""
     rows, names = [], ["id", "label", "verdict", "tolerance", "choice"]
     for claim in tables["claims"].to_dict("records"):
         if claim["kind"] in NUMERIC and claim["tolerance"]:

@@ -26,11 +26,7 @@ NAMES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of the study, and by release rule the parts curve and best; part ours is our own scene.
-
-    Part curve has the interpolated fits (damping_ratio, dx, tau0, gamma, errors, chi2), part best
-    the pull of each reading with the parameters that fit best.
-    """
+    """The study, and curve (fits, interpolated), best (pulls of the best fit) and ours (run)."""
     study = tables["published_figure"]
     parts, names = [study], ["damping_ratio", "dx", "tau0", "gamma", "chi2"]
     for release, profile in study[study["part"] == "profile"].groupby("release", sort=False):

@@ -20,11 +20,7 @@ REFINED = {name: f"pulse_{name}" for name in QUANTITIES} | {"front_speed": "fron
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of each quantity by role.
-
-    Role simulation has value, theory and paper; role theory has over_paper; role refined has the
-    value over dx, and as theory the limit.
-    """
+    """Quantities by role: simulation, theory, and refined (over dx, with the limit as theory)."""
     runs, study = tables["pulse_damping"], tables["damped_pulse"]
     lines = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
     parts = [lines.assign(role="theory")]

@@ -23,11 +23,8 @@ LEAST = 0.03
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Roles exact, lattice and velocity for each level beyond the step.
-
-    Role exact is the study; role lattice (Gamma = 1) has the slip left behind over x, the distance
-    beyond the step; role velocity (Gamma = 0) has time, the largest velocity right of the
-    nucleation, and step, the position of the step.
+    """Levels beyond a step, by role: exact and lattice (Gamma = 1, slip left behind over distances
+    beyond the step), velocity (Gamma = 0, the largest right of the nucleation over time).
     """
     exact = tables["pulse_memory"]
     across, beyond_step = data["pulses_across_a_step"], data["regimes_beyond"]

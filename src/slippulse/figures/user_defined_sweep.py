@@ -26,9 +26,8 @@ PANELS, ROWS = 6, 2
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """`main_numbers` of each run of a sweep with its flags, axis, x and series.
 
-    The axis is the column with most values (tau_0 for a level on both sides), and x its value; the
-    series names the values of all other columns that vary, and is empty where none does. A quantity
-    that equals another one in every run is left out.
+    The axis is the column with most values; the series names what else varies. A quantity that
+    equals another one in every run is left out.
     """
     (runs,) = tables.values()
     alike = (runs["left"] == runs["right"]).all()

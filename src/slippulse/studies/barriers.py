@@ -14,7 +14,7 @@ from ..theory.barrier import barrier_depth, barrier_depth_estimate
 from ..theory.closed_pulse import SteadyPulse
 from ..theory.pulse import steady_pulse
 
-NEEDS = {}  # type: dict[str, list[str]]
+NEEDS = {"settings": ()}
 
 # Without damping, and that of the paper's figures.
 DAMPING_RATIOS = (0.0, 0.1)
@@ -28,7 +28,7 @@ MAP_LEVELS = (0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9)
 MAP_BARRIERS = (-1.3, -0.85, -0.55, -0.36, -0.23, -0.15, -0.1)
 # Lengths of barriers over the exact depth; a block is less than the difference at this spacing.
 LENGTHS, PASSING_SPACING = (0.8, 0.95, 1.05, 1.2), 0.0125
-# The pre-stress is its level after so many widths of the Gaussian; the width suits every pulse.
+# The pre-stress is its level beyond TAIL widths of the Gaussian; the width suits every pulse.
 TAIL, WIDTH = 5.0, 1.0
 # A pulse dies or passes before a wave would have gone this many times as deep.
 CROSSINGS = 4.0

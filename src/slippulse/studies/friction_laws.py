@@ -149,7 +149,7 @@ def _theory(level: float, law: Friction) -> dict:
 
 
 def _selected(level: float, dx: float, resolution: float, still: float) -> dict:
-    """One run with d_c of so many spacings, and the exact speed where there is a rupture."""
+    """One run with d_c in units of the spacing, and the exact speed where there is a rupture."""
     d_c = resolution * dx
     law = SlipWeakening(d_c, NUCLEATION)
     exact = _weakening(level, d_c).speed if _strength(level, law) < 1.0 else np.nan

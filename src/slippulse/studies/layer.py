@@ -17,7 +17,7 @@ from ..theory.closed_pulse import (
 )
 from ..theory.weakening import undamped_weakening_slip, weakening_pulse
 
-NEEDS = {}  # type: dict[str, list[str]]
+NEEDS = {"settings": ()}
 
 # gamma of lambda = G, for which the paper means its formulas; smaller ones give pulses of many H.
 GAMMA = 2.0 / 3.0

@@ -31,8 +31,8 @@ FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5
 SPACING = 0.12
 # Such a step and order leave rounding, or the nucleation, to end the decay behind a crack.
 ORDER, MAX_STEP = 8, 0.25
-# The trailing edge learns of the front at the rate by which that outruns the waves: it is steady
-# after so long.
+# The trailing edge learns of the front at the rate by which that outruns the waves: a pulse is
+# steady after MEMORIES of the times that this takes over one thickness.
 SHORTEST, MEMORIES = 30.0, 5.0
 # The sliding part behind a front that nothing follows grows by more than this over the second half
 # of a run, or its velocity decays below this fraction of the largest before it ends.

@@ -11,7 +11,7 @@ from ..model.stability import largest_step
 from ..solver.fixed_step import LATTICES
 from ..solver.lattice import UnstableRun
 
-NEEDS = {}  # type: dict[str, list[str]]
+NEEDS = {"settings": ()}
 
 # No damping, that of the paper's figures (0.1), and the decades in which the bound changes its law.
 DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)

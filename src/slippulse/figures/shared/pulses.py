@@ -13,21 +13,8 @@ from matplotlib.lines import Line2D
 from ...data.points import point
 from ...measurement.pulses import comoving, leading_pulse
 from ...model.prestress import Prestress
-from ..style import (
-    BLACK,
-    LEVEL,
-    PAGE,
-    SMALL,
-    SYMBOLS,
-    Box,
-    Look,
-    colour_scale,
-    conditions,
-    entry,
-    legend_below,
-    new_panels,
-    small_inset,
-)
+from .. import style
+from ..style import BLACK, LEVEL, PAGE, SMALL, SYMBOLS, Box, Look, entry
 from .selection import spread_values
 
 # Labels of the fields in the units of each boundary condition.
@@ -61,9 +48,8 @@ PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Simulated pulses of each sweep at some of its levels, and the exact one of each run.
 
-    Role run has the parameters; roles simulation and exact have the fields over x, the distance
-    from the largest velocity; panel is the boundary. Units under a displacement boundary are width,
-    slip, velocity and acceleration of the paper's pulse; under a stress boundary the width of the
+    x is the distance from the largest velocity. Units under a displacement boundary are those of
+    the paper's pulse (width, slip, velocity, acceleration); under a stress boundary the width of a
     Gaussian, the largest slip and velocity of the exact pulse far from the nucleation, and that
     velocity over that width, since the exact acceleration has no bound.
     """
@@ -125,26 +111,26 @@ def run_looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
     runs = table[table["role"] == "run"].set_index("run")
     styled = runs[STYLED[boundary]]
     styles = dict(zip(np.sort(styled.unique()), STYLES, strict=False))
-    colours = colour_scale(LEVEL[boundary]).to_rgba(runs["left"].to_numpy())
+    colours = style.colour_scale(LEVEL[boundary]).to_rgba(runs["left"].to_numpy())
     return dict(zip(runs.index, zip(colours, styled.map(styles), strict=True), strict=True))
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
     """Draw a field of the pulses of one boundary: simulated ones pale, exact ones thin."""
     flagged = set(table.loc[table["run_flags"].notna(), "run"])
-    for run, (colour, style) in run_looks(table).items():
+    for run, (colour, dashes) in run_looks(table).items():
         rows = table[table["run"] == run]
         simulated, exact = (rows[rows["role"] == role] for role in ("simulation", "exact"))
         shade = "0.7" if run in flagged else colour
         axes.plot(simulated["x"], simulated[field], color=shade, gid=f"simulation {run}", **PALE)
-        axes.plot(exact["x"], exact[field], style, color=colour, linewidth=0.8, gid=f"exact {run}")
+        axes.plot(exact["x"], exact[field], dashes, color=colour, linewidth=0.8, gid=f"exact {run}")
     boundary = table["panel"].iloc[0]
     axes.set(xlabel=DISTANCE[boundary], ylabel=FIELDS[field][boundary])
 
 
 def plot_fields(table: pd.DataFrame) -> Figure:
     """Draw figures 8 and 9: the three fields of the pulses of one boundary."""
-    figure, panels = new_panels(PAGE, 2.8, 1, 3)
+    figure, panels = style.new_panels(PAGE, 2.8, 1, 3)
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
     panels[1].set_title(title(table))
@@ -156,7 +142,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         draw_prestress(panels[1], table, (0.09, 0.66, 0.33, 0.22), 5.0)
         # The exact acceleration has no bound at the front.
         panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
-    legend_below(figure, handles(table), 6)
+    style.legend_below(figure, handles(table), 6)
     return figure
 
 
@@ -176,8 +162,8 @@ def handles(table: pd.DataFrame) -> list[Line2D]:
     for run, level in runs["left"].drop_duplicates().sort_values().items():
         entries.append(entry(rf"${level_symbol} = {level:g}$", color=looks[run][0]))
     for run, value in runs[styled].drop_duplicates().sort_values().items():
-        name, style = rf"exact, ${SYMBOLS[styled]} = {value:g}$", looks[run][1]
-        entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=style))
+        name, dashes = rf"exact, ${SYMBOLS[styled]} = {value:g}$", looks[run][1]
+        entries.append(entry(name, color=BLACK, linewidth=0.8, linestyle=dashes))
     return [*entries, entry("simulation", color=BLACK, **PALE)]
 
 
@@ -186,14 +172,14 @@ def title(table: pd.DataFrame) -> str:
     held = table["panel"].iloc[0] == "displacement"
     column = "gamma" if held else "damping_ratio"
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
-    return rf"{conditions(held)}, ${SYMBOLS[column]} = {values}$"
+    return rf"{style.conditions(held)}, ${SYMBOLS[column]} = {values}$"
 
 
 def prestress_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, colours: Sequence, widths: float
 ) -> None:
     """Draw the pre-stress of runs in a box of a panel, to some widths of the widest Gaussian."""
-    inset = small_inset(axes, box, r"pre-stress $\tau(x)$")
+    inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
     x = np.linspace(-widths, widths, 161) * runs["width"].max()
     for run, colour in zip(runs.itertuples(), colours, strict=True):
         inset.plot(x, Prestress(run.left, run.right, run.width)(x), color=colour, linewidth=0.8)

@@ -11,19 +11,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from ...data.numerals import setting
 from .. import style
-from ..style import (
-    BLACK,
-    GREY,
-    LEVEL,
-    PAGE,
-    SMALL,
-    SYMBOLS,
-    Box,
-    Look,
-    entry,
-    few_ticks,
-    small_inset,
-)
+from ..style import BLACK, GREY, LEVEL, PAGE, SMALL, SYMBOLS, Box, Look, entry
 from .selection import spread_values
 
 QUANTITIES = {"length": r"L_\text{trans}", "time": r"T_\text{trans}"}
@@ -77,7 +65,7 @@ def ratio_inset(
     ``across`` is the column of the horizontal axis, and there is a line for each value of ``line``,
     in its colours. Where the damping ratio runs across, it gives the colours of the runs.
     """
-    inset, boundary = small_inset(axes, box, "measured / formula"), runs["boundary"].iloc[0]
+    inset, boundary = style.small_inset(axes, box, "measured / formula"), runs["boundary"].iloc[0]
     inset.set_in_layout(False)
     inset.axhline(1.0, color=BLACK, linewidth=0.6, zorder=0)
     for style_of_line, (value, group) in zip(("-", "--", ":"), runs.groupby(line), strict=False):
@@ -154,6 +142,6 @@ def damping_figure(table: pd.DataFrame) -> Figure:
 def _damping_axis(axes: Axes, ratios: np.ndarray) -> None:
     """Scale and tick the axis of the damping ratio, which has 0."""
     axes.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
-    few_ticks(axes.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
+    style.few_ticks(axes.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
     axes.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
     axes.set_xlabel("$b$", fontsize=SMALL, labelpad=0.0)
