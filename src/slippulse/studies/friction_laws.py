@@ -19,7 +19,7 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.simulate import simulate
 from ..theory.rate_dependent import rate_pulse
-from ..theory.weakening import weakening_pulse
+from ..theory.weakening import SteadyRupture, weakening_pulse
 from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 
 NEEDS = {"settings": ["measure"]}
@@ -157,5 +157,5 @@ def _selected(level: float, dx: float, resolution: float, still: float) -> dict:
 
 
 @cache
-def _weakening(level: float, d_c: float) -> WeakeningPulse:
+def _weakening(level: float, d_c: float) -> SteadyRupture:
     return weakening_pulse(level, GAMMA, BETA, d_c)
