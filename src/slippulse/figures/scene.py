@@ -1,6 +1,7 @@
 """A scene: slip velocity over time and position, fields at the end, and numbers beside theory."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pandas as pd
@@ -41,14 +42,12 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str)
     # The right pulse is measured; on the left there is one once blocks stick.
     shown = {"left": math.isfinite(run.attrs["first_stick_time"])}
     shown["right"] = theory["pulse_state"] not in ("none", "stopped")
-    ends = {side: end for side, end in (("left", lower), ("right", upper)) if shown[side]}
-    steady = [
-        {"series": name, "position": end, "value": theory[f"{PREFIXES[side]}_{LARGEST[name]}"]}
-        for name in FIELDS
-        for side, end in ends.items()
-    ]
-    columns = ["role", "series", "position", "value"]
-    parts.append(pd.DataFrame(steady, columns=columns).assign(role="steady").dropna())
+    steady = []
+    for name, (side, end) in product(FIELDS, {"left": lower, "right": upper}.items()):
+        if shown[side]:
+            steady.append((name, end, theory[f"{PREFIXES[side]}_{LARGEST[name]}"]))
+    rows = pd.DataFrame(steady, columns=["series", "position", "value"])
+    parts.append(rows.assign(role="steady").dropna())
     parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
     columns = ["role", "series", "label", "time", "position", "value", "uncertainty", "theory"]
     return pd.concat(parts, ignore_index=True).reindex(columns=columns)

@@ -46,31 +46,28 @@ GROWTH, NO_RUPTURE = 1.1, "no rupture"
 # Front speed against d_c/dx at fixed beta: levels, spacings, and distances.
 SELECTED, SPACINGS = (0.5, 0.8), (0.08, 0.04, 0.02)
 RESOLUTIONS = (1.0, 2.0, 4.0, 8.0)
-# Cases with exact numbers, on lattices of these spacings.
-CASES: tuple[tuple[float, Friction], ...] = (
-    (0.5, BoundedRate(0.3, 1.0)),
-    (0.5, RateWeakening(1.5, 0.3)),
-    (0.8, SlipWeakening(0.1, NUCLEATION)),
-    (0.5, SlipWeakening(0.2, NUCLEATION)),
-    (0.5, SlipWeakening(0.3, NUCLEATION)),
+# Cases with exact numbers, on lattices of these spacings: level, law, and step over dx.
+CASES: tuple[tuple[float, Friction, float], ...] = (
+    (0.5, BoundedRate(0.3, 1.0), FINE_STEP),
+    (0.5, RateWeakening(1.5, 0.3), FINE_STEP),
+    (0.8, SlipWeakening(0.1, NUCLEATION), STEP),
+    (0.5, SlipWeakening(0.2, NUCLEATION), STEP),
+    (0.5, SlipWeakening(0.3, NUCLEATION), STEP),
 )
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Roles plane, selection (with d_c and exact_speed), case and theory."""
     still = settings["measure"]["still"]
-    plane = [_run(level, law, DX, STEP, still) for level, law in _plane()]
+    plane = [_run(level, law, STEP, DX, still) for level, law in _plane()]
     scenes = product(SELECTED, SPACINGS, RESOLUTIONS)
     selection = [_selected(*scene, still) for scene in scenes]
-    cases = [
-        _run(level, law, dx, STEP if isinstance(law, SlipWeakening) else FINE_STEP, still)
-        for (level, law), dx in product(CASES, SPACINGS)
-    ]
+    cases = [_run(*case, dx, still) for case, dx in product(CASES, SPACINGS)]
     parts = {
         "plane": pd.DataFrame(plane),
         "selection": pd.DataFrame(selection),
         "case": pd.DataFrame(cases),
-        "theory": pd.DataFrame([_theory(level, law) for level, law in CASES]),
+        "theory": pd.DataFrame([_theory(level, law) for level, law, _ in CASES]),
     }
     rows = [rows.assign(role=role) for role, rows in parts.items()]
     return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA)
@@ -99,7 +96,7 @@ def _strength(level: float, law: Friction) -> float:
     return sign * parameters["limit"] / level
 
 
-def _run(level: float, law: Friction, dx: float, step: float, still: float) -> dict[str, Any]:
+def _run(level: float, law: Friction, step: float, dx: float, still: float) -> dict[str, Any]:
     """One run, its regime and its pulse; width and slip are NaN where nothing sticks.
 
     Strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2.
@@ -153,7 +150,7 @@ def _selected(level: float, dx: float, resolution: float, still: float) -> dict:
     d_c = resolution * dx
     law = SlipWeakening(d_c, NUCLEATION)
     exact = _weakening(level, d_c).speed if _strength(level, law) < 1.0 else np.nan
-    return _run(level, law, dx, STEP, still) | {"d_c": d_c, "exact_speed": exact}
+    return _run(level, law, STEP, dx, still) | {"d_c": d_c, "exact_speed": exact}
 
 
 @cache

@@ -38,11 +38,13 @@ def run_rows(run: xr.Dataset) -> pd.DataFrame:
 def description(roles: dict[str, pd.DataFrame]) -> str:
     """Boundary, pre-stress and damping of a run, and its flags, as a title."""
     value = roles["parameter"].set_index("series")["value"]
-    gamma = {"gamma": value["gamma"]} if value["gamma"] > 0.0 else {}
-    levels = {"tau_0": value["left"]}
-    if value["left"] != value["right"]:
-        levels = {"tau_l": value["left"], "tau_r": value["right"]}
-    title = conditions(bool(gamma), **gamma, **levels, **value[["width", "damping_ratio"]])
+    numbers = {"gamma": value["gamma"]} if value["gamma"] > 0.0 else {}
+    if value["left"] == value["right"]:
+        numbers["tau_0"] = value["left"]
+    else:
+        numbers |= {"tau_l": value["left"], "tau_r": value["right"]}
+    numbers |= dict(value[["width", "damping_ratio"]])
+    title = conditions(value["gamma"] > 0.0, **numbers)
     if "flag" in roles:
         title += f", flagged: {roles['flag']['series'].iloc[0]}".replace("_", " ")
     return title
