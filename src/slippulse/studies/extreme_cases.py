@@ -106,6 +106,7 @@ def barrier(depth: float) -> tuple[tuple[float, float, float], ...]:
     return (CENTRE, -depth, WIDTH), (-CENTRE, -depth, WIDTH)
 
 
+# The numbers after the verdict are dx, duration, level and width.
 CASES = (
     # Undamped fronts at 7 to 70 wave speeds are exact at any spacing.
     Case("level near 1", "tau_0 = 0.99", "front speed", "right", 0.1, 6, 0.99, ratio=0.0),
