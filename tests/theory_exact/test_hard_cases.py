@@ -46,6 +46,16 @@ def the_first_stick_is_the_first():
         assert rupture.first_stick.time <= rupture.limit.time
 
 
+def a_first_stick_at_the_centre_of_symmetry():
+    """There the pace of the trailing edge is rounding, of either sign."""
+    bump = -0.8827475088463022, 0.43810831317438026
+    bumps = (11.132018776746689, *bump), (-11.132018776746689, *bump)
+    level = 0.5828621621834829
+    profile = Prestress(level, level, 3.158165039598508, 1.000000000001, bumps=bumps)
+    rupture = Rupture(profile, 0.0760121501359528, 1.0, "elastic", 25.693078285585813)
+    assert rupture.first_stick == pytest.approx((11.290149, 0.0), abs=SAME)
+
+
 def mirrored_parts_that_have_not_met():
     """A scene that misses symmetry by less than rounding is solved on both sides."""
     profile = Prestress(-0.3, -0.3, bumps=((10.0, 1.5, 1.0), (-10.0, 1.5, 1.0)))
@@ -67,6 +77,7 @@ CASES = [
     a_front_that_rests_goes_on,
     slip_is_never_negative_before_a_limit,
     the_first_stick_is_the_first,
+    a_first_stick_at_the_centre_of_symmetry,
 ]
 
 

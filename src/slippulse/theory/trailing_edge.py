@@ -312,7 +312,11 @@ class TrailingEdge:
         span = np.diff(knots.x)
         lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * span
         for low in np.flatnonzero(down & ~knots.jumps(k) & (lowest < out.time)).tolist():
-            x = root_between(self._pace, knots.x[low], knots.x[low + 1], xtol=STEP)
+            ends = knots.x[low], knots.x[low + 1]
+            # Where rounding alone says that the edge goes down, the knot itself is the minimum.
+            if not self._pace(ends[0]) < 0.0 < self._pace(ends[1]):
+                continue
+            x = root_between(self._pace, *ends, xtol=STEP)
             time = float(self.stick_time(np.array([x]))[0])
             # Neither a kink nor an equal time is taken for a minimum.
             if time < out.time - ROUNDING:
