@@ -112,7 +112,7 @@ def settings_for(
     Raises
     ------
     ValueError
-        One line that names the key, the value and what is allowed.
+        If an argument is outside of its range: one line with its name, its value and the range.
 
     Notes
     -----

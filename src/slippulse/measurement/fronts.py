@@ -4,14 +4,15 @@ import numpy as np
 
 from ..data.points import AnyRun
 
+# A front pauses where one wait between two blocks takes this fraction of a stretch of its path, and
+# this many times a block's part of it.
+PAUSE, PAUSE_BLOCKS = 0.2, 4.0
+
 
 def path(
     run: AnyRun, side: str = "right", edge: str = "release_time"
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Times and distances from x = 0 of a front ("release_time") or a trailing edge ("stick_time").
-
-    They are in order of distance, on one side; blocks without the event are left out.
-    """
+    """Times of an event, and distances from x = 0 in their order, of the blocks that have it."""
     x, time = np.asarray(run["x"]), np.asarray(run[edge])
     if side == "left":
         x, time = -x[::-1], time[::-1]
@@ -20,20 +21,13 @@ def path(
     return time[start:][reached], x[start:][reached]
 
 
-# A front pauses where one wait between two blocks takes this fraction of a stretch of its path, and
-# this many times a block's part of it.
-PAUSE, PAUSE_BLOCKS = 0.2, 4.0
-
-
 def position_at(run: AnyRun, time, side: str = "right", edge: str = "release_time") -> np.ndarray:
-    """Distance from x = 0 of a front or trailing edge at given times; NaN before its first event.
-
-    It is linear between events; a block released out of turn does not take the front back.
-    """
+    """Distance of a front or trailing edge from x = 0 at some times; NaN before its first event."""
     times, distances = path(run, side, edge)
     time = np.asarray(time, dtype=float)
     if times.size == 0:
         return np.full(time.shape, np.nan)
+    # A block released out of turn does not take the front back.
     latest = np.maximum.accumulate(times)
     # np.interp needs increasing times: the farthest of several blocks with one time counts.
     last = np.concatenate([np.diff(latest) > 0.0, [True]])
@@ -51,16 +45,13 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
 
 
 def fit_front(run: AnyRun, window: float, side: str = "right") -> tuple[float, float, float]:
-    """Speed, intercept and standard error of the speed on the last fraction of a front's path.
-
-    They are those of `straight_line`; NaN with fewer than 4 blocks. A front that outruns the waves
-    after a pause is measured after it.
-    """
+    """`straight_line` through the last fraction of a front's path; NaN with fewer than 4 blocks."""
     times, distances = path(run, side)
     chosen = distances >= (1.0 - window) * np.max(distances, initial=0.0)
     if chosen.sum() < 4:
         return np.nan, np.nan, np.nan
     times, distances = times[chosen], distances[chosen]
+    # A front that outruns the waves after a pause is measured after it.
     start = end_of_last_pause(times)
     if 0 < start <= times.size - 4:
         line = straight_line(times[start:], distances[start:])

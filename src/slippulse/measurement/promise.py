@@ -28,14 +28,10 @@ LARGEST_FRACTION = 0.95
 
 
 def covers(run: Mapping, quantity: str, fraction: float) -> bool:
-    """Return True if a promise covers one number of a run, a row of the measured table.
-
-    ``fraction`` : of |x_minus| that the left front covers at T_trans under a stress boundary.
-    """
+    """Return True if a promise covers a number of a measured row; fraction: see `transition`."""
     known = quantity in COVERED[run["boundary"]] and math.isfinite(run[quantity])
-    if not known or run["run_flags"]:
-        return False
-    if quantity in PULSE and run["pulse_state"] != "steady":
+    unsteady = quantity in PULSE and run["pulse_state"] != "steady"
+    if not known or run["run_flags"] or unsteady:
         return False
     if run["boundary"] == "stress" and not quantity.startswith("front_speed"):
         return _covers_stress(run, quantity, fraction)
@@ -58,7 +54,6 @@ def _lowest(prestress: Prestress, end: float, dx: float) -> float:
 
 
 def _covers_stress(run: Mapping, quantity: str, fraction: float) -> bool:
-    """Return True if a promise covers peak velocity or transition under a stress boundary."""
     if quantity == "largest_velocity":
         # Theory has the far-field pulse; between two fronts that run on, velocity grows.
         return run["left"] < 0.0 == run["right"] == run["beyond"]
@@ -71,20 +66,15 @@ def judged(
 ) -> pd.DataFrame:
     """A grid study with columns `promised` (NaN where nothing is) and `kept` ("true", "false", "").
 
-    study : as `grid_tables` has it
     measured : the table at the finest spacing
     promise : largest relative uncertainty; NaN for a user-defined spacing, which promises nothing
-    fraction : see `covers`
-
-    A number whose uncertainty is not known, since a coarser lattice does not have it, has not kept
-    its promise.
     """
     flags = measured["run_flags"].astype(object).fillna("")
     rows = measured.assign(run_flags=flags).to_dict("records")
-    covered = [
-        math.isfinite(promise) and covers(rows[row.point], row.quantity, fraction)
-        for row in study.itertuples()
-    ]
+    pairs = zip(study["point"], study["quantity"], strict=True)
+    known = math.isfinite(promise)
+    covered = [known and covers(rows[point], name, fraction) for point, name in pairs]
+    # An uncertainty is NaN where a coarser lattice does not have the number: that is a miss.
     within = study["uncertainty"] <= promise * study["value"].abs()
     kept = np.where(covered, np.where(within, "true", "false"), "")
     return study.assign(promised=np.where(covered, promise, np.nan), kept=kept)
@@ -103,8 +93,6 @@ def summary(study: pd.DataFrame, promise: float) -> str:
     for point, errors in relative.groupby(missed["point"]):
         worst.append(f"{point} ({missed.loc[errors.idxmax(), 'quantity']} {errors.max():.1e})")
     if worst:
-        text += f"; missed by {', '.join(worst[:5])}"
-    if len(worst) > 5:
-        text += " ..."
+        text += f"; missed by {', '.join(worst[:5])}{' ...' if len(worst) > 5 else ''}"
     rest = study["point"].nunique() - runs
     return text + (f"; {rest} have no number that it covers" if rest else "")

@@ -36,7 +36,6 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     for pulse in pulses[-1:]:
         leading[pulse] = velocity[pulse]
     peak, peak_distance = parabola_peak(r, leading)
-
     stick, stuck = path(run, edge="stick_time")
     width, final = NAN, NAN
     followed = stuck < peak_distance
@@ -59,7 +58,7 @@ def front_at_end(
     release, distance = path(run)
     if not distance.size:
         return NAN, False
-    # The next block is at rest, so the front is at most one block beyond the last release.
+    # The next block is at rest: the front is at most one block beyond the last release.
     ahead, dx = float(speed * (run.attrs["end_time"] - release[-1])), run.attrs["dx"]
     at_rest = not velocity[np.searchsorted(r, distance[-1])] > 0.0
     if at_rest and not 0.0 <= ahead <= dx:
@@ -95,11 +94,8 @@ def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
 
 
 def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Amplitude of the slip acceleration across a pulse, by projection on a sine of its width.
-
-    A projection averages out the ringing of the undamped lattice behind the front, which the
-    largest value would report. It is NaN for a pulse without a trailing edge.
-    """
+    """Amplitude of the slip acceleration across a pulse, by projection on a sine of its width."""
+    # The largest value would report the ringing of the undamped lattice behind the front.
     fields = comoving(run, pulse)
     inside = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
     shape = np.cos(np.pi * fields["xi"][inside] / pulse.width)

@@ -19,37 +19,29 @@ UNDECIDED = "undecided"
 
 
 def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, float | str]:
-    """Classify a run by its slip velocity at the end, and at two thirds of its duration.
+    """Regime, one of REGIMES, of a run with samples, and the numbers that it is decided by.
 
-    run : with samples of slip velocity over time and position. Its end is taken from the blocks
-        where their slip velocity is recorded, since samples may miss a narrow or distant pulse
-    still : a velocity below this fraction of the largest one now (or, for arrest, of the largest
-        one sampled) is rest
-    steady_tolerance : a largest velocity that changes less than this fraction over the last third
-        is steady; a front this fraction slower than the waves still keeps up with them
-
-    Returns `regime`, one of REGIMES, and the numbers it is decided by. *Arrested*: no release in
-    the last tenth of the duration, or no velocity above ``still`` of the largest one sampled. Else
-    a side *runs* if its front keeps up with the waves over the last third, or, where neither does,
-    if blocks on it slide at ``still`` or more of the largest velocity now. *Two-way*: both run;
-    *one-way*: one. *Pulse*: by `is_pulse`; *crack-like*: else. A one-way pulse is *growing*,
-    *steady* or *decaying* by the change of its largest velocity over the last third.
+    A side *runs* if its front keeps up with the waves over the last third, to within the tolerance,
+    or, where neither does, if blocks on it slide at ``still`` or more of the largest velocity now.
+    A one-way pulse grows, decays or is steady by the change of its largest velocity over that time.
     """
     times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
     before = np.max(velocity[int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))])
     change = float(np.max(velocity[-1]) / before) - 1.0 if before > 0.0 else -1.0
+    # Samples may miss a narrow or distant pulse.
     if "slip_velocity" in run:
         x, now = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
     else:
         x, now = np.asarray(run["sample_position"]), velocity[-1]
     largest = float(np.max(now))
     centre = float(now[int(np.argmin(np.abs(x)))])
-    speeds = {side: _late_speed(run, side) for side in ("left", "right")}
-    keeping_up = sum(speed >= 1.0 - steady_tolerance for speed in speeds.values())
+    speeds = [_late_speed(run, side) for side in ("left", "right")]
+    keeping_up = sum(speed >= 1.0 - steady_tolerance for speed in speeds)
     sliding = now >= still * largest
     running = keeping_up or int(np.any(sliding[x < 0.0])) + int(np.any(sliding[x > 0.0]))
     latest = float(np.nan_to_num(np.asarray(run["release_time"])).max())
     ways = "two-way" if running == 2 else "one-way"
+    # Arrest is no release in the last tenth of the duration, or rest beside any earlier sample.
     at_rest = largest <= still * max(largest, float(np.max(velocity)))
     if at_rest or latest < 0.9 * run.attrs["duration"]:
         regime = "arrested"
@@ -61,17 +53,13 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
         "regime": regime,
         "centre_velocity_share": centre / largest if largest > 0.0 else float("nan"),
         "largest_velocity_change": change,
-        "late_front_speed_left": speeds["left"],
-        "late_front_speed_right": speeds["right"],
+        "late_front_speed_left": speeds[0],
+        "late_front_speed_right": speeds[1],
     }
 
 
 def is_pulse(centre: float, largest: float, still: float) -> bool:
-    """The one definition of a pulse: its nucleation point is at rest, or nearly, while it runs.
-
-    A *sticking* pulse has come to rest there, a *creeping* one slides on below ``still`` of the
-    largest velocity.
-    """
+    """The one definition of a pulse: its nucleation point is at rest, or nearly, while it runs."""
     return centre < still * largest
 
 
@@ -79,9 +67,8 @@ def _late_speed(run: AnyRun, side: str) -> float:
     """Mean speed of a front over the last third of a run; 0 where it has not begun by then."""
     window = np.array([2.0 / 3.0, 1.0]) * run.attrs["end_time"]
     covered = position_at(run, window, side)
-    if not np.isfinite(covered).all():
-        return 0.0
-    return float(np.diff(covered)[0] / np.diff(window)[0])
+    known = np.isfinite(covered).all()
+    return float(np.diff(covered)[0] / np.diff(window)[0]) if known else 0.0
 
 
 def _pulse_regime(ways: str, change: float, tolerance: float) -> str:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 
 import numpy as np
 
@@ -21,6 +22,7 @@ PARAMETERS = (
     "min_velocity", "min_stuck_stress", "friction_ratio_needed", "re_releases", "end_time",
     "friction",
 )  # fmt: skip
+WHOLE_PULSE = ("front", "width", "peak_velocity", "slip")
 # Fewer sliding blocks show no waves of the lattice.
 FEWEST = 12
 # The Gaussian is 0, to rounding of what is shown, beyond this number of widths.
@@ -29,12 +31,9 @@ NAN = float("nan")
 
 
 def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
-    """Measure one run, out of a sweep or as `simulate` returned it.
+    """Parameters and all recorded numbers of a run, and its leading pulse where it has velocities.
 
-    settings : share, front_window, steady_tolerance, still, trailing_times (see config/README.md)
-
-    Returns its parameters and all numbers that the recorded data allow, NaN where one does not
-    apply; and its leading pulse, where slip velocity is recorded.
+    settings : those of `measure` (see config/README.md)
     """
     attributes = run.attrs | {"friction": json.dumps(law_of(run.attrs))}
     row = {name: attributes[name] for name in PARAMETERS}
@@ -47,7 +46,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     row["first_stick_time"] = run.attrs["first_stick_time"]
     times = settings["trailing_times"]
     edges = position_at(run, times, "right", "stick_time").tolist()
-    row |= {f"trailing_edge_{time:g}": edge for time, edge in zip(times, edges, strict=True)}
+    row |= zip([f"trailing_edge_{time:g}" for time in times], edges, strict=True)
     pulse = None
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
@@ -64,23 +63,18 @@ def transition(run: AnyRun, fraction: float) -> dict:
     left, right = run.attrs["left"], run.attrs["right"]
     if run.attrs["boundary"] == "displacement":
         return transition_displacement(run) if left == right > 0.0 else {}
-    if not left < 0.0 == right or prestress_from(run.attrs).steps:
-        return {}
-    try:
-        return transition_stress(run, fraction)
-    except ArithmeticError:
+    if left < 0.0 == right and not prestress_from(run.attrs).steps:
         # A barrier on the right can leave nothing that is balanced on the left.
-        return {}
+        with suppress(ArithmeticError):
+            return transition_stress(run, fraction)
+    return {}
 
 
 def pulse_numbers(run: AnyRun, pulse: LeadingPulse) -> dict[str, float]:
     """Numbers of the slip velocity at the end, most of them of the leading pulse."""
     return {
         "largest_velocity": float(np.max(np.asarray(run["slip_velocity"]))),
-        "pulse_front": pulse.front,
-        "pulse_width": pulse.width,
-        "pulse_peak_velocity": pulse.peak_velocity,
-        "pulse_slip": pulse.slip,
+        **{f"pulse_{name}": getattr(pulse, name) for name in WHOLE_PULSE},
         "pulse_stress_drop": run.attrs["gamma"] * pulse.slip,
         "pulse_acceleration": acceleration_amplitude(run, pulse),
         "slip_variation": slip_variation(run, pulse),
@@ -107,15 +101,12 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
 
 
 def lattice_noise(run: AnyRun) -> float:
-    """Power of waves of a few blocks (fourth difference) over that of slip velocity, on the right.
-
-    The blocks that slide count, without the two at each end, where the velocity has corners.
-    """
+    """Power of waves of a few blocks (fourth difference) over that of velocity, on the right."""
     x, velocity = np.asarray(run["x"]), np.asarray(run["slip_velocity"])
     moving = velocity[(x >= 0.0) & (velocity > 0.0)]
     if moving.size < FEWEST:
         return NAN
-    # The gain is 1 for waves of two blocks, sin^4(pi/n) for waves of n.
+    # The gain is 1 for waves of two blocks, sin^4(pi/n) for waves of n. At the ends are corners.
     short = np.diff(moving, 4)[2:-2] / 16.0
     return float(np.sum(short**2) / np.sum(moving**2))
 
@@ -125,7 +116,7 @@ def sliding_at_once(run: AnyRun) -> float:
     start = 0.5 * run.attrs["end_time"]
     chosen = (np.asarray(run["x"]) > 0.0) & np.isfinite(np.asarray(run["release_time"]))
     release, stick = np.asarray(run["release_time"])[chosen], np.asarray(run["stick_time"])[chosen]
-    # The number rises at a release only: it is largest right after one, or at the start.
+    # The number is largest right after a release, or at the start.
     times = np.append(start, release[release > start])
     # A stable sort is fast where times are nearly in order. NaN is sorted last.
     released = np.searchsorted(np.sort(release, kind="stable"), times, side="right")
@@ -136,12 +127,8 @@ def sliding_at_once(run: AnyRun) -> float:
 def far_field(run: AnyRun) -> dict[str, float]:
     """Change of the right pulse far from nucleation over the last third of a run with samples.
 
-    profile_change : largest difference of the velocity profile from itself moved at the wave speed,
-        over its largest velocity
-    energy_change : relative change of kinetic plus strain energy
-    strain_left : largest strain left where it entered, over the largest strain
-
-    They are NaN where nothing slides there, in uniform pre-stress, at two thirds of the duration.
+    Its profile is compared with itself moved at the wave speed, its energy is kinetic and strain,
+    and strain is left where it entered. NaN where nothing slides at two thirds of the duration.
     """
     steps = [abs(position) for position, _ in prestress_from(run.attrs).steps]
     start = max([FAR * run.attrs["width"], *steps])
@@ -153,10 +140,8 @@ def far_field(run: AnyRun) -> dict[str, float]:
     if np.count_nonzero(distant) < 8 or not np.max(velocity[early][distant], initial=0.0) > 0.0:
         return {"profile_change": NAN, "energy_change": NAN, "strain_left": NAN}
     strain = np.gradient(slip[:, distant], x[distant], axis=1)
-    energies = [
-        np.trapezoid(0.5 * (velocity[i][distant] ** 2 + strain[i] ** 2), x[distant])
-        for i in (early, -1)
-    ]
+    densities = [0.5 * (velocity[i][distant] ** 2 + strain[i] ** 2) for i in (early, -1)]
+    energies = [np.trapezoid(density, x[distant]) for density in densities]
     inside = distant & (x + moved <= x[-1])
     later = np.interp(x[inside] + moved, x, velocity[-1])
     entered = x[distant] <= start + run.attrs["width"]

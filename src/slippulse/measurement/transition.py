@@ -14,16 +14,11 @@ STALL = 0.03
 
 
 def transition_displacement(run: AnyRun) -> dict[str, float]:
-    """Transition under a displacement boundary.
-
-    T_trans is the first stick anywhere (at the nucleation point when the scene is symmetric), and
-    L_trans the distance between the fronts then: both converge. The paper defines T_trans by slip
-    2 tau/gamma at the nucleation point; that is measured with the tau_0 of the level and with the
-    tau = 1 of the point, and is NaN where slip never reaches it.
-    """
+    """First stick, and the distance between both fronts then."""
     time, position = run.attrs["first_stick_time"], run.attrs["first_stick_position"]
     length = between_fronts(run, time)
     out = {"transition_time": time, "transition_length": length, "first_stick_position": position}
+    # The paper's T_trans is at slip 2 tau/gamma, with the tau of the level or the nucleation point.
     for name, tau in (("background", run.attrs["left"]), ("nucleation", run.attrs["peak"])):
         reached = slip_time(run, 2.0 * tau / run.attrs["gamma"])
         out |= {f"slip_time_{name}": reached, f"slip_length_{name}": between_fronts(run, reached)}
@@ -51,17 +46,15 @@ def slip_time(run: AnyRun, slip: float) -> float:
 
 
 def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
-    """Transition under a stress boundary, pre-stress 0 on the right and negative on the left.
+    """Time and length at which the left front has covered a fraction of |x_minus|, without springs.
 
-    At T_trans the left front has covered ``fraction`` of |x_minus|, which converges with dx. The
-    arrest (the last release on the left), which the paper draws, does not: the continuum has none.
-    ``transition_state`` is "resolved", "stalled" where the lattice held the left front up on its
-    way, or "not reached".
+    They converge with dx. The arrest (the last release on the left), which the paper draws, does
+    not: the continuum has none. The lattice held up a front that is "stalled".
     """
     distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * distance, "left")
     times, distances = path(run, "left")
-    arrest = float(np.max(times)) if times.size else NAN
+    arrest, end = (float(np.max(times)), float(distances[-1])) if times.size else (NAN, NAN)
     waited = longest_wait / time
     state, right = "not reached", NAN
     if not np.isnan(time):
@@ -74,6 +67,6 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
         "transition_length": fraction * distance + right,
         "balance_distance": distance,
         "last_release_time": arrest,
-        "last_release_distance": float(distances[-1]) if distances.size else NAN,
+        "last_release_distance": end,
         "last_release_length": between_fronts(run, arrest),
     }

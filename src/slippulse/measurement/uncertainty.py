@@ -23,13 +23,7 @@ class GridStudy(NamedTuple):
 
 
 def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
-    """Observed order, extrapolation and uncertainty from three spacings.
-
-    They are dx, c_1 dx and c_2 dx, with factors 1 < c_1 < c_2. Where there is no order, the spread
-    of the three values is that of the lowest order.
-
-    Source: f(h) = f_0 + C h^p through the three values (Richardson).
-    """
+    """Richardson's f(h) = f_0 + C h^p through values at dx, c_1 dx, c_2 dx; 1 < c_1 < c_2."""
     finest, middle, coarsest = (float(value) for value in values)
     if not all(map(math.isfinite, (finest, middle, coarsest))):
         return GridStudy(finest, finest, np.nan, np.nan)
@@ -42,6 +36,7 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     low, high = ORDERS
     alike = spread <= 1e-14 * max(1.0, abs(finest))
     if alike or first * second <= 0.0 or mismatch(low) * mismatch(high) > 0.0:
+        # The spread is taken for that of the lowest order.
         return GridStudy(finest, finest, np.nan, spread / (factors[1] ** low - 1.0))
     order = float(root_between(mismatch, low, high))
     extrapolated = finest - first / (factors[0] ** order - 1.0)
@@ -50,22 +45,14 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
 
 def quantities(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
     """Columns of a measured table, as read from its file, that a grid study has: no ``keys``."""
-    return [
-        name
-        for name in table.columns
-        if name not in keys and table[name].dtype.kind == "f" and not name.startswith("paper_")
-    ]
+    numbers = table.drop(columns=[*keys], errors="ignore").select_dtypes("float").columns
+    return [name for name in numbers if not name.startswith("paper_")]
 
 
 def grid_tables(
     tables: Sequence[pd.DataFrame], factors: Sequence[float], keys: Sequence[str]
 ) -> pd.DataFrame:
-    """A grid study of every measured number of a sweep, as a long table.
-
-    tables : measured, at the finest, the middle and the coarsest spacing, rows in the same order
-    factors : of `grid_study`
-    keys : columns that name a point rather than measure it
-    """
+    """Grid study of each measured number, from tables at three spacings, the finest first."""
     finest = tables[0]
     names = quantities(finest, keys)
     # One row a point and quantity, one column a spacing.

@@ -35,10 +35,7 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
 
 
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
-    """Numbers of `measure_run`, the state of the leading pulse, and the paper's transition.
-
-    The paper's T_trans and L_trans (sections III B and III C) are in the row if measured ones are.
-    """
+    """Numbers of `measure_run`, the leading pulse's state, and the paper's T_trans and L_trans."""
     row, pulse = measure_run(run, settings)
     if pulse is not None:
         row["pulse_state"] = pulse_state(run, pulse)
@@ -53,24 +50,16 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 
 
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
-    """State of the leading pulse, which says if the numbers of a steady pulse apply to it.
+    """State of the leading pulse, by its flags in config/README.md; "none" without a known pulse.
 
-    steady : the width is that of the steady pulse at the measured speed, and the slip is uniform
-    unsteady : one of them is not so, or the pulse is slower than the waves
-    thick_front : the damped layer is not thin compared with the pulse
-    several : it is one of several on the right
-    stopped : the right front has stopped
-    none : no pulse, or a stress boundary
-
-    Source: width and layer of the steady pulse, beta v U''' + (v^2 - 1) U'' + gamma U = tau_0.
+    A steady one has the width of beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 and uniform slip.
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
     if np.isfinite(pulse.front) and pulse.pulses != 1:
         return "several" if pulse.pulses else "stopped"
-    if not np.isfinite([pulse.width, pulse.speed]).all():
-        return "none"
-    if law_of(run.attrs)["law"] != "coulomb":
+    coulomb = law_of(run.attrs)["law"] == "coulomb"
+    if not np.isfinite([pulse.width, pulse.speed]).all() or not coulomb:
         return "none"
     ahead = np.argmin(np.abs(np.asarray(run["x"]) - path(run)[1][-1]))
     tau = float(np.asarray(run["prestress"])[ahead])
@@ -90,21 +79,15 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
 
 
 def shape_deviation(run: AnyRun, pulse: LeadingPulse) -> float:
-    """Largest deviation of the right pulse's slip velocity from the paper's cosine, over its peak.
-
-    The peaks are aligned. Two blocks at each end of the cosine are left out, where the lattice
-    rounds its corner. NaN without such a pulse. Source: equations (9) and (C10) of the paper.
-    """
+    """Largest deviation of slip velocity from the paper's cosine, (9) and (C10), over its peak."""
     tau = run.attrs["right"]
-    if (
-        run.attrs["boundary"] != "displacement"
-        or not np.isfinite(pulse.width)
-        or not 0.0 < tau < 1.0
-    ):
+    held = run.attrs["boundary"] == "displacement"
+    if not held or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return float("nan")
     paper = paper_pulse(tau, run.attrs["gamma"])
     fields = comoving(run, pulse)
     distance = fields["xi"] - (pulse.peak_distance - pulse.front)
+    # The lattice rounds the corners of the cosine.
     inside = np.abs(distance) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
     if np.count_nonzero(inside) < 4:
         return float("nan")

@@ -11,7 +11,7 @@ from .numbers import level, ratio
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """Column exact_regime. The setting `still` is that of `final_regime`."""
+    """Column exact_regime."""
     return pd.DataFrame({"exact_regime": [_regime(scene, settings["still"]) for scene in scenes]})
 
 
@@ -24,26 +24,19 @@ def _regime(scene: Scene, still: float) -> str:
         forms = scene.boundary == "stress" and profile.left < 0.0 == profile.right
         ahead = all(position > 0.0 for position, _ in profile.steps)
         return regime_of_far_pulse(level(scene, "right")) if forms and ahead else UNDECIDED
-    return final_regime(
-        profile.left, profile.right, scene.gamma, ratio(scene), scene.release, still
-    )
+    physics = scene.gamma, ratio(scene), scene.release
+    return final_regime(profile.left, profile.right, *physics, still)
 
 
 def final_regime(
     left: float, right: float, gamma: float, damping_ratio: float, release: str, still: float
 ) -> str:
-    """Regime of `measurement.regime` in the continuum limit between two levels, or UNDECIDED.
-
-    left, right : levels of the pre-stress, below 1, with one nucleation point between them
-    gamma : elasticity ratio, or 0 for the stress boundary
-    damping_ratio, release : beta/dx and the release rule, which set the front speed
-    still : fraction of the largest velocity below which the nucleation point is at rest, as in
-        `classify`
+    """Regime in the continuum limit between two levels on both sides of a nucleation point.
 
     With leaf springs, a front into a negative level stops. A front into a positive level stays
     supersonic, the nucleation point sticks (`theory.trailing_edge`), and a pulse forgets its past
-    in a finite distance. Into a level 0 a pulse narrows like 1/t and decays. Nothing is said of a
-    level 0 without a negative one on the other side.
+    in a finite distance. Into a level 0 a pulse narrows like 1/t and decays. UNDECIDED: a level 0
+    without a negative one on the other side.
 
     Without leaf springs, du/dt at a point is half the integral of tau between the two points where
     its characteristics enter the rupture. With both levels >= 0 it never falls: a crack. With both
@@ -52,9 +45,6 @@ def final_regime(
     (`theory.arrest`): the point x = (p/n) e behind the other front, at e. For long times du/dt at
     the nucleation point, over its largest value, tends to r/(1 + 1/v + 2 r), where r = p/n and v is
     the front speed into p.
-
-    Source: sections 5 and 6 of the theory of this project (`theory.rupture`). The tests follow
-    that solution to these ends.
     """
     for name, side in (("left", left), ("right", right)):
         check_number(name, side, below=1.0)
@@ -81,10 +71,7 @@ def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float)
 
 
 def regime_of_far_pulse(level: float) -> str:
-    """Regime of a pulse that formed under a stress boundary and runs into a level.
-
-    The velocity on its characteristics grows by half the integral of tau.
-    """
+    """Regime of a pulse under a stress boundary; it grows by half the integral of tau."""
     if level == 0.0:
         return "pulse, one-way, steady"
     return "pulse, one-way, growing" if level > 0.0 else "pulse, one-way, decaying"

@@ -15,10 +15,7 @@ COARSE = 1e-3
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """Columns paper_front_speed_SIDE, exact_front_speed_SIDE and lattice_front_speed_SIDE.
-
-    The exact speed is that without leaf springs; the lattice speed is that with them, at dx.
-    """
+    """Columns KIND_front_speed_SIDE: paper, exact without leaf springs, lattice with them at dx."""
     table: dict[str, np.ndarray] = {}
     for side in SIDES:
         levels = np.array([level(scene, side) for scene in scenes])
@@ -27,9 +24,8 @@ def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
         paper[supersonic] = front_speed_undamped(levels[supersonic])
         table[f"paper_front_speed_{side}"] = paper
         table[f"exact_front_speed_{side}"] = exact_speeds(scenes, side)
-        table[f"lattice_front_speed_{side}"] = np.array(
-            [_lattice_speed(scene, side) for scene in scenes]
-        )
+        on_lattices = [_lattice_speed(scene, side) for scene in scenes]
+        table[f"lattice_front_speed_{side}"] = np.array(on_lattices)
     return pd.DataFrame(table)
 
 
@@ -43,18 +39,16 @@ def exact_speeds(scenes: list[Scene], side: str) -> np.ndarray:
         chosen = (levels > 0.0) & (levels < 1.0) & (releases == release)
         if chosen.any():
             # Equal pairs are computed once.
-            pairs, indices = np.unique(
-                [levels[chosen], ratios[chosen]], axis=1, return_inverse=True
-            )
+            both = [levels[chosen], ratios[chosen]]
+            pairs, indices = np.unique(both, axis=1, return_inverse=True)
             speeds[chosen] = front_speed(pairs[0], pairs[1], release)[indices.ravel()]
     return speeds
 
 
 def _lattice_speed(scene: Scene, side: str) -> float:
     stress, damping = level(scene, side), ratio(scene)
-    if scene.gamma == 0.0 or not 0.0 < stress < 1.0:
-        return NAN
-    if damping > 0.0 and scene.gamma * scene.dx**2 < COARSE:
+    fine = damping > 0.0 and scene.gamma * scene.dx**2 < COARSE
+    if scene.gamma == 0.0 or fine or not 0.0 < stress < 1.0:
         return NAN
     return _cached_speed(stress, scene.gamma, scene.dx, damping, scene.release)
 

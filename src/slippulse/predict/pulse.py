@@ -11,10 +11,7 @@ from .numbers import NAN, known, level
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """Columns paper_pulse_SIZE (no damping), exact_pulse_SIZE and exact_left_pulse_SIZE.
-
-    SIZE is width, slip, peak_velocity or acceleration, on the left slip or peak_velocity.
-    """
+    """Columns paper_pulse_NUMBER (no damping), exact_pulse_NUMBER and exact_left_pulse_NUMBER."""
     speeds = [exact_speeds(scenes, side) for side in ("left", "right")]
     return pd.DataFrame([_pulses(*row) for row in zip(scenes, *speeds, strict=True)])
 

@@ -14,26 +14,18 @@ from .numbers import NAN, known, level, or_nan, ratio
 
 
 def predictions(scenes: list[Scene], settings: dict) -> pd.DataFrame:
-    """Columns exact_transition_time and exact_transition_length, and those of one boundary.
-
-    Under a displacement boundary: exact_first_stick_time. Under a stress boundary:
-    exact_balance_distance, and exact_largest_velocity and exact_half_width of the far pulse.
-    The setting `share` is the fraction of |x_minus| that the left front has covered at T_trans
-    under a stress boundary. Except for the balance, theory needs a Gaussian of peak 1 without
-    steps and bumps.
-    """
+    """Columns exact_NUMBER of a transition and its first stick, or its balance and far pulse."""
     return pd.DataFrame([_row(scene, settings["share"]) for scene in scenes])
 
 
 def _row(scene: Scene, fraction: float) -> dict[str, float]:
     row = {"exact_transition_time": NAN, "exact_transition_length": NAN}
     profile = scene.prestress
+    # Except for the balance, theory needs one Gaussian.
     gaussian = not profile.steps and not profile.bumps and profile.peak == 1.0
     if scene.boundary == "displacement":
         if gaussian and profile.left == profile.right > 0.0:
-            row |= _first_stick(
-                profile.left, profile.width, scene.gamma, ratio(scene), scene.release
-            )
+            row |= _first_stick(profile, scene.gamma, ratio(scene), scene.release)
         return row
     if level(scene, "left") < 0.0 == level(scene, "right"):
         row["exact_balance_distance"] = -or_nan(partial(prestress_balance_position, profile))
@@ -45,18 +37,12 @@ def _row(scene: Scene, fraction: float) -> dict[str, float]:
 
 
 @cache
-def _first_stick(
-    level: float, width: float, gamma: float, ratio: float, release: str
-) -> dict[str, float]:
-    profile = Prestress(level, level, width)
+def _first_stick(profile: Prestress, gamma: float, ratio: float, release: str) -> dict[str, float]:
     exact = known(lambda: exact_transition_displacement(profile, gamma, ratio, release))
     if exact is None:
         return {}
-    return {
-        "exact_transition_time": exact.time,
-        "exact_first_stick_time": exact.time,
-        "exact_transition_length": exact.length,
-    }
+    times = dict.fromkeys(("exact_transition_time", "exact_first_stick_time"), exact.time)
+    return times | {"exact_transition_length": exact.length}
 
 
 @cache
@@ -75,16 +61,11 @@ def _arrest(left: float, ratio: float, release: str, fraction: float) -> dict[st
 
 
 def _half_width(crack: ArrestingCrack) -> float:
-    """Width of the far pulse at half of its peak.
-
-    du/dt is half the integral of tau from the entry point on (`ArrestingCrack`), so it has half of
-    its peak once on each side of the zero of tau.
-    """
-    end = crack.end
+    """Width of the far pulse at half of its peak, which is once on each side of the zero of tau."""
 
     def above_half(x: float) -> float:
-        return crack.prestress.integral(x, end) - crack.peak_velocity
+        return crack.prestress.integral(x, crack.end) - crack.peak_velocity
 
-    ahead = root_between(above_half, crack.zero, end, xtol=1e-12)
+    ahead = root_between(above_half, crack.zero, crack.end, xtol=1e-12)
     rear = root_between(above_half, crack.balance_position, crack.zero, xtol=1e-12)
     return float((ahead - float(crack.fronts.arrival(ahead))) - (rear - crack.time_at(rear)))
