@@ -30,6 +30,7 @@ WITHOUT_KERNELS = (
     "test_refused_commands",
     "test_refusals",
     "test_dependencies",
+    "test_plans",
 )
 FIRST = (*WITHOUT_KERNELS, "test_every_figure", "test_faults")
 # Folders of the compiled kernels that the workers share, and of a copy as `compile_all` left them.

@@ -1,12 +1,13 @@
 """Random scenes at a promised accuracy against the exact solution, and what they cost.
 
-python tests/benchmark/promises.py ACCURACY FIRST COUNT [MOST_STEPS] prints the rows of the table in
-config/README.md. Scenes from number 1000 on have a barrier of negative pre-stress on both sides.
+python tests/benchmark/promises.py FILE ACCURACY FIRST COUNT MOST_STEPS appends the scenes' rows to
+a CSV file; with the FILE alone it prints the table in config/README.md. Scenes from number 1000 on
+have a barrier of negative pre-stress on both sides.
 """
 
 import math
 import sys
-from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -19,7 +20,10 @@ from slippulse.model.stability import chosen_step
 from slippulse.predict.comparison import measured_row
 from slippulse.predict.one_run import SETTINGS
 
-FACTORS = (1.0, 2.0, 4.0, 8.0)
+# The first three are the grid study, the others look for the cheapest spacing that is enough.
+FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+KINDS = ["kept", "wrong", "missed", "missed_rightly", "unknown"]
+COLUMNS = ["accuracy", "scene", "family", "steps", *KINDS, "cost", "not_kept"]
 BARRIERS = 1000
 RATIOS = (0.0, 0.02, 0.05, 0.1, 0.3, 1.0)
 
@@ -99,14 +103,15 @@ def numbers(layer, duration, dx, ratio, **scheme):
 
 
 def judge(number, accuracy, most_steps):
-    """Family of a scene, and how many numbers of each kind it has; or None beyond ``most_steps``.
+    """Row of one scene: how many numbers of each kind it has; only its steps if those are too many.
 
     Its cost is that of its spacing over that of the largest one that keeps all covered numbers.
     """
     family, layer, ratio, duration = drawn(number)
     dx = sp.settings_for(accuracy, damping_ratio=ratio, **layer)["dx"]
+    found = {"accuracy": accuracy, "scene": number, "family": family, "steps": duration / dx}
     if duration / dx > most_steps:
-        return family, None
+        return found
     rows = []
     for spacing in (factor * dx for factor in FACTORS if factor * dx <= layer["prestress"].width):
         step = chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2, enough=1.0)
@@ -117,37 +122,57 @@ def judge(number, accuracy, most_steps):
     )
     fine = min(0.01, duration / 2000.0)
     truth = numbers(layer, duration, fine, ratio, scheme="continuum")
-    counts, keeping = Counter(scenes=1), np.ones(len(rows), dtype=bool)
+    found |= dict.fromkeys(KINDS, 0)
+    keeping = np.ones(len(rows), dtype=bool)
     for name, kept in study.loc[study["kept"] != "", ["quantity", "kept"]].itertuples(index=False):
         exact = truth.get(name, math.nan)
         errors = np.array([abs(row[name] / exact - 1.0) for row in rows])
+        right = errors[0] <= accuracy
         if not math.isfinite(exact):
-            counts["unknown"] += 1
+            kind = "unknown"
         elif kept == "true":
-            counts["kept" if errors[0] <= accuracy else "wrong"] += 1
+            kind = "kept" if right else "wrong"
             keeping &= errors <= accuracy
         else:
-            counts["missed"] += 1
-    updates = [row["block_updates"] for row in rows]
-    if counts["kept"] and not counts["missed"]:
+            kind = "missed" if right else "missed_rightly"
+        found[kind] += 1
+        if not right:
+            found["not_kept"] = f"{found.get('not_kept', '')} {name} {errors[0]:.1e}"
+    if found["kept"] and not found["missed"] + found["missed_rightly"]:
+        updates = [row["block_updates"] for row in rows]
         cheapest = int(np.argmin(np.append(keeping, False))) - 1
-        counts["cost"] = max(updates) / updates[cheapest]
-    return family, counts
+        found["cost"] = updates[0] / updates[cheapest]
+    return found
 
 
-def main(accuracy, first, count, most_steps):
-    """Print one row a family."""
-    results = [judge(number, accuracy, most_steps) for number in range(first, first + count)]
-    for family in sorted({family for family, _ in results}):
-        counts = [found for name, found in results if name == family]
-        done = [found for found in counts if found is not None]
-        costs = [found["cost"] for found in done if found["cost"]]
-        cost = f"{np.median(costs):.0f} ({min(costs):.0f} to {max(costs):.0f})" if costs else "-"
-        sums = [sum(one[name] for one in done) for name in ("kept", "wrong", "missed", "unknown")]
-        cells = [family, accuracy, len(done), len(counts) - len(done), *sums, cost]
+def run(path, accuracy, first, count, most_steps):
+    """Append the rows of scenes to a file, but for those that it has."""
+    done = pd.read_csv(path) if path.exists() else pd.DataFrame(columns=COLUMNS)
+    known = set(done.loc[done["accuracy"] == accuracy, "scene"])
+    for number in range(first, first + count):
+        if number not in known:
+            row = pd.DataFrame([judge(number, accuracy, most_steps)], columns=COLUMNS)
+            row.to_csv(path, mode="a", header=not path.exists(), index=False)
+
+
+def table(path):
+    """Print the table of config/README.md, the numbers not kept, and the scenes left out."""
+    rows = pd.read_csv(path).sort_values(["accuracy", "scene"])
+    for (accuracy, family), group in rows.groupby(["accuracy", "family"], sort=False):
+        done, cost = group.dropna(subset="kept"), group["cost"].dropna()
+        costs = f"{cost.median():.0f} ({cost.min():.0f} to {cost.max():.0f})" if len(cost) else "-"
+        sums = done[KINDS].sum().astype(int)
+        cells = [family, f"{accuracy:g}", len(done), len(group) - len(done), *sums, costs]
         print("|", " | ".join(map(str, cells)), "|")
+    for row in rows.dropna(subset="not_kept").itertuples():
+        print(f"not within {row.accuracy:g} in scene {row.scene}:{row.not_kept}")
+    for accuracy, group in rows[rows["kept"].isna()].groupby("accuracy"):
+        print(f"too long at {accuracy:g}:", *group["scene"])
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    main(float(given[0]), int(given[1]), int(given[2]), float(given[3]) if given[3:] else 3500.0)
+    file, given = Path(sys.argv[1]), sys.argv[2:]
+    if given:
+        run(file, float(given[0]), int(given[1]), int(given[2]), float(given[3]))
+    else:
+        table(file)

@@ -1,8 +1,7 @@
-"""The references of the benchmark do the same work, and its records are read as written."""
+"""The references of the benchmark do the same work, and its command writes what it measures."""
 
 import json
 import math
-import os
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ import tolerances as tol
 
 import slippulse as sp
 from tests.benchmark import __main__ as benchmark
-from tests.benchmark import critical_path, stencils
+from tests.benchmark import stencils
 
 GAMMA, BETA = 0.3, 0.2
 STEP = 0.4
@@ -75,24 +74,3 @@ def test_the_command_writes_ratios_and_the_machine(tmp_path, project, monkeypatc
     printed = capsys.readouterr().out
     for name in ("cost_of_twice_the_duration", "numba", "numpy"):
         assert f"\n  {name}: " in printed
-
-
-def test_the_critical_path_is_of_the_inputs_that_came_last(tmp_path):
-    # Each job has the seconds that it took, its end, and its inputs.
-    run = {
-        "a": (4.0, 4.0, []),
-        "b": (1.0, 1.0, []),
-        "c": (2.0, 6.5, ["a", "b"]),
-        "d": (1.0, 3.0, ["b"]),
-    }
-    for name, (seconds, ended, inputs) in run.items():
-        path = tmp_path / f"records/{name}.json"
-        path.parent.mkdir(exist_ok=True)
-        record = {"outputs": {name: ""}, "inputs": dict.fromkeys(inputs, "")}
-        record["used"] = {"seconds": seconds}
-        path.write_text(json.dumps(record), encoding="utf-8")
-        os.utime(path, (ended, ended))
-    jobs = critical_path.jobs_in(tmp_path)
-    path = critical_path.critical_path(jobs)
-    assert [(job.name, job.began) for job in path] == [("a", 0.0), ("c", 4.5)]
-    assert critical_path.at_once(jobs) == {0: 0.5, 1: 4.0, 2: 2.0}

@@ -8,6 +8,16 @@ from pipeline_copy import OVERLAY, copy_project, imitate_steps, planned, snakema
 
 # Targets that together make all files; scenes have some that are only made by name.
 TARGETS = ("everything", "scenes")
+# Rules that only name targets.
+NAMES = {"all", *TARGETS}
+
+
+@pytest.fixture(scope="session")
+def linked(project, tmp_path_factory) -> Path:
+    """A copy of the project's sources, with a space and an umlaut in its path, and an overlay."""
+    folder = copy_project(project, tmp_path_factory.mktemp("a copy für tests"), link=True)
+    (folder / "overlay.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
+    return folder
 
 
 @pytest.fixture(scope="session")

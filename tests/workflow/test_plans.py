@@ -1,0 +1,65 @@
+"""Jobs that Snakemake plans for the shipped targets, its graph and report, and its messages."""
+
+import re
+
+import pytest
+from pipeline_copy import BY_PROFILE, edges, planned, snakemake
+
+from slippulse.steps.reach import needs_of
+
+FIGURE = "fig07_damage_zone"
+
+
+@pytest.mark.slow
+def test_the_default_is_the_whole_paper_and_one_figure_needs_only_its_own_simulations(
+    linked, project
+):
+    jobs = planned(snakemake(linked, "--dry-run"))
+    pages = {"write_claims", "write_report", "write_provenance", "write_index", "draw_scene"}
+    figures = project / "src/slippulse/figures"
+    drawn = {path.stem for path in [*figures.glob("fig*.py"), *figures.glob("study_*.py")]}
+    studied = {f"study_of_{name}" for name in needs_of("studies")}
+    assert pages | drawn | studied <= set(jobs)
+    jobs = planned(snakemake(linked, "--dry-run", "--", "results/figures/fig04_space_time.png"))
+    once = dict.fromkeys(("compile_kernels", "fig04_space_time", "study_of_exact_space_time"), 1)
+    assert jobs == once | {"simulate": 2, "measure": 2}
+
+
+def test_a_draft_is_the_figures_and_what_an_overlay_adds(linked):
+    """Only `everything` makes all studies, the shipped scenes, the claims and the report."""
+    result = snakemake(linked, "--dry-run", overlay="overlay.yaml")
+    jobs = planned(result)
+    assert len([name for name in jobs if name.startswith("fig")]) == 11
+    assert jobs["draw_scene"] == jobs["study_grid"] == 1
+    drawn = {"damage_zone", "exact_space_time", "pulse_profiles", "regime_plane"}
+    made = {name for name in jobs if name.startswith(("study_of", "write_"))}
+    assert made == {f"study_of_{name}" for name in drawn}
+    assert "Measuring mine/2-of-2" in result.stdout and "Drawing scene one" in result.stdout
+
+
+@pytest.mark.slow
+def test_the_graph_in_the_readme_is_the_pipelines(linked, project):
+    targets = ("results/figures/fig05_scaling.png", "results/claims.json")
+    drawn = snakemake(linked, "--rulegraph", "mermaid-js", "--", *targets)
+    assert drawn.returncode == 0, drawn.stderr
+    readme = (project / "README.md").read_text(encoding="utf-8")
+    shown = readme.split("```mermaid\n")[1].split("```")[0]
+    assert edges(shown) == edges(drawn.stdout) and ("simulate", "measure") in edges(shown)
+
+
+@pytest.mark.slow
+def test_without_a_terminal_a_run_shows_one_short_line_a_job(linked):
+    result = snakemake(linked, "--force", "--", FIGURE, command=BY_PROFILE)
+    said = result.stdout + result.stderr
+    assert result.returncode == 0 and len(re.findall(rf"{FIGURE}: [0-9.]+ s", said)) == 1
+    assert "input:" not in said and len(said.splitlines()) < 40
+
+
+@pytest.mark.slow
+def test_the_report_of_snakemake_is_one_file_that_loads_nothing(linked):
+    assert snakemake(linked, "--", FIGURE).returncode == 0
+    result = snakemake(linked, "--report", "report.html", "--", f"results/figures/{FIGURE}.png")
+    assert result.returncode == 0, result.stderr
+    text = (linked / "report.html").read_text(encoding="utf-8")
+    assert '"Figures of the paper"' in text and FIGURE in text
+    assert not re.findall(r"<(?:script|link|img)[^>]+(?:src|href)=.https?://", text)
