@@ -135,7 +135,7 @@ def scene(number: int) -> Keys:
 
 
 class Answers:
-    """Release, stick and slip of a scene at positions and times of the first scene."""
+    """What a solution says of a scene at positions and times, in lengths of the first scene."""
 
     def __init__(self, keys: Keys, rupture: Rupture, x: np.ndarray, times: np.ndarray) -> None:
         size = abs(keys.x)
@@ -149,38 +149,48 @@ class Answers:
         self.first = min(first.time if first else np.inf, rupture.duration) / size
 
 
-def faults(keys: Keys, other: Keys, positions: int = 16) -> list[str]:
-    """Everything in which two solutions of a scene differ before either has a limit."""
-    first, second = keys.rupture(), other.rupture()
-    ends = [end.x for pair in first.front_ends for end in pair]
-    x = np.linspace(min(ends), max(ends), positions + 2)[1:-1]
-    times = keys.duration * np.array([0.35, 0.65, 0.95])
-    one, two = Answers(keys, first, x, times), Answers(other, second, x, times)
-    end = keys.duration
-    until = np.minimum(np.minimum(one.known, two.known), end) * (1.0 - AGREEMENT)
+class Compared:
+    """One solution of a scene, solved once, and what others say of the same points."""
+
+    def __init__(self, keys: Keys, positions: int = 16) -> None:
+        self.keys, rupture = keys, keys.rupture()
+        ends = [end.x for pair in rupture.front_ends for end in pair]
+        self.x = np.linspace(min(ends), max(ends), positions + 2)[1:-1]
+        self.times = keys.duration * np.array([0.35, 0.65, 0.95])
+        self.answers = Answers(keys, rupture, self.x, self.times)
+
+    def answers_of(self, other: Keys) -> Answers:
+        """The answers of another solution."""
+        return Answers(other, other.rupture(), self.x, self.times)
+
+    def faults(self, two: Answers) -> list[str]:
+        """Everything in which another solution differs before either has a limit."""
+        one, end = self.answers, self.keys.duration
+        until = np.minimum(np.minimum(one.known, two.known), end) * (1.0 - AGREEMENT)
+        out = []
+        for name in ("release", "stick"):
+            values = [np.minimum(getattr(answers, name), until) for answers in (one, two)]
+            worst = int(np.argmax(np.abs(values[0] - values[1])))
+            first, second = (float(value[worst]) for value in values)
+            if abs(first - second) > AGREEMENT * end:
+                out.append(f"{name} at {self.x[worst]:.6g}: {first:.9g}, {second:.9g}")
+        latest = min(one.limit, two.limit, end) * (1.0 - AGREEMENT)
+        if abs(min(one.first, latest) - min(two.first, latest)) > AGREEMENT * end:
+            out.append(f"first stick: {one.first:.9g}, {two.first:.9g}")
+        scale = max(1.0, np.nanmax(np.abs(one.slip), initial=0.0))
+        if np.nanmax(np.abs(one.slip - two.slip), initial=0.0) > AGREEMENT * scale:
+            out.append(f"slip: {np.nanmax(np.abs(one.slip - two.slip)):.3g}")
+        return out + [fault for answers in (one, two) for fault in impossible(answers, scale, end)]
+
+
+def impossible(answers: Answers, scale: float, end: float) -> list[str]:
+    """Everything that cannot be, whatever another solution says."""
     out = []
-    for name in ("release", "stick"):
-        difference = np.abs(
-            np.minimum(getattr(one, name), until) - np.minimum(getattr(two, name), until)
-        )
-        worst = int(np.argmax(difference))
-        if difference[worst] > AGREEMENT * end:
-            out.append(
-                f"{name} at {x[worst]:.6g}: "
-                f"{getattr(one, name)[worst]:.9g}, {getattr(two, name)[worst]:.9g}"
-            )
-    latest = min(one.limit, two.limit, end) * (1.0 - AGREEMENT)
-    if abs(min(one.first, latest) - min(two.first, latest)) > AGREEMENT * end:
-        out.append(f"first stick: {one.first:.9g}, {two.first:.9g}")
-    scale = max(1.0, np.nanmax(np.abs(one.slip), initial=0.0))
-    if np.nanmax(np.abs(one.slip - two.slip), initial=0.0) > AGREEMENT * scale:
-        out.append(f"slip: {np.nanmax(np.abs(one.slip - two.slip)):.3g}")
-    for answers in (one, two):
-        if np.nanmin(answers.slip, initial=0.0) < -AGREEMENT * scale:
-            out.append(f"slip below 0: {np.nanmin(answers.slip):.3g}")
-        if np.any(np.diff(answers.slip, axis=0) < -AGREEMENT * scale):
-            out.append("slip that falls")
-        known = np.where(answers.stick < answers.known, answers.stick, np.inf)
-        if min(answers.first, answers.limit) > np.min(known, initial=np.inf) + AGREEMENT * end:
-            out.append(f"first stick {answers.first:.9g} after {np.min(known):.9g}")
+    if np.nanmin(answers.slip, initial=0.0) < -AGREEMENT * scale:
+        out.append(f"slip below 0: {np.nanmin(answers.slip):.3g}")
+    if np.any(np.diff(answers.slip, axis=0) < -AGREEMENT * scale):
+        out.append("slip that falls")
+    known = np.where(answers.stick < answers.known, answers.stick, np.inf)
+    if min(answers.first, answers.limit) > np.min(known, initial=np.inf) + AGREEMENT * end:
+        out.append(f"first stick {answers.first:.9g} after {np.min(known):.9g}")
     return out

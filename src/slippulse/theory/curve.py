@@ -131,12 +131,6 @@ class Curve:
         """Columns of a field on panels in `ends` and `powers`."""
         return panel + len(self.panels) * FIELDS.index(name)
 
-    def mirrored(self) -> "Curve":
-        """The curve at -x."""
-        left = [-x for x in self.restarts_right]
-        right = [-x for x in self.restarts_left]
-        return Curve(seen_from(-1.0, self.panels), left, right)
-
     def evaluate(self, name: str, panel: np.ndarray, s: np.ndarray, order: int = 0) -> np.ndarray:
         """One of FIELDS at a parameter on panels, or its derivative by the parameter (order 1)."""
         return value_and_slope(self.powers.take(self.row(name, panel), axis=-1), s)[order]

@@ -41,13 +41,15 @@ class Stretch:
     # The longest chunk that a slow front tries next.
     longest: dict[float, float] = field(default_factory=lambda: dict.fromkeys(SIDES, WHOLE))
 
-    def curve(self) -> Curve:
-        """The panels as one curve."""
-        return Curve(self.panels, self.restarts[LEFT], self.restarts[RIGHT])
+    def curve(self, side: float = RIGHT) -> Curve:
+        """The panels as one curve, with a side turned to the right."""
+        left, right = ([side * x for x in self.restarts[each]] for each in (-side, side))
+        return Curve(seen_from(side, self.panels), left, right)
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels, and their end, of a front whose side is turned to the right."""
-        self.panels = seen_from(side, seen_from(side, self.panels) + panels)
+        new = seen_from(side, panels)
+        self.panels = self.panels + new if side > 0.0 else new + self.panels
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
@@ -132,8 +134,7 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Add one panel of a slow front; where its negative piece ends, a fast front follows."""
     piece = law.piece_right_of(side * stretch.ends[side].x)
     mark = min(piece.right, stretch.next_start[side])
-    curve = stretch.curve() if side > 0.0 else stretch.curve().mirrored()
-    front = SlowFront(curve, law.prestress, piece.level, law.gamma, law.alpha)
+    front = SlowFront(stretch.curve(side), law.prestress, piece.level, law.gamma, law.alpha)
     panel, stop, stretch.longest[side] = front.next_panel(mark, stretch.longest[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
