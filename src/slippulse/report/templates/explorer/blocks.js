@@ -38,7 +38,7 @@ function drawBlocks({ scene, map: found }, time) {
   const [low, high] = view.reach;
   const middle = 0.5 * (left + right) - (scene.gamma > 0 ? 8 : 0);
   // Strains are up to about the largest slip velocity, so that no block meets another.
-  const scale = 0.45 / view.largest;
+  const scale = 0.4 / view.largest;
   const count = Math.floor((bottom - top) / SPACING);
   const blocks = Array.from({ length: count }, (_, k) => {
     const x = low + (high - low) * (k + 0.5) / count;

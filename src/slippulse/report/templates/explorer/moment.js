@@ -17,7 +17,7 @@ function momentOf(scene) {
 // What is known of a point of the map, in words.
 function reading({ scene, rupture, known }, time, x) {
   const start = `t = ${format(time, 3)}, x = ${format(x, 3)}: `;
-  const stress = `Pre-stress ${format(prestressAt(scene, x), 3)}.`;
+  const stress = `Pre-stress ${format(Number(prestressAt(scene, x).toFixed(3)))}.`;
   if (!(time > rupture.arrival(x))) return `${start}not yet released. ${stress}`;
   if (!known(x, time)) return `${start}not known, see below the map.`;
   const { times, values, stick } = rupture.history(x, time);
