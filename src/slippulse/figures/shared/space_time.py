@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from ...data.numerals import setting
+from ...model.prestress import prestress_from
 from ..style import BLACK, DASHES, GREY, VELOCITY_MAP, Look, conditions
 from .selection import spaced_indices
 
@@ -86,13 +87,9 @@ def velocity_map(run: xr.Dataset) -> pd.DataFrame:
 
 def prestress_profile(run: xr.Dataset) -> pd.DataFrame:
     """Pre-stress over the positions that are drawn (role prestress)."""
-    lower, upper = limits(run)
-    x, tau = run["x"].values, run["prestress"].values
-    inside = np.flatnonzero((x >= lower) & (x <= upper))
-    kept = np.union1d(inside[spaced_indices(inside.size, FRONT_POINTS)], np.argmax(tau))
-    # The levels go on beyond the lattice, which ends where the fronts do.
-    x = np.concatenate([[lower], x[kept], [upper]])
-    tau = np.concatenate([[tau[kept[0]]], tau[kept], [tau[kept[-1]]]])
+    # The lattice ends where the fronts do, and the pre-stress does not.
+    x = np.union1d(np.linspace(*limits(run), FRONT_POINTS), 0.0)
+    tau = prestress_from(run.attrs)(x)
     return pd.DataFrame({"role": "prestress", "position": x, "value": tau})
 
 
