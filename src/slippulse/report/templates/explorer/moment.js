@@ -1,6 +1,8 @@
-// The time and position that are read off and drawn: set by sliders and by a click on the map, moved by play.
+// The time and position that are read off and drawn: sliders and a click on the map set them, and
+// play moves the time.
 
-// Seconds that play takes for the whole map, and that a picture stays where the reader wants little motion.
+// Seconds that play takes for the whole map, and that a picture stays for a reader who wants little
+// motion.
 const [WHOLE, STILL] = [8, 0.5];
 const LITTLE_MOTION = matchMedia("(prefers-reduced-motion: reduce)");
 // Fractions of the map: play begins anew from its end.
@@ -22,8 +24,9 @@ function reading({ scene, rupture, known }, time, x) {
   if (!known(x, time)) return `${start}not known, see below the map.`;
   const { times, values, stick } = rupture.history(x, time);
   const slip = format(sums(times, values).at(-1), 3);
-  return stick <= time ? `${start}stuck again since t = ${format(stick, 3)}, slip ${slip}. ${stress}`
-    : `${start}slides, slip velocity ${format(values.at(-1), 3)}, slip ${slip}. ${stress}`;
+  const state = stick <= time ? `stuck again since t = ${format(stick, 3)}`
+    : `slides, slip velocity ${format(values.at(-1), 3)}`;
+  return `${start}${state}, slip ${slip}. ${stress}`;
 }
 
 function drawMoment() {
@@ -32,8 +35,9 @@ function drawMoment() {
   const now = momentOf(shown.scene);
   const { time, x } = pointed || now;
   const { top, bottom } = picture.box;
-  picture.element.querySelector(".moment").innerHTML = `<path class="now" d="M${picture.x(now.time)} ${top}V${bottom}"/>`
-    + `<circle class="probe" cx="${picture.x(time)}" cy="${picture.y(x)}" r="6"/>`;
+  const line = `<path class="now" d="M${picture.x(now.time)} ${top}V${bottom}"/>`;
+  const probe = `<circle class="probe" cx="${picture.x(time)}" cy="${picture.y(x)}" r="6"/>`;
+  picture.element.querySelector(".moment").innerHTML = line + probe;
   drawBlocks(shown, now.time);
   const said = at("reading");
   // A reader of screens hears what was set, not what passes by.

@@ -11,14 +11,17 @@ function prestressAt({ left, right, width }, x) {
 function drawPrestress({ scene }) {
   const [low, high] = view.reach;
   const picture = new Picture(at("prestress"), {
-    x: [-1.1, 1.1], y: view.reach, xTicks: [-1, 0, 1], labels: ["pre-stress τ", "position x"], height: mapHeight(), top: 26, before: 50,
+    x: [-1.1, 1.1], y: view.reach, xTicks: [-1, 0, 1], labels: ["pre-stress τ", "position x"],
+    height: mapHeight(), top: 26, before: 50,
   });
   const positions = Array.from({ length: 201 }, (_, k) => low + (high - low) * k / 200);
   picture.curve([[0, low], [0, high]], "grey");
   picture.curve(positions.map((x) => [prestressAt(scene, x), x]), "exact");
-  for (const [name, x] of [["left", low], ["right", high]]) picture.dot(scene[name], 0.75 * x, "handle", 8);
+  picture.dot(scene.left, 0.75 * low, "handle", 8);
+  picture.dot(scene.right, 0.75 * high, "handle", 8);
   picture.write(0.5 * (picture.box.left + picture.box.right), 15, "◂ drag ▸", "middle");
-  picture.show(`Pre-stress, ${format(scene.left)} on the left and ${format(scene.right)} on the right, 1 at x = 0. The sliders of the pre-stress move it too.`);
+  const levels = `${format(scene.left)} on the left and ${format(scene.right)} on the right`;
+  picture.show(`Pre-stress, ${levels}, 1 at x = 0. The sliders of the pre-stress move it too.`);
 }
 
 // Let the pointer drag the level of the side on which it went down.
