@@ -15,7 +15,14 @@ from .rules import Known
 Tables = Mapping[str, pd.DataFrame]
 Texts = Mapping[str, Mapping]
 # A table for each lattice, the finest first, or one of exact solutions.
-Levels = Sequence[pd.DataFrame]
+Lattices = Sequence[pd.DataFrame]
+
+
+def value_of(table: pd.DataFrame, expression: str):
+    """An expression over columns (`pandas.DataFrame.eval`)."""
+    # Every column costs time, whether it is named or not.
+    named = table[[name for name in table if name in expression]]
+    return named.eval(expression, engine="python")
 
 
 def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
@@ -23,11 +30,7 @@ def evaluated(table: pd.DataFrame, expression: str) -> np.ndarray:
     if not expression:
         return np.ones(len(table), dtype=bool)
     # Most expressions are one column, and looking it up takes the least time.
-    if expression in table:
-        return table[expression].to_numpy()
-    # Every column costs time, whether it is named or not.
-    named = table[[name for name in table if name in expression]]
-    value = named.eval(expression, engine="python")
+    value = table[expression] if expression in table else value_of(table, expression)
     return np.broadcast_to(np.asarray(value), len(table))
 
 
@@ -38,55 +41,48 @@ def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
 
 def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     """The answer in each run of two lattices; None where they differ or have none."""
-    answers: list[bool | None] = []
-    for one, other in zip(first, second, strict=True):
-        answers.append(bool(one) if one is not None and one == other else None)
-    return answers
+    pairs = zip(first, second, strict=True)
+    return [bool(one) if one is not None and one == other else None for one, other in pairs]
 
 
-def studied(tables: Levels, values: Sequence[float]) -> Known:
-    """A number computed from each table, at the finest spacing, with its numerical uncertainty.
-
-    With one table, the exact solution, the uncertainty is 0.
-    """
-    if len(tables) == 1 or tables[0].empty:
-        return values[0], 0.0 if len(tables) == 1 else NAN
+def studied(tables: Lattices, values: Sequence[float]) -> Known:
+    """A number computed from each table, with its uncertainty, which is 0 of an exact solution."""
+    if len(tables) == 1:
+        return values[0], 0.0
+    if tables[0].empty:
+        return values[0], NAN
     factors = [float(table["factor"].dropna().iloc[0]) for table in tables[1:]]
     study = grid_study(values, factors)
     return study.value, study.uncertainty
 
 
 def slope(logs: np.ndarray) -> float:
-    """Slope of a straight line through two logarithms, [2, run]; NaN with fewer than three runs."""
+    """Slope of log measured over log predicted, [predicted and measured, run]; NaN below 3 runs."""
     x, y = logs[:, np.isfinite(logs).all(axis=0)]
     return straight_line(x, y)[0] if x.size > 2 else NAN
 
 
-def exponent(tables: Levels, measured: str, predicted: str, levels: Iterable[str]) -> Known:
-    """The exponent of measured over predicted, expressions over tables, with its uncertainty.
+def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Known:
+    """The exponent of one column over another, with its uncertainty.
 
-    The uncertainty is at least the change when the runs at one value of a level are left out.
+    That is at least the largest change when all runs with one value of ``columns`` are left out.
     """
-    logs = []
-    for table in tables:
-        numbers = [evaluated(table, expression) for expression in (predicted, measured)]
-        logs.append(np.log(np.array(numbers, float)))
+    logs = [np.log(table[[predicted, measured]].to_numpy(float).T) for table in tables]
     value, uncertainty = studied(tables, [slope(pair) for pair in logs])
-    changes = []
-    for name in levels:
+    for name in columns:
         column = tables[0][name].to_numpy()
-        for level in np.unique(column):
-            changes.append(abs(slope(logs[0][:, column != level]) - value))
-    return value, max(uncertainty, max(changes, default=0.0))
+        for left_out in np.unique(column):
+            change = abs(slope(logs[0][:, column != left_out]) - value)
+            uncertainty = max(uncertainty, change)
+    return value, uncertainty
 
 
 class Evidence:
     """All tables, with the texts of the claims and the readings of the published figure.
 
     There is a table for each simulation, with coarser/NAME and uncertainties/NAME of its grid
-    study, and one for each study. Runs are chosen, and conditions on them stated, by expressions
-    over columns (`pandas.DataFrame.eval`). ``steady`` is the change of the largest velocity below
-    which a pulse is steady.
+    study, and one for each study. Conditions on runs are expressions over columns. ``steady`` is
+    the change of the largest velocity below which a pulse is steady.
     """
 
     def __init__(
@@ -96,9 +92,9 @@ class Evidence:
         self.steady, self.readings = steady, readings or {}
         coarser = [path for path in tables if path.startswith("coarser/")]
         self.swept = [path.removeprefix("coarser/") for path in coarser]
-        self._lattices = {name: self._levels(name) for name in self.swept}
+        self._lattices = {name: self._three_lattices(name) for name in self.swept}
 
-    def _levels(self, simulation: str) -> list[pd.DataFrame]:
+    def _three_lattices(self, simulation: str) -> list[pd.DataFrame]:
         """The measured runs on three lattices, the finest first, without flagged runs."""
         finest, coarser = self.tables[simulation], self.tables[f"coarser/{simulation}"]
         study = self.tables[f"uncertainties/{simulation}"].set_index(["point", "quantity"])
@@ -106,32 +102,34 @@ class Evidence:
         study.columns = ["_".join(column) for column in study.columns]
         predicted = finest[finest.columns.difference(coarser.columns)]
         parts = [part.reset_index(drop=True) for _, part in coarser.groupby("factor")]
-        levels = [finest.join(study), *[part.join(predicted) for part in parts]]
+        tables = [finest.join(study), *[part.join(predicted) for part in parts]]
         # The numbers of runs that are flagged on the finest lattice are not those of the model.
         kept = finest["run_flags"].isna() | (finest["run_flags"] == "")
-        return [level[kept] for level in levels]
+        return tables if kept.all() else [table[kept] for table in tables]
 
     def assign(
         self, simulation: str, columns: Callable[[pd.DataFrame], Mapping[str, pd.Series]]
     ) -> None:
         """Add columns that are computed from the others on each lattice."""
-        levels = self._lattices[simulation]
-        self._lattices[simulation] = [level.assign(**columns(level)) for level in levels]
+        tables = self._lattices[simulation]
+        self._lattices[simulation] = [table.assign(**columns(table)) for table in tables]
 
     def lattices(self, *simulations: str, where: str = "") -> list[pd.DataFrame]:
-        """Runs on three lattices.
-
-        The finest has uncertainty_QUANTITY and extrapolated_QUANTITY too, at spacing 0.
-        """
-        parts = []
-        for name in simulations:
-            kept = evaluated(self._lattices[name][0], where)
-            parts.append([level[kept] for level in self._lattices[name]])
-        return [pd.concat(levels) for levels in zip(*parts, strict=True)]
+        """Runs on three lattices."""
+        return [self._chosen(simulations, where, lattice) for lattice in range(3)]
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
-        """Runs on the finest lattice, with extrapolated values and uncertainties."""
-        return self.lattices(*simulations, where=where)[0]
+        """Runs on the finest lattice, with extrapolated_QUANTITY and uncertainty_QUANTITY."""
+        return self._chosen(simulations, where, 0)
+
+    def _chosen(self, simulations: Sequence[str], where: str, lattice: int) -> pd.DataFrame:
+        """Runs on one lattice, of which a condition is true on the finest."""
+        parts = []
+        for name in simulations:
+            tables = self._lattices[name]
+            part = tables[lattice]
+            parts.append(part[evaluated(tables[0], where)] if where else part)
+        return pd.concat(parts) if len(parts) > 1 else parts[0]
 
     def tolerance(self, id: str) -> float:
         """Tolerance of a claim."""
@@ -146,7 +144,7 @@ class Evidence:
             uncertainty=evaluated(table, f"uncertainty_{quantity}").astype(float),
         )
 
-    def approximate(self, id: str, tables: Levels, measured: str, predicted: str) -> Approximate:
+    def approximate(self, id: str, tables: Lattices, measured: str, predicted: str) -> Approximate:
         """An estimate, from expressions over tables of lattices, or over one of exact solutions."""
         quotients = [ratios(table, measured, predicted) for table in tables]
         deviations = [(series - 1.0).abs() for series in quotients]
@@ -160,22 +158,21 @@ class Evidence:
         return replace(claim, median=median, ratio=ratio)
 
     def agreed(
-        self, simulation: str, where: str, holds: str, told: str = "", ends: Sequence[str] = ()
+        self, simulation: str, where: str, holds: str, decidable: str = "", ends: Sequence[str] = ()
     ) -> list[bool | None]:
-        """The answer in each run to whether something holds; None where it is undecided.
+        """Whether something holds, for each run; None where it is undecided.
 
-        The two finest lattices decide where they agree and the run is long enough (``told``).
-        Else the exact regime decides, by whether it is one of ``ends``, if any are given.
+        The two finest lattices decide where they agree and the run is ``decidable``. Else the
+        exact regime decides, by whether it is one of ``ends``, if any are given.
         """
         finest, middle, _ = self.lattices(simulation, where=where)
         answers = agreeing(evaluated(finest, holds), evaluated(middle, holds))
         regimes = finest["exact_regime"] if ends else [UNDECIDED] * len(finest)
         decided: list[bool | None] = []
-        for answer, seen, regime in zip(answers, evaluated(finest, told), regimes, strict=True):
-            if seen and answer is not None:
-                decided.append(answer)
-            else:
-                decided.append(None if regime == UNDECIDED else regime in ends)
+        tells = evaluated(finest, decidable)
+        for answer, told, regime in zip(answers, tells, regimes, strict=True):
+            by_theory = None if regime == UNDECIDED else regime in ends
+            decided.append(answer if told and answer is not None else by_theory)
         return decided
 
     def from_exact(self, simulation: str, quantity: str) -> Known | None:

@@ -8,7 +8,7 @@ import pandas as pd
 
 from ..data.prose import fill
 from . import layer, transition
-from .evidence import Evidence, evaluated
+from .evidence import Evidence, evaluated, value_of
 from .inference import inference
 
 
@@ -48,9 +48,7 @@ def numbers(
     rows = rows[evaluated(rows, where)]
     if rows.empty:
         raise NoRuns(table)
-    return {
-        name: float(rows.eval(expression, engine="python")) for name, expression in take.items()
-    }
+    return {name: float(value_of(rows, expression)) for name, expression in take.items()}
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
@@ -81,18 +79,18 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
 
 def never_arrives(evidence: Evidence) -> dict[str, float]:
     """Median ratio of the exact time at each fraction of the way to the predicted one."""
-    medians = transition.medians(evidence, transition.DURATION)
-    return {f"median_{100.0 * fraction:.0f}": ratio for fraction, ratio in medians.items()}
-
-
-def duration_factor(evidence: Evidence) -> dict[str, float]:
-    """The factor between the two criteria of the duration."""
-    return {"factor": float(np.pi / np.sqrt(2.0))}
+    out = {}
+    for choice, tables in transition.ours(transition.arrests(evidence)):
+        if choice["solution"] == "exact":
+            ratio = tables[0]["time"] / tables[0]["time_estimate"]
+            out[f"median_{100.0 * choice['fraction']:.0f}"] = float(ratio.median())
+    return out
 
 
 def backward_threshold(evidence: Evidence) -> dict[str, float]:
     """Runs in which blocks would slide back at the printed threshold, and the friction for none."""
-    runs = pd.concat([evidence.tables[name] for name in evidence.swept])
+    columns = ["min_stuck_stress", "friction_ratio_needed"]
+    runs = pd.concat([evidence.tables[name][columns] for name in evidence.swept])
     reverse = (runs["min_stuck_stress"] <= -1.0).sum()
     needed = float(runs["friction_ratio_needed"].max())
     return {"back": float(reverse), "runs": float(len(runs)), "needed": needed}
@@ -105,5 +103,6 @@ COMPUTED: dict[str, Callable[[Evidence], dict]] = {
     "front_never_arrives": never_arrives,
     "layer_in_plane": layer.layer_in_plane,
     "published_figure_made_with": best_fit,
-    "duration_criterion": duration_factor,
+    # Between the two criteria of the duration.
+    "duration_criterion": lambda _: {"factor": float(np.pi / np.sqrt(2.0))},
 }

@@ -10,7 +10,6 @@ from . import friction_laws, layer, pulses, space_time_figure, transition
 from .evidence import Evidence
 from .kinds import ByNumber, Claim
 from .reading import positions, why_text
-from .transition import DURATION, LENGTH
 
 # The simulations with measured numbers, grid studies and coarser tables behind the claims.
 SIMULATIONS = [
@@ -64,10 +63,10 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
     "zero_net_stress_change": pulses.zero_net_stress_change,
     "front_speed_moderate_gamma": pulses.front_speed_moderate_gamma,
     "front_arrest_position": transition.front_arrest_position,
-    "T_trans_displacement": partial(transition.held_displacement, estimate=DURATION),
-    "L_trans_displacement": partial(transition.held_displacement, estimate=LENGTH),
-    "T_trans_stress": partial(transition.held_stress, estimate=DURATION),
-    "L_trans_stress": partial(transition.held_stress, estimate=LENGTH),
+    "T_trans_displacement": partial(transition.held_displacement, quantity="time"),
+    "L_trans_displacement": partial(transition.held_displacement, quantity="length"),
+    "T_trans_stress": partial(transition.held_stress, quantity="time"),
+    "L_trans_stress": partial(transition.held_stress, quantity="length"),
     "transition_scaling_displacement": partial(transition.scaling, boundary="displacement"),
     "transition_scaling_stress": partial(transition.scaling, boundary="stress"),
     "stress_front_speeds_near_one": transition.stress_front_speeds_near_one,
