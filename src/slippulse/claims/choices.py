@@ -1,6 +1,6 @@
 """A claim at every combination of what the paper leaves open, and the choice that decides it."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import permutations
@@ -48,20 +48,16 @@ class Change(NamedTuple):
     size: float
 
     def weight(self) -> tuple[bool, float]:
-        """The order of changes: a lattice is a corner, the exact solution has every combination."""
+        """A sort key: changes of the exact solution are above those of lattices, then by size."""
         return self.before.choice.get("solution") == "exact", self.size
-
-    def decides(self) -> bool:
-        """The claim holds before the change and fails after it."""
-        return bool(self.before.result["holds"]) and self.after.result["holds"] is False
 
 
 def changes(combinations: Iterable[Combination]) -> list[Change]:
     """All ordered pairs of combinations with a deviation that differ in one choice alone."""
-    known = [one for one in combinations if one.result["deviation"] is not None]
+    measured = [one for one in combinations if one.result["deviation"] is not None]
     out = []
-    for before, after in permutations(known, 2):
-        names = list(before.choice | after.choice)
+    for before, after in permutations(measured, 2):
+        names = before.choice | after.choice
         changed = [name for name in names if before.choice.get(name) != after.choice.get(name)]
         if len(changed) == 1 and changed[0] in NAMES:
             size = abs(before.result["deviation"] - after.result["deviation"])
@@ -72,18 +68,18 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
     """Choices that decide, changed alone, whether a claim holds, each with its smallest change.
 
-    The choice that moves the deviation most comes first. Where no choice decides, it is the only
-    one, with None.
+    The choice that moves the deviation most comes first; it is alone, with None, if none decides.
     """
     largest: dict[str, tuple[bool, float]] = {}
-    smallest: dict[str, Change] = {}
-    for change in changes(combinations):
-        name, weight = change.name, change.weight()
-        largest[name] = max(largest.get(name, weight), weight)
-        if change.decides() and (name not in smallest or change.size < smallest[name].size):
-            smallest[name] = change
+    smallest: dict[str, Change | None] = {}
+    for change in sorted(changes(combinations), key=Change.weight):
+        largest[change.name] = change.weight()
+    for change in sorted(changes(combinations), key=lambda change: change.size):
+        if change.before.result["holds"] and change.after.result["holds"] is False:
+            smallest.setdefault(change.name, change)
     names = sorted(largest, key=largest.__getitem__)[::-1]
-    return {name: smallest[name] for name in names if name in smallest} or dict.fromkeys(names[:1])
+    deciding = {name: smallest[name] for name in names if name in smallest}
+    return deciding or dict.fromkeys(names[:1])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,48 +99,46 @@ class OverChoices(ByNumber):
     def fields(self) -> dict[str, Any]:
         """The numbers shown, a row for each combination, and the choice that moves most."""
         rows = [one.choice | one.result for one in self.combinations]
-        decided, held = decisive(self.combinations), sum(row["holds"] is True for row in rows)
-        verdict, why = self.verdict(), self.shown.why
-        if verdict == rules.DEPENDS:
+        decided = decisive(self.combinations)
+        out = {"verdict": self.verdict(), "why": self.shown.why, "choices": rows}
+        out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
+        out["holds_at"] = sum(row["holds"] is True for row in rows)
+        if out["verdict"] == rules.DEPENDS:
+            holding, failing = (
+                [row["deviation"] for row in rows if row["holds"] is side] for side in (True, False)
+            )
+            words = partial(number, digits=2) if isinstance(self.shown, Scaling) else percent
             causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
-            why += f" It holds at {held} of {len(rows)} combinations{self.reach(rows)}."
-            why = f"{why} It depends on {causes}.".strip()
-        elif verdict == rules.CAVEAT:
-            unsure = next(one for one in self.combinations if one.result["verdict"] == verdict)
-            places = [
-                f"{NAMES[name]} {named(unsure.choice[name])}"
-                for name in NAMES
-                if name in unsure.choice
+            why = (
+                f"{self.shown.why} It holds at {out['holds_at']} of {len(rows)} combinations, with "
+            )
+            why += (
+                f"deviations up to {words(max(holding))}, and fails with {words(min(failing))} or "
+            )
+            out["why"] = f"{why}more. It depends on {causes}.".strip()
+        elif out["verdict"] == rules.CAVEAT:
+            unsure = next(one for one in self.combinations if one.result["verdict"] == rules.CAVEAT)
+            settings = [
+                f"{NAMES[name]} {named(value)}"
+                for name, value in unsure.choice.items()
+                if name in NAMES
             ]
             why = unsure.claim.why or "it is within the tolerance, but not with its uncertainty"
-            why = f"With {' and '.join(places)}, {why}."
-        out = {"choices": rows, "choice": next(iter(decided), ""), "verdict": verdict, "why": why}
-        return self.shown.fields() | out | {"combinations": len(rows), "holds_at": held}
+            out["why"] = f"With {' and '.join(settings)}, {why}."
+        return self.shown.fields() | out
 
     def written(self) -> dict[str, Any]:
         return self.shown.written() | self.fields() | {"flips_at": self.flips()}
-
-    def size(self, deviation: float) -> str:
-        """A deviation in words."""
-        if isinstance(self.shown, Scaling):
-            return f"exponent off by {number(deviation, 2)}"
-        against = " of the runs against" if isinstance(self.shown, Qualitative) else ""
-        return f"{percent(deviation, 3)}{against}"
-
-    def reach(self, rows: Iterable[Mapping]) -> str:
-        """The largest deviation that holds, and the smallest that fails."""
-        holding, failing = (
-            [row["deviation"] for row in rows if row["holds"] is side] for side in (True, False)
-        )
-        least, most = min(failing), max(holding)
-        words = partial(number, digits=2) if isinstance(self.shown, Scaling) else percent
-        return f", with deviations up to {words(most)}, and fails with {words(least)} or more"
 
     def cause(self, name: str, change: Change | None) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""
         sides = []
         for one in (change.before, change.after) if change else ():
-            size = self.size(one.result["deviation"])
+            size = percent(one.result["deviation"], 3)
+            if isinstance(self.shown, Scaling):
+                size = f"exponent off by {number(one.result['deviation'], 2)}"
+            elif isinstance(self.shown, Qualitative):
+                size += " of the runs against"
             if name != "fraction" and one.choice.get("fraction") == LAST:
                 size += ", at the last release"
             verb = "holds" if one.result["holds"] else "fails"

@@ -59,12 +59,6 @@ def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
     return fits | {"best": order[0], "difference": order[-1]["chi2"] - order[0]["chi2"]}
 
 
-def right_panel(table: pd.DataFrame) -> dict[str, Any]:
-    """chi2, dof and p_value of the right panel's largest velocity, by the run that fits worst."""
-    chi2 = float((table.loc[table["part"] == "stress", "pull"] ** 2).max())
-    return {"chi2": chi2, "dof": 1, "p_value": float(chdtrc(1, chi2))}
-
-
 def _regions(line: pd.DataFrame, level: float) -> dict[str, tuple[float, float]]:
     """Confidence region of each parameter, the others at their best fit; NaN for an open end."""
     room = likely(level) - (line["chi2"] - line["chi2"].min())

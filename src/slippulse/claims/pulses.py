@@ -1,6 +1,6 @@
 """Claims about pulses on lattices: equations, uniqueness and stability."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain, combinations
 from typing import NamedTuple
@@ -10,10 +10,10 @@ import pandas as pd
 
 from ..data.numerals import number, setting
 from ..measurement.regime import REGIMES
-from .evidence import Evidence, agreeing
+from .evidence import Evidence, agreeing, value_of
 from .kinds import Approximate, Exact, Qualitative
 
-TWO_WAY, STEADY = "pulses, two-way", "pulse, one-way, steady"
+TWO_WAY, STEADY_PULSE = "pulses, two-way", "pulse, one-way, steady"
 CHANGE, HALF_WIDTH = "largest_velocity_change", "pulse_half_width"
 # A lattice tells the change of a pulse if it is above its uncertainty.
 CHANGED = f"abs({CHANGE}) > uncertainty_{CHANGE}"
@@ -22,7 +22,7 @@ ALONE = {"steady_displacement": UNDAMPED}
 # The state of a block at either end of a pulse is judged where blocks are narrow.
 NARROW = {"undamped_pulses": ""}
 # Without leaf springs, and at the smallest gamma with them.
-AT_ZERO = {"front_speed_undamped": "", "speed_against_gamma": "gamma == gamma.min()"}
+GAMMA_TO_ZERO = {"front_speed_undamped": "", "speed_against_gamma": "gamma == gamma.min()"}
 # Pulses that meet another pre-stress, and come back from it or not; and those that began in each.
 PERTURBED = ("pulses_across_a_step", "pulses_across_wide_steps", "pulses_perturbed_elsewhere")
 UNPERTURBED = ("any_prestress", "steady_displacement", "steady_elsewhere")
@@ -31,22 +31,14 @@ DISPLACEMENT = ["regimes_displacement"]
 STRESS = ["regimes_stress"]
 BEYOND = ["regimes_beyond"]
 ONE_WAY = [regime for regime in REGIMES if regime.startswith("pulse, one-way")]
-NO_PULSE = [
-    regime for regime in REGIMES if regime not in (TWO_WAY, STEADY, "pulse, one-way, growing")
-]
+LASTING = (TWO_WAY, STEADY_PULSE, "pulse, one-way, growing")
+NO_LASTING_PULSE = [regime for regime in REGIMES if regime not in LASTING]
 
 KEEPS_SLIP = f"slip_variation < {{tolerance}} and regime == {TWO_WAY!r}"
 STEADY_AT_ZERO = f"(beyond == 0 and abs({CHANGE}) <= {{steady}}) or (beyond != 0 and changed != 0)"
-AS_LEVEL = "changed * beyond > 0 and widened * beyond > 0"
-SMALLEST = {"smallest level": "abs(beyond).where(beyond != 0).min()"}
-# Under held stress a run tells if it lasts 2.6 |x_minus|, as the collapses of figure 5.
-COLLAPSED = "duration >= 2.6 * exact_balance_distance"
-# Runs that are counted by regime beside those that are judged.
-RIGHT_AT_ZERO = {r"at $\tau_{0,r}=0$, without a verdict": "right == 0"}
-RIGHT_ABOVE_ZERO = {r"at $\tau_{0,r}>0$, without a verdict": "left < 0 < right"}
 
 
-class Equation(NamedTuple):
+class PulseEquation(NamedTuple):
     """A measured quantity, the paper's expression for it, and conditions on runs by simulation."""
 
     quantity: str
@@ -55,57 +47,76 @@ class Equation(NamedTuple):
 
 
 EQUATIONS = {
-    "front_speed": Equation("front_speed_right", "paper_front_speed_right", AT_ZERO),
-    "pulse_profile": Equation("pulse_shape_deviation", "0", ALONE),
-    "pulse_peak_velocity": Equation("pulse_peak_velocity", "paper_pulse_peak_velocity", ALONE),
-    "pulse_slip": Equation("pulse_slip", "paper_pulse_slip", ALONE),
-    "pulse_width": Equation("pulse_width", "paper_pulse_width", NARROW),
-    "pulse_acceleration": Equation("pulse_acceleration", "paper_pulse_acceleration", NARROW),
-    "stress_drop": Equation("pulse_stress_drop", "2 * left", ALONE),
+    "front_speed": PulseEquation("front_speed_right", "paper_front_speed_right", GAMMA_TO_ZERO),
+    "pulse_profile": PulseEquation("pulse_shape_deviation", "0", ALONE),
+    "pulse_peak_velocity": PulseEquation("pulse_peak_velocity", "paper_pulse_peak_velocity", ALONE),
+    "pulse_slip": PulseEquation("pulse_slip", "paper_pulse_slip", ALONE),
+    "pulse_width": PulseEquation("pulse_width", "paper_pulse_width", NARROW),
+    "pulse_acceleration": PulseEquation("pulse_acceleration", "paper_pulse_acceleration", NARROW),
+    "stress_drop": PulseEquation("pulse_stress_drop", "2 * left", ALONE),
 }
 
 
 class Always(NamedTuple):
-    """A condition that must hold on a lattice in runs of some sweeps.
+    """A condition that must hold in each run of some sweeps: an expression, or a regime at the end.
 
-    It is an expression, or one of some regimes at the end. With regimes the exact solution decides
-    runs that are too short for a lattice to tell (``told``), and those on which lattices disagree.
-    Besides the runs judged others are ``counted`` by regime; ``numbers`` are of the first sweep.
+    Where the two finest lattices disagree, or ``decidable`` is false, the exact regime decides if
+    ``ends`` are given, else nobody. ``counted`` has further runs to count by regime; ``numbers``
+    are of the first sweep.
     """
 
     sweeps: Sequence[str]
     where: str
     holds: str = ""
-    told: str = ""
-    counted: Mapping[str, str] | None = None
+    decidable: str = ""
     ends: Sequence[str] = ()
+    count_regimes: bool = False
+    counted: Mapping[str, str] = {}
     numbers: Mapping[str, str] = {}
 
 
 ALWAYS = {
     # A run tells of the transition if it lasts 1.5 of the paper's T_trans.
     "symmetric_displacement_pulses": Always(
-        DISPLACEMENT, "left > 0", told="duration > 1.5 * paper_transition_time", ends=[TWO_WAY]
+        DISPLACEMENT, "left > 0", decidable="duration > 1.5 * paper_transition_time", ends=[TWO_WAY]
     ),
     "one_way_pulse_displacement": Always(
-        ["regimes_displacement_asymmetric"], "right > 0", ends=ONE_WAY, counted=RIGHT_AT_ZERO
+        ["regimes_displacement_asymmetric"],
+        "right > 0",
+        ends=ONE_WAY,
+        count_regimes=True,
+        counted={r"at $\tau_{0,r}=0$, without a verdict": "right == 0"},
     ),
     "symmetric_stress_cracks": Always(STRESS, "left == right > 0", ends=["crack-like, two-way"]),
+    # Under held stress a run tells if it lasts 2.6 |x_minus|, as the collapses of figure 5.
     "one_way_pulse_stress": Always(
-        STRESS, "left < 0 and right == 0", "", COLLAPSED, RIGHT_ABOVE_ZERO, ends=[STEADY]
+        STRESS,
+        "left < 0 and right == 0",
+        decidable="duration >= 2.6 * exact_balance_distance",
+        ends=[STEADY_PULSE],
+        count_regimes=True,
+        counted={r"at $\tau_{0,r}>0$, without a verdict": "left < 0 < right"},
     ),
-    "stress_pulse_needs_barrier": Always(STRESS, "(left < 0) == (right < 0)", ends=NO_PULSE),
+    "stress_pulse_needs_barrier": Always(
+        STRESS, "(left < 0) == (right < 0)", ends=NO_LASTING_PULSE
+    ),
     "steady_for_any_prestress": Always(
         ["any_prestress", "steady_elsewhere"], "0 < left < 1", KEEPS_SLIP
     ),
     # Pulses that formed at level 0 meet another, `beyond` (see `meet`).
-    "grows_above_zero": Always(BEYOND, "beyond > 0", "changed == 1 and widened == 1", CHANGED, {}),
+    "grows_above_zero": Always(
+        BEYOND, "beyond > 0", "changed == 1 and widened == 1", CHANGED, count_regimes=True
+    ),
     "decays_below_zero": Always(
-        BEYOND, "beyond < 0", "changed == -1 and widened == -1", CHANGED, {}
+        BEYOND, "beyond < 0", "changed == -1 and widened == -1", CHANGED, count_regimes=True
     ),
     # A small perturbation is within 0.03, in units of the friction drop.
     "small_perturbation_changes_pulse": Always(
-        BEYOND, "0 < abs(beyond) <= 0.03", AS_LEVEL, CHANGED, numbers=SMALLEST
+        BEYOND,
+        "0 < abs(beyond) <= 0.03",
+        "changed * beyond > 0 and widened * beyond > 0",
+        CHANGED,
+        numbers={"smallest level": "abs(beyond).where(beyond != 0).min()"},
     ),
     "steady_only_at_zero": Always(BEYOND, "", STEADY_AT_ZERO),
 }
@@ -123,10 +134,12 @@ def always(evidence: Evidence, id: str) -> Qualitative:
     row = ALWAYS[id]
     holds = row.holds.format(tolerance=evidence.tolerance(id), steady=evidence.steady)
     holds = holds or f"regime in {[*row.ends]}"
-    decided = [evidence.agreed(sweep, row.where, holds, row.told, row.ends) for sweep in row.sweeps]
+    decided = [
+        evidence.agreed(sweep, row.where, holds, row.decidable, row.ends) for sweep in row.sweeps
+    ]
     table = evidence.tables[row.sweeps[0]]
-    further = {words: float(table.eval(value)) for words, value in row.numbers.items()}
-    counted = {} if row.counted is None else {"at the end": row.where, **row.counted}
+    further = {words: float(value_of(table, number)) for words, number in row.numbers.items()}
+    counted = {"at the end": row.where, **row.counted} if row.count_regimes else {}
     for words, where in counted.items():
         ends = evidence.finest(*row.sweeps, where=where)["regime"].value_counts()
         further |= {f"{words}: {regime}": float(count) for regime, count in ends.items()}
@@ -179,38 +192,33 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
 # With the displacement held
 
 
+def within(
+    deviation: np.ndarray, uncertainty: np.ndarray, allowed: float, sure: bool = False
+) -> bool | None:
+    """Whether all deviations are allowed, if ``sure`` with their uncertainties; None where open."""
+    if np.any(deviation - uncertainty > allowed):
+        return False
+    return True if np.all(deviation + sure * uncertainty <= allowed) else None
+
+
+def pairs(table: pd.DataFrame, sizes: list[str]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Relative differences of sizes between each two runs, with their uncertainties."""
+    values = table[sizes].to_numpy()
+    uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy()
+    for first, second in combinations(range(len(table)), 2):
+        uncertainty = uncertainties[first] + uncertainties[second]
+        deviation = np.abs(values[first] / values[second] - 1.0)
+        yield deviation, uncertainty / np.abs(values[second])
+
+
 def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
     """Pulses of one pre-stress from different beginnings are the same pulse."""
     table = evidence.finest("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)
-    sizes = ["pulse_peak_velocity", "pulse_width", "pulse_slip"]
+    sizes, allowed = ["pulse_peak_velocity", "pulse_width", "pulse_slip"], evidence.tolerance(id)
     decided: list[bool | None] = []
     for _, rows in table.groupby(["beyond", "gamma", "damping_ratio"]):
-        for different in differing(rows, sizes, evidence.tolerance(id), sure=False):
-            decided.append(None if different is None else not different)
+        decided += [within(*pair, allowed) for pair in pairs(rows, sizes)]
     return Qualitative.counted(decided)
-
-
-def differing(
-    table: pd.DataFrame, sizes: list[str], allowed: float, sure: bool
-) -> list[bool | None]:
-    """The answer for each pair of runs to whether a size differs by more than a tolerance.
-
-    It is None where the uncertainty leaves it open; with ``sure`` sizes are equal only if they are
-    within the tolerance together with their uncertainties.
-    """
-    values = table[sizes].to_numpy()
-    uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy()
-    out: list[bool | None] = []
-    for first, second in combinations(range(len(table)), 2):
-        deviation = np.abs(values[first] / values[second] - 1.0)
-        uncertainty = uncertainties[first] + uncertainties[second]
-        uncertainty = uncertainty / np.abs(values[second])
-        largest = deviation + uncertainty if sure else deviation
-        if np.any(deviation - uncertainty > allowed):
-            out.append(True)
-        else:
-            out.append(False if np.all(largest <= allowed) else None)
-    return out
 
 
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
@@ -257,8 +265,11 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     table = evidence.finest("stress_pulses", where="damping_ratio > 0")
     # The smallest damping is that of the figures; without any, the lattice rings.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]
-    sizes = ["pulse_peak_velocity", HALF_WIDTH]
-    return Qualitative.counted(differing(table, sizes, evidence.tolerance(id), sure=True))
+    allowed, decided = evidence.tolerance(id), []
+    for deviation, uncertainty in pairs(table, ["pulse_peak_velocity", HALF_WIDTH]):
+        alike = within(deviation, uncertainty, allowed, sure=True)
+        decided.append(None if alike is None else not alike)
+    return Qualitative.counted(decided)
 
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
@@ -268,9 +279,9 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
     exact = table[["exact_largest_velocity", "exact_half_width"]].to_numpy()
     deviation = (table[["pulse_peak_velocity", HALF_WIDTH]] / exact - 1.0).abs()
     uncertainty = table[[f"uncertainty_{name}" for name in deviation]].to_numpy() / exact
-    within = (deviation <= allowed).all(axis=1)
-    beyond_doubt = (deviation - uncertainty > allowed).any(axis=1)
+    rows = zip(deviation.to_numpy(), uncertainty, strict=True)
+    decided = [within(*row, allowed) for row in rows]
     peak, half_width = deviation.max()
     words = "on the lattice, with damping, off by at most"
     further = {f"peak {words}": float(peak), f"half-width {words}": float(half_width)}
-    return Qualitative.counted(agreeing(within, ~beyond_doubt), further=further)
+    return Qualitative.counted(decided, further=further)
