@@ -100,7 +100,8 @@ class OverChoices(ByNumber):
         """The numbers shown, a row for each combination, and the choice that moves most."""
         rows = [one.choice | one.result for one in self.combinations]
         decided = decisive(self.combinations)
-        out = {"verdict": self.verdict(), "why": self.shown.why, "choices": rows}
+        out: dict[str, Any] = {"verdict": self.verdict(), "choices": rows}
+        out["why"] = self.shown.why
         out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
         out["holds_at"] = sum(row["holds"] is True for row in rows)
         if out["verdict"] == rules.DEPENDS:
@@ -149,13 +150,10 @@ class OverChoices(ByNumber):
 def over_choices(
     combinations: Sequence[Combination], shown: Claim | None = None, **fields: Any
 ) -> OverChoices:
-    """One claim from all combinations, with the numbers of the first one, or of ``shown``.
-
-    Some of its ``fields`` may be replaced.
-    """
+    """One claim from all combinations, with the numbers of the first or of ``shown``."""
     shown = replace(shown or combinations[0].claim, **fields)
     # A claim by numbers of runs has no number that a tolerance is for.
-    tolerance = shown.tolerance if isinstance(shown, ByNumber) else 0.0
+    tolerance = getattr(shown, "tolerance", 0.0)
     return OverChoices(combinations=combinations, shown=shown, tolerance=tolerance)
 
 

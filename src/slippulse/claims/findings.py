@@ -19,10 +19,7 @@ class NoRuns(Exception):
 def findings(
     evidence: Evidence, damping_ratio: float, entries: Mapping[str, Mapping]
 ) -> list[dict]:
-    """Each finding with its id, its numbers by name, its text and the tables it is from.
-
-    There are no numbers where an altered configuration left no runs.
-    """
+    """Each finding with its id, its numbers by name, if there are runs, its text and its tables."""
     out = []
     for id, entry in entries.items():
         rows = entry.get("numbers", [])
@@ -83,7 +80,8 @@ def never_arrives(evidence: Evidence) -> dict[str, float]:
     for choice, tables in transition.ours(transition.arrests(evidence)):
         if choice["solution"] == "exact":
             ratio = tables[0]["time"] / tables[0]["time_estimate"]
-            out[f"median_{100.0 * choice['fraction']:.0f}"] = float(ratio.median())
+            percentage = 100.0 * float(choice["fraction"])
+            out[f"median_{percentage:.0f}"] = float(ratio.median())
     return out
 
 

@@ -15,10 +15,7 @@ STRONGEST = (-0.9, 0.9)
 
 
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
-    """There are pulses both ways with leaf springs, and a pulse one way without.
-
-    A case is shown by any run. The caveat is on the width, which is in blocks.
-    """
+    """Some run has pulses both ways with leaf springs, and some a pulse one way without."""
     # The tables have runs that are flagged since they died out, too.
     chain, spike = (evidence.tables[f"burridge_knopoff_{name}"] for name in ("chain", "stress"))
     two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
@@ -41,11 +38,7 @@ def lattices_with_rate(evidence: Evidence) -> pd.DataFrame:
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
-    """A rupture is a pulse under each other law, sticking or creeping.
-
-    Runs in which blocks would slide back do not count, for they leave the model, nor those without
-    a rupture.
-    """
+    """A rupture is a pulse under each other law, unless blocks would slide back."""
     linear = lattices_with_rate(evidence).query("over_critical != 0")
     bounded = evidence.tables["friction_laws"].query("role == 'plane'")
     runs = pd.concat([linear, bounded[bounded["regime"] != "no rupture"]], ignore_index=True)

@@ -82,12 +82,10 @@ class Qualitative(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class ByNumber(Claim):
-    """A claim that compares a number with a tolerance.
-
-    ``besides`` is the verdict, at a tolerance, on what must hold besides.
-    """
+    """A claim that compares a number with a tolerance."""
 
     tolerance: float
+    # The verdict, at a tolerance, on what must hold besides.
     besides: Callable[[float], str] | None = None
 
     @abstractmethod
@@ -108,14 +106,12 @@ class ByNumber(Claim):
 
 @dataclass(frozen=True, kw_only=True)
 class Exact(ByNumber):
-    """An equation, by the values of its runs at spacing 0; arrays are [run], NaN without a value.
-
-    ``counts`` has the numbers of runs of what must hold besides.
-    """
+    """An equation, by values of its runs at spacing 0: arrays [run], NaN without a value."""
 
     predicted: np.ndarray
     measured: np.ndarray
     uncertainty: np.ndarray
+    # Numbers of runs of what must hold besides.
     counts: Mapping[str, int] = field(default_factory=dict)
 
     def relative(self) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ from typing import Any
 from . import friction_laws, layer, pulses, space_time_figure, transition
 from .evidence import Evidence
 from .kinds import ByNumber, Claim
-from .reading import positions, why_text
+from .reading import places_of, why_text
 
 # The simulations with measured numbers, grid studies and coarser tables behind the claims.
 SIMULATIONS = [
@@ -107,7 +107,7 @@ def all_claims(evidence: Evidence, sentences: Sequence[Mapping]) -> list[dict]:
             f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code"
         )
     evidence.assign("regimes_beyond", pulses.meet)
-    where = positions(evidence.entries, sentences)
+    where = places_of(evidence.entries, sentences)
     return [
         written(id, CLAIMS[id](evidence, id), entry, where[id])
         for id, entry in evidence.entries.items()

@@ -29,10 +29,7 @@ def read_text(path: str | Path):
 
 
 def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[str, dict]:
-    """Claims, checks and findings, with tolerances of the configuration.
-
-    A ValueError names an unknown claim.
-    """
+    """Claims, checks and findings, with tolerances of the configuration; or ValueError."""
     texts = read_text(path)
     claims = texts["claims"]
     for id, other in tolerances.items():
@@ -62,15 +59,13 @@ def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
     return {"all": len(sentences), **{key: counts[key] for key in ("tested", "repeats", *WHY_NONE)}}
 
 
-def positions(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
-    """Sections, appendices and figures with the sentences that each claim tests."""
-    place = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
-    out = {}
-    for name, entry in entries.items():
-        # In the order of the sentences in the paper.
-        places = [place[id] for id in place if id in entry["sentences"]]
-        out[name] = "; ".join(dict.fromkeys(places))
-    return out
+def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
+    """Sections, appendices and figures of the sentences that each claim tests, in their order."""
+    where = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
+    return {
+        name: "; ".join(dict.fromkeys(where[id] for id in where if id in entry["sentences"]))
+        for name, entry in entries.items()
+    }
 
 
 class Ledger:
@@ -206,11 +201,15 @@ def uncertainty_text(claim: SimpleNamespace) -> str:
 
 def evidence_text(claim: SimpleNamespace) -> str:
     """The evidence for the verdict besides the numbers shown, as Markdown."""
-    parts = [claim.note]
+    parts, estimate = [claim.note], claim.kind == "approximate"
     if claim.kind in ("exact", "approximate", "scaling"):
-        parts += spread_texts(claim)
+        parts.append(f"{claim.runs} runs" if claim.runs else "")
+        if estimate and claim.largest is not None:
+            parts.append(f"90 % of them within {percent(claim.ninety)}")
+            parts.append(f"the largest deviation {percent(claim.largest)}")
+        parts.append(f"left out, without numbers: {claim.left_out}" if claim.left_out else "")
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
-    if claim.kind == "approximate" and claim.exact_largest is not None:
+    if estimate and claim.exact_largest is not None:
         median, largest = percent(claim.exact_median), percent(claim.exact_largest)
         parts.append(f"runs off the exact theory by {median} (median) to {largest}")
     for flip in claim.flips_at:
@@ -226,14 +225,3 @@ def evidence_text(claim: SimpleNamespace) -> str:
     if claim.beyond:
         parts.append("beyond the paper, and not counted")
     return "; ".join(filter(None, parts))
-
-
-def spread_texts(claim: SimpleNamespace) -> list[str]:
-    """The runs behind a number: how many, their spread, and how many are left out."""
-    parts = [f"{claim.runs} runs"] if claim.runs else []
-    if claim.kind == "approximate" and claim.largest is not None:
-        ninety, largest = percent(claim.ninety), percent(claim.largest)
-        parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
-    if claim.left_out:
-        parts.append(f"left out, without numbers: {claim.left_out}")
-    return parts

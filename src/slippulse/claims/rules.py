@@ -66,10 +66,7 @@ def over_choices(verdicts: Sequence[str]) -> str:
 
 
 def flips(verdict_at: Callable[[float], str], tolerance: float) -> list[dict]:
-    """Tolerances at which the verdict changes, with the verdicts below and above.
-
-    The search covers a tenth to ten times the tolerance of the claim.
-    """
+    """Tolerances, from a tenth to ten times, at which the verdict changes, and both verdicts."""
     if not tolerance:
         return []
     factors = np.geomspace(0.1, 10.0, SCANNED)
@@ -89,10 +86,7 @@ def flips(verdict_at: Callable[[float], str], tolerance: float) -> list[dict]:
 
 
 def qualitative(held: int, failed: int, undecided: int, condition: bool = False) -> str:
-    """Verdict on an always, never or every.
-
-    ``condition`` is true if the claim needs a condition that the paper does not state.
-    """
+    """Verdict on an always, never or every; ``condition`` is one that the paper does not state."""
     if not held + failed + undecided:
         return NOT_TESTABLE
     if failed:

@@ -1,12 +1,9 @@
-"""Claims about the transition from crack to pulse, and about where a front ends.
-
-Each is judged at every choice that the paper leaves open.
-"""
+"""Claims about the transition and about where a front ends, at every choice that is left open."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -17,6 +14,7 @@ from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreeing, exponent, ratios, studied
 from .kinds import NAN, Approximate, Claim, Qualitative, Scaling
+from .rules import Known
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
@@ -77,10 +75,7 @@ def simulated(evidence: Evidence, boundary: str, where: str = "") -> list[Runs]:
 
 
 def solved(evidence: Evidence, boundary: str) -> list[Runs]:
-    """The exact solution at each combination of choices; first ours, with the damping of figure 5.
-
-    Under held stress ours is at the fraction `SHOWN` of the way.
-    """
+    """The exact solution at each combination of choices; first ours, as in figure 5."""
     names = ["release", "damping_ratio"]
     if boundary == "stress":
         names += ["nucleation", "fraction"]
@@ -156,7 +151,7 @@ def judged(runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]) -
 
 def estimated(
     evidence: Evidence, id: str, boundary: str, quantity: str
-) -> tuple[list[Combination], dict[str, Any], dict[str, float]]:
+) -> tuple[list[Combination], Known | None, dict[str, float]]:
     """An estimate at each combination, the exact theory beside, and the arrow drawn of it."""
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
     combinations = judged(

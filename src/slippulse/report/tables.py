@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 import pandas as pd
 
 from ..claims import reading
-from ..claims.reading import Ledger, claims_of, coverage, positions
+from ..claims.reading import Ledger, claims_of, coverage, places_of
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
@@ -122,14 +122,14 @@ def tolerances(ledger: Ledger) -> str:
 
 def algebra_checked(algebra: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
     """Every piece of the paper's algebra that a test checks, with its position in the paper."""
-    where = positions(algebra, sentences)
+    where = places_of(algebra, sentences)
     rows = [(entry["statement"], where[id], code([id])) for id, entry in algebra.items()]
     return table("what the paper derives l60 | section l20 | id l20", rows)
 
 
 def imposed(checks: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
     """What the model imposes, with its position in the paper and what checks it."""
-    where = positions(checks, sentences)
+    where = places_of(checks, sentences)
     rows = [
         (entry["statement"], where[id], entry["checked"], code([id]))
         for id, entry in checks.items()
