@@ -73,7 +73,7 @@ def results(project, tmp_path_factory):
         Image.new("1", (900, 600)).save(results / f"figures/{name}.png")
     (results / "claims.html").write_text(claims_page(CLAIMS, tables=TABLES), encoding="utf-8")
     config = read(project / "config/config.yaml")
-    facts = provenance(project, "", config | {"preset": "draft"}, config, results)
+    facts = provenance(project, config | {"preset": "draft"}, config, results)
     facts["times"]["seconds_of_jobs"] = {"one": 1.5}
     caption = {"alt": "A line <up>", "caption": "(a) $x$."}
     caption["finding"] = "Found in {{ claim('speed').runs }} runs."
