@@ -35,21 +35,29 @@ CASES = {
     "number: no deviation": (rules.within, (NAN, 0.001, 0.01), NONE),
     "number: no uncertainty": (rules.within, (0.001, NAN, 0.01), NONE),
     "equation: the farthest off decides": (
-        rules.exact,
+        rules.equation,
         ([0.001, 0.02, 0.03], [1e-4] * 3, 0.01),
         (NO, 2),
     ),
-    "equation: a failure is not hidden": (rules.exact, ([0.001, 0.02], [0.5, 1e-4], 0.01), (NO, 1)),
-    "equation: badly known": (rules.exact, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 0)),
-    "equation: one without a number": (rules.exact, ([NAN, 0.002], [1e-4, 1e-4], 0.01), (YES, 1)),
-    "equation: no number": (rules.exact, ([NAN], [1e-4], 0.01), (NONE, None)),
-    "choices: all hold": (rules.over_choices, ([YES, YES, YES],), YES),
-    "choices: a caveat": (rules.over_choices, ([YES, CAVEAT, NONE],), CAVEAT),
-    "choices: one open": (rules.over_choices, ([OPEN, YES],), OPEN),
-    "choices: one fails": (rules.over_choices, ([YES, YES, NO],), DEPENDS),
-    "choices: one of each": (rules.over_choices, ([CAVEAT, NO, OPEN],), DEPENDS),
-    "choices: none holds": (rules.over_choices, ([NO, NO, OPEN],), NO),
-    "choices: no numbers": (rules.over_choices, ([NONE, NONE],), NONE),
+    "equation: a failure is not hidden": (
+        rules.equation,
+        ([0.001, 0.02], [0.5, 1e-4], 0.01),
+        (NO, 1),
+    ),
+    "equation: badly known": (rules.equation, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 0)),
+    "equation: one without a number": (
+        rules.equation,
+        ([NAN, 0.002], [1e-4, 1e-4], 0.01),
+        (YES, 1),
+    ),
+    "equation: no number": (rules.equation, ([NAN], [1e-4], 0.01), (NONE, None)),
+    "choices: all hold": (rules.verdict_over_choices, ([YES, YES, YES],), YES),
+    "choices: a caveat": (rules.verdict_over_choices, ([YES, CAVEAT, NONE],), CAVEAT),
+    "choices: one open": (rules.verdict_over_choices, ([OPEN, YES],), OPEN),
+    "choices: one fails": (rules.verdict_over_choices, ([YES, YES, NO],), DEPENDS),
+    "choices: one of each": (rules.verdict_over_choices, ([CAVEAT, NO, OPEN],), DEPENDS),
+    "choices: none holds": (rules.verdict_over_choices, ([NO, NO, OPEN],), NO),
+    "choices: no numbers": (rules.verdict_over_choices, ([NONE, NONE],), NONE),
     "worst: open": (rules.worst, ([YES, OPEN, CAVEAT],), OPEN),
     "worst: failed": (rules.worst, ([YES, NO, OPEN],), NO),
     "worst: none": (rules.worst, ([],), NONE),
@@ -183,7 +191,7 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
 
 
 def exact(evidence: Evidence) -> dict:
-    claim = evidence.exact("equation", evidence.finest("sweep"), "number", "paper")
+    claim = evidence.equation("equation", evidence.finest("sweep"), "number", "paper")
     return claim.fields()
 
 
@@ -258,14 +266,14 @@ def test_what_must_hold_besides_decides_at_every_tolerance():
 
 def test_a_claim_is_written_with_its_entry_and_the_theory_beside():
     sweep = evidence()
-    claim = sweep.exact("equation", sweep.finest("sweep"), "number", "paper")
+    claim = sweep.equation("equation", sweep.finest("sweep"), "number", "paper")
     entry = written("equation", claim, ENTRIES["equation"], "III A")
     expected = {"id": "equation", "counted": True, "follows_from": [], "tolerance": 0.01}
     assert entry == entry | expected | {"figure_or_section": "III A", "why": ""}
     failing = replace(claim, besides=lambda _: NO, counts={"held": 1, "failed": 1})
     entry = written("equation", failing, ENTRIES["equation"], "III A")
     assert (entry["verdict"], entry["held"], entry["failed"]) == (NO, 1, 1)
-    beside = sweep.from_exact("sweep", "number")
+    beside = sweep.deviation_from_exact("sweep", "number")
     assert beside == pytest.approx((0.1, 0.1))
     table = pd.DataFrame({"a": [np.nan], "b": 1.0})
     nothing = replace(sweep.approximate("estimate", [table], "a", "b"), from_exact=beside)

@@ -91,10 +91,10 @@ class OverChoices(ByNumber):
 
     def by_number(self, tolerance: float) -> str:
         claims = [one.claim for one in self.combinations if isinstance(one.claim, ByNumber)]
-        return rules.over_choices([claim.verdict_at(tolerance) for claim in claims])
+        return rules.verdict_over_choices([claim.verdict_at(tolerance) for claim in claims])
 
     def verdict(self) -> str:
-        return rules.over_choices([one.result["verdict"] for one in self.combinations])
+        return rules.verdict_over_choices([one.result["verdict"] for one in self.combinations])
 
     def fields(self) -> dict[str, Any]:
         """The numbers shown, a row for each combination, and the choice that moves most."""

@@ -9,8 +9,8 @@ import pandas as pd
 from ..measurement.fronts import straight_line
 from ..measurement.regime import UNDECIDED
 from ..measurement.uncertainty import grid_study
-from .kinds import NAN, Approximate, Exact
-from .rules import Known
+from .kinds import NAN, Approximate, Equation
+from .rules import Uncertain
 
 Tables = Mapping[str, pd.DataFrame]
 Texts = Mapping[str, Mapping]
@@ -45,7 +45,7 @@ def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     return [bool(one) if one is not None and one == other else None for one, other in pairs]
 
 
-def studied(tables: Lattices, values: Sequence[float]) -> Known:
+def studied(tables: Lattices, values: Sequence[float]) -> Uncertain:
     """A number computed from each table, with its uncertainty, which is 0 of an exact solution."""
     if len(tables) == 1:
         return values[0], 0.0
@@ -56,23 +56,23 @@ def studied(tables: Lattices, values: Sequence[float]) -> Known:
     return study.value, study.uncertainty
 
 
-def slope(logs: np.ndarray) -> float:
+def _slope(logs: np.ndarray) -> float:
     """Slope of log measured over log predicted, [predicted and measured, run]; NaN below 3 runs."""
     x, y = logs[:, np.isfinite(logs).all(axis=0)]
     return straight_line(x, y)[0] if x.size > 2 else NAN
 
 
-def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Known:
+def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Uncertain:
     """The exponent of one column over another, with its uncertainty.
 
     That is at least the largest change when all runs with one value of ``columns`` are left out.
     """
     logs = [np.log(table[[predicted, measured]].to_numpy(float).T) for table in tables]
-    value, uncertainty = studied(tables, [slope(pair) for pair in logs])
+    value, uncertainty = studied(tables, [_slope(pair) for pair in logs])
     for name in columns:
         column = tables[0][name].to_numpy()
         for left_out in np.unique(column):
-            change = abs(slope(logs[0][:, column != left_out]) - value)
+            change = abs(_slope(logs[0][:, column != left_out]) - value)
             uncertainty = max(uncertainty, change)
     return value, uncertainty
 
@@ -135,9 +135,9 @@ class Evidence:
         """Tolerance of a claim."""
         return float(self.entries[id]["tolerance"])
 
-    def exact(self, id: str, table: pd.DataFrame, quantity: str, predicted: str) -> Exact:
+    def equation(self, id: str, table: pd.DataFrame, quantity: str, predicted: str) -> Equation:
         """An equation, from the extrapolated values of a quantity and an expression for it."""
-        return Exact(
+        return Equation(
             tolerance=self.tolerance(id),
             predicted=evaluated(table, predicted).astype(float),
             measured=evaluated(table, f"extrapolated_{quantity}").astype(float),
@@ -175,7 +175,7 @@ class Evidence:
             decided.append(answer if told and answer is not None else by_theory)
         return decided
 
-    def from_exact(self, simulation: str, quantity: str) -> Known | None:
+    def deviation_from_exact(self, simulation: str, quantity: str) -> Uncertain | None:
         """Median and largest deviation of runs at spacing 0 from the exact theory."""
         table = self.finest(simulation)
         deviation = (ratios(table, f"extrapolated_{quantity}", f"exact_{quantity}") - 1.0).abs()

@@ -32,14 +32,9 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     return Qualitative.counted(decided, condition=wide, further=further, why=why)
 
 
-def lattices_with_rate(evidence: Evidence) -> pd.DataFrame:
-    """Runs with friction that depends on slip rate."""
-    return evidence.tables["rate_dependence"].query("role == 'lattice'")
-
-
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     """A rupture is a pulse under each other law, unless blocks would slide back."""
-    linear = lattices_with_rate(evidence).query("over_critical != 0")
+    linear = evidence.tables["rate_dependence"].query("role == 'lattice' and over_critical != 0")
     bounded = evidence.tables["friction_laws"].query("role == 'plane'")
     runs = pd.concat([linear, bounded[bounded["regime"] != "no rupture"]], ignore_index=True)
     outside = runs["run_flags"].astype(str).str.contains("reverse_sliding")
@@ -72,8 +67,8 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Width and slip at the strongest dependences with pulses differ from those without one."""
-    runs = lattices_with_rate(evidence).set_index(["level", "over_critical"])
-    runs = runs[["pulse_width", "pulse_slip"]]
+    runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
+    runs = runs.set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
     independent = runs.xs(0.0, level=1)
     changes = [(runs.xs(factor, level=1) / independent - 1.0).abs() for factor in STRONGEST]
     change = pd.concat(changes)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from scipy.interpolate import CubicSpline
-from scipy.special import chdtrc, chdtri
+from scipy.special import chdtri
 
 # The number of points of a curve over the damping ratio.
 FINE = 4001
@@ -38,7 +38,7 @@ def likely(level: float, parameters: int = 1) -> float:
 def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
     """The parameters of the published figure, by release rule, and those of the "best" rule.
 
-    Each has chi2, dof, p_value, damping_ratio, dx, tau0, gamma, pulls by reading, and confidence
+    Each has chi2, dof, damping_ratio, dx, tau0, gamma, pulls by reading, and confidence
     regions. The part "profile" is without the drawn arrows, the part "arrows" with them.
     Source: profile likelihood; the readings have independent Gaussian errors.
     """
@@ -51,7 +51,7 @@ def inference(table: pd.DataFrame, part: str = "profile") -> dict[str, Any]:
         one: dict[str, Any] = {
             name: float(best[name]) for name in ("chi2", "damping_ratio", "dx", "tau0", "gamma")
         }
-        one |= {"release": release, "dof": dof, "p_value": float(chdtrc(dof, best["chi2"]))}
+        one |= {"release": release, "dof": dof}
         one["regions"] = {level: _regions(line, level) for level in CONFIDENCE}
         one["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
         fits[str(release)] = one

@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from . import rules
-from .rules import Known
+from .rules import Uncertain
 
 NAN = float("nan")
 
@@ -105,7 +105,7 @@ class ByNumber(Claim):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Exact(ByNumber):
+class Equation(ByNumber):
     """An equation, by values of its runs at spacing 0: arrays [run], NaN without a value."""
 
     predicted: np.ndarray
@@ -120,7 +120,7 @@ class Exact(ByNumber):
         return np.abs(self.measured - self.predicted) / scale, self.uncertainty / scale
 
     def by_number(self, tolerance: float) -> str:
-        return rules.exact(*self.relative(), tolerance)[0]
+        return rules.equation(*self.relative(), tolerance)[0]
 
     def fields(self) -> dict[str, Any]:
         """The numbers of the run that decides, and how many runs have numbers."""
@@ -128,7 +128,7 @@ class Exact(ByNumber):
         usable = int(np.isfinite(deviation + uncertainty).sum())
         out: dict[str, Any] = {"verdict": self.verdict(), "runs": usable}
         out["left_out"] = len(deviation) - usable
-        run = rules.exact(deviation, uncertainty, self.tolerance)[1]
+        run = rules.equation(deviation, uncertainty, self.tolerance)[1]
         if run is not None:
             out |= {"predicted": float(self.predicted[run]), "measured": float(self.measured[run])}
             out |= {"uncertainty": float(self.uncertainty[run]), "deviation": float(deviation[run])}
@@ -143,10 +143,10 @@ class Approximate(ByNumber):
     deviations: np.ndarray
     left_out: int
     # The medians of the deviation and of measured/predicted, with numerical uncertainties.
-    median: Known = (NAN, NAN)
-    ratio: Known = (NAN, NAN)
+    median: Uncertain = (NAN, NAN)
+    ratio: Uncertain = (NAN, NAN)
     # The median and largest deviation of runs at spacing 0 from the exact theory.
-    from_exact: Known | None = None
+    from_exact: Uncertain | None = None
 
     def by_number(self, tolerance: float) -> str:
         return rules.within(*self.median, tolerance)
@@ -169,7 +169,7 @@ class Approximate(ByNumber):
 class Scaling(ByNumber):
     """A proportionality, by the exponent of measured over predicted, which should be 1."""
 
-    exponent: Known
+    exponent: Uncertain
     runs: int
 
     def by_number(self, tolerance: float) -> str:

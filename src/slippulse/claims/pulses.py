@@ -11,7 +11,7 @@ import pandas as pd
 from ..data.numerals import number, setting
 from ..measurement.regime import REGIMES
 from .evidence import Evidence, agreeing, value_of
-from .kinds import Approximate, Exact, Qualitative
+from .kinds import Approximate, Equation, Qualitative
 
 TWO_WAY, STEADY_PULSE = "pulses, two-way", "pulse, one-way, steady"
 CHANGE, HALF_WIDTH = "largest_velocity_change", "pulse_half_width"
@@ -122,11 +122,11 @@ ALWAYS = {
 }
 
 
-def equation(evidence: Evidence, id: str) -> Exact:
+def equation(evidence: Evidence, id: str) -> Equation:
     """A row of `EQUATIONS`."""
     quantity, paper, runs = EQUATIONS[id]
     tables = [evidence.finest(name, where=where) for name, where in runs.items()]
-    return evidence.exact(id, pd.concat(tables), quantity, paper)
+    return evidence.equation(id, pd.concat(tables), quantity, paper)
 
 
 def always(evidence: Evidence, id: str) -> Qualitative:
@@ -245,7 +245,7 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
 # With the stress held
 
 
-def zero_net_stress_change(evidence: Evidence, id: str) -> Exact:
+def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     """No strain is left behind a pulse that keeps its shape; where some is, the pulse changes."""
     strain = evidence.finest("regimes_beyond", where="beyond != 0")["strain_left"].to_numpy()
     changes = evidence.agreed("regimes_beyond", "beyond != 0", "changed != 0")
@@ -254,7 +254,7 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Exact:
         return Qualitative.counted(np.array(changes, object)[strain > tolerance])
 
     table = evidence.finest("stress_pulses", where=UNDAMPED)
-    claim = evidence.exact(id, table, "strain_left", "0")
+    claim = evidence.equation(id, table, "strain_left", "0")
     counts = straining(claim.tolerance)
     numbers = {"held": counts.held, "failed": counts.failed, "undecided": counts.undecided}
     return replace(claim, counts=numbers, besides=lambda allowed: straining(allowed).verdict())

@@ -18,9 +18,9 @@ HOLDS = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False}
 # The number of tolerances at which a verdict is computed, and of halvings where it changes.
 SCANNED, BISECTED = 41, 12
 # A qualitative claim stays open if a larger fraction of its runs is undecided.
-UNDECIDED = 0.1
-# A number and its uncertainty.
-Known = tuple[float, float]
+MOST_UNDECIDED = 0.1
+# A number with its uncertainty.
+Uncertain = tuple[float, float]
 
 
 def within(deviation: float, uncertainty: float, tolerance: float) -> str:
@@ -44,10 +44,10 @@ def worst_tested(verdicts: Iterable[str]) -> str:
     return worst(verdict for verdict in verdicts if verdict != NOT_TESTABLE)
 
 
-def exact(
+def equation(
     deviations: np.ndarray, uncertainties: np.ndarray, tolerance: float
 ) -> tuple[str, int | None]:
-    """Verdict on an equation, and the run that decides: the worst, and the farthest off of these.
+    """Verdict on an equation, and the run that decides: of those with it, the one farthest off.
 
     Runs without numbers do not count; the run is None if none has numbers.
     """
@@ -59,7 +59,7 @@ def exact(
     return verdict, max(deciding, key=deviations.__getitem__)
 
 
-def over_choices(verdicts: Sequence[str]) -> str:
+def verdict_over_choices(verdicts: Sequence[str]) -> str:
     """Verdict on a claim from those at every admissible combination of open choices."""
     held = {HOLDS.get(verdict) for verdict in verdicts}
     return DEPENDS if {True, False} <= held else worst_tested(verdicts)
@@ -91,7 +91,7 @@ def qualitative(held: int, failed: int, undecided: int, condition: bool = False)
         return NOT_TESTABLE
     if failed:
         return FAILED
-    if undecided > UNDECIDED * (held + undecided):
+    if undecided > MOST_UNDECIDED * (held + undecided):
         return INCONCLUSIVE
     return CAVEAT if undecided or condition else REPRODUCED
 

@@ -14,7 +14,7 @@ from . import rules
 from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreeing, exponent, ratios, studied
 from .kinds import NAN, Approximate, Claim, Qualitative, Scaling
-from .rules import Known
+from .rules import Uncertain
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
@@ -151,13 +151,13 @@ def judged(runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]) -
 
 def estimated(
     evidence: Evidence, id: str, boundary: str, quantity: str
-) -> tuple[list[Combination], Known | None, dict[str, float]]:
+) -> tuple[list[Combination], Uncertain | None, dict[str, float]]:
     """An estimate at each combination, the exact theory beside, and the arrow drawn of it."""
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
     combinations = judged(
         runs, lambda tables: evidence.approximate(id, tables, quantity, f"{quantity}_estimate")
     )
-    exact = evidence.from_exact(f"scaling_{boundary}", f"transition_{quantity}")
+    exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
     drawn = {}
     read = evidence.readings.get(ARROWS.get((boundary, quantity), ""))
     if read:

@@ -120,21 +120,14 @@ def tolerances(ledger: Ledger) -> str:
     return table("kind l11 | tolerance r11 | reason l42 | claims l36", rows)
 
 
-def algebra_checked(algebra: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
-    """Every piece of the paper's algebra that a test checks, with its position in the paper."""
-    where = places_of(algebra, sentences)
-    rows = [(entry["statement"], where[id], code([id])) for id, entry in algebra.items()]
-    return table("what the paper derives l60 | section l20 | id l20", rows)
-
-
-def imposed(checks: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
-    """What the model imposes, with its position in the paper and what checks it."""
-    where = places_of(checks, sentences)
+def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
+    """What tests check beside the claims, with its position in the paper and what checks it."""
+    where = places_of(entries, sentences)
     rows = [
-        (entry["statement"], where[id], entry["checked"], code([id]))
-        for id, entry in checks.items()
+        (entry["statement"], where[id], entry.get("checked", f"`test_algebra[{id}]`"), code([id]))
+        for id, entry in entries.items()
     ]
-    return table("what is imposed l44 | section l16 | checked l22 | id l18", rows)
+    return table("what the paper says l44 | section l16 | checked l22 | id l18", rows)
 
 
 def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
