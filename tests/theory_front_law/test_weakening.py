@@ -53,6 +53,14 @@ def test_nothing_sticks_beyond_a_weakening(tau0, ratio):
     assert not weakening_pulse(tau0, GAMMA, 0.05, weakening_for(tau0, 0.97 * ratio)).sticks
 
 
+@pytest.mark.parametrize(("tau0", "factor"), [(0.2, 0.15448), (0.5, 0.43475), (0.8, 0.8419)])
+@pytest.mark.parametrize(("beta", "weakening"), [(0.05, 0.1), (0.3, 0.02)])
+def test_a_front_without_springs_follows_the_scaling_law(tau0, factor, beta, weakening):
+    speed = weakening_pulse(tau0, 1e-6, beta, weakening).speed
+    scale = (beta * speed) ** (2.0 / 3.0) * weakening ** (-1.0 / 3.0)
+    assert (speed**2 - 1.0) / scale == pytest.approx(factor, abs=1e-5)
+
+
 def test_slip_does_not_depend_on_damping():
     # Lengths scale with (beta v)^(1/3), and so does every term.
     slips = [weakening_pulse(0.5, GAMMA, beta, 0.2).slip for beta in (0.02, 0.05, 0.3)]

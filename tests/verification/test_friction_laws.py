@@ -112,6 +112,13 @@ def test_linear_weakening_by_events_tends_to_theory_at_second_order(level, d_c, 
         assert errors[2] < 5e-4 and errors[0] / errors[1] > 3.0 and errors[1] / errors[2] > 3.0
 
 
+def test_at_a_fixed_damping_ratio_the_front_tends_to_the_wave_speed():
+    """Theory has v^2 - 1 in proportion to (beta v)^(2/3): a factor 0.4 from first to last."""
+    speeds = [sp.measure(by_events(dx, beta=0.5 * dx))["front_speed_right"] for dx in SPACINGS]
+    assert speeds[0] > speeds[1] > speeds[2] > 1.0
+    assert speeds[2] - 1.0 == pytest.approx(0.4 * (speeds[0] - 1.0), rel=0.15)
+
+
 def test_linear_weakening_by_events_is_the_limit_of_short_textbook_steps():
     law = sp.friction("slip_weakening", d_c=0.1, nucleation=2.0)
     localised = by_events(0.05, duration=15.0)

@@ -114,10 +114,10 @@ def _spacing(simulation: Mapping, run: Run, index: int) -> float:
 def _max_step(simulation: Mapping, run: Run, dx: float, beta: float) -> float:
     """The simulation's own step, or the preset's, cut where it is not stable or accurate."""
     accuracy, scheme = simulation["accuracy"], simulation["scheme"]
-    ratios = beta / dx, run.gamma * dx**2, run.friction.steepest * dx
+    ratios = beta / dx, run.gamma * dx**2, run.friction.traits.steepest * dx
     largest = accuracy["max_step"]
     step = chosen_step(scheme, accuracy["order"], *ratios, enough=largest)
-    step = simulation.get("max_step", min(step, MARGIN * run.friction.longest_step / dx))
+    step = simulation.get("max_step", min(step, MARGIN * run.friction.traits.longest_step / dx))
     if "promise" in accuracy:
         step = min(step, largest)
     if "fixed" in simulation["spacing"]:

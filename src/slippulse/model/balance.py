@@ -63,10 +63,7 @@ def _balance_position(prestress: Prestress) -> float:
 
 
 def root_to_last_bit(function: Callable[[float], float], lower: float, upper: float) -> float:
-    """Root by bisection, without scipy: the upper end where no float is left between the two.
-
-    The function is negative at the lower end and not at the upper one.
-    """
+    """Upper end of the last bit in which a function turns from negative to not; without scipy."""
     middle = 0.5 * (lower + upper)
     while lower < middle < upper:
         if function(middle) < 0.0:

@@ -162,10 +162,7 @@ class Prestress:
 
 
 def prestress_from(attributes: Mapping) -> Prestress:
-    """The pre-stress of a data file's attributes.
-
-    Raises ValueError if `Scene.attributes` writes no such value, KeyError if one is missing.
-    """
+    """The pre-stress of a data file's attributes; KeyError if one is missing, or ValueError."""
     numbers = {name: attributes[name] for name in ("left", "right", "width", "peak")}
     text = attributes["steps_and_bumps"]
     try:
@@ -197,14 +194,10 @@ def _number_tuples(name: str, rows: Any, names: tuple[str, ...]) -> tuple[tuple[
         raise ValueError(f"{key}: {short_repr(rows)}; allowed: {allowed}")
     tuples = []
     for row in rows:
-        if not _are_numbers(row, len(names)):
+        complete = hasattr(row, "__len__") and len(row) == len(names)
+        if not complete or not all(isinstance(value, Real) for value in row):
             raise ValueError(f"{key}: {short_repr(row)}; allowed: {allowed}, numbers")
         for part, value in zip(names, row, strict=True):
             check_number(f"{key} {part}", value)
         tuples.append(tuple(map(float, row)))
     return tuple(tuples)
-
-
-def _are_numbers(row: Any, size: int) -> bool:
-    complete = hasattr(row, "__len__") and len(row) == size
-    return complete and all(isinstance(value, Real) for value in row)

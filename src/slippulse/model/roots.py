@@ -20,10 +20,7 @@ def root_between(
     xtol: float = 2e-12,
     rtol: float = 1e-15,
 ) -> float:
-    """Root of a continuous function whose signs differ at two ends, to xtol + rtol |root|.
-
-    Raises ValueError: if the signs are equal. Source: Brent's method.
-    """
+    """Root between two ends of different signs, to xtol + rtol |root|, by Brent's method."""
     # Slow to load.
     from scipy.optimize import brentq
 
@@ -39,11 +36,7 @@ def roots_between(
     at_upper: np.ndarray,
     xtol: float,
 ) -> np.ndarray:
-    """Roots of many functions, to xtol, whose values at lower and upper are known.
-
-    Raises ValueError: if the values at both ends of a function have equal signs.
-    Source: Chandrupatla's method, which is Brent's without branches; begun by a secant.
-    """
+    """Roots of many functions by Chandrupatla's method, which is Brent's without branches."""
     if np.any(at_lower * at_upper > 0.0):
         raise ValueError("lower, upper: values of equal signs; allowed: values of different signs")
     # x1 is the newest end of the bracket, x2 the other one, and x3 the end that x1 replaced.
@@ -79,12 +72,7 @@ def roots_between(
 def increasing_roots(
     function: Functions, guess: np.ndarray, lower: np.ndarray, upper: np.ndarray
 ) -> np.ndarray:
-    """Roots of many increasing functions that are nearly linear, of slope 1 or so, by secants.
-
-    A secant that leaves the bracket is replaced by the middle of the bracket.
-
-    Raises ArithmeticError: if a root is not found in MOST_SECANTS steps.
-    """
+    """Roots of many increasing functions that are nearly linear, by secants or the middle."""
     low, high = np.array(lower), np.array(upper)
     alive = np.arange(guess.size)
     before = np.array(guess)

@@ -8,7 +8,7 @@ from html import escape
 from numbers import Real
 from typing import Any, Self
 
-from .checks import check_choice, check_kind, check_number, short_repr
+from .checks import check_choice, check_kind, check_number, check_runaway, short_repr
 from .friction import COULOMB, Friction, friction_of
 from .prestress import Prestress, prestress_from
 from .stability import MARGIN, largest_step
@@ -143,7 +143,7 @@ class Scene:
 
     def _check_friction(self) -> None:
         check_kind("friction", self.friction, Friction)
-        self.friction.check(self.gamma)
+        check_runaway(self.gamma, self.friction.traits.linear_rate, "friction.alpha")
         if self.scheme not in self.friction.schemes:
             schemes = " or ".join(self.friction.schemes)
             allowed = f"{schemes}, with friction law {self.friction.law!r}"
@@ -198,10 +198,10 @@ class Scene:
         return self._stable_step(math.inf)
 
     def _stable_step(self, enough: float) -> float:
-        stiffness, drag = self.gamma * self.dx**2, self.friction.steepest * self.dx
+        stiffness, drag = self.gamma * self.dx**2, self.friction.traits.steepest * self.dx
         ratios = self.damping_ratio, stiffness, drag
         bound = largest_step(self.scheme, self.order, *ratios, enough)
-        return min(bound, self.friction.longest_step / self.dx)
+        return min(bound, self.friction.traits.longest_step / self.dx)
 
     def attributes(self) -> dict:
         """Every parameter as a plain number or text, for a data file.

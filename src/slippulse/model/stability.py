@@ -27,22 +27,17 @@ def largest_step(
     alpha_dx: float = 0.0,
     enough: float = math.inf,
 ) -> float:
-    """Largest stable time step in units of dx; infinite for "continuum", which takes none.
-
-    order : of the Taylor step, used by "localised" alone
-    damping_ratio, gamma_dx2 : beta/dx and gamma dx^2 (0 under a stress boundary), >= 0
-    alpha_dx : alpha dx, the rate strengthening of friction. A negative one counts as 0, since slip
-        that grows physically may grow.
-    enough : a bound above this one is not computed further; a number between both is returned
+    """Largest stable time step in units of dx, or any number between it and ``enough``.
 
     A mode of the lattice has stiffness s + gamma dx^2 and damping rate b s + alpha dx, where s is
-    in [0, 4] and b = beta/dx, in units of dx. "fixed_step" (symplectic Euler) is stable for
-    dt <= sqrt(dt_c^2 + c^2) - c, where dt_c = 2/sqrt(4 + gamma dx^2) and c = b + alpha dx/4.
-    "localised" is stable up to the largest step that amplifies no mode; slip is expanded to one
-    order more than velocity. The bound is 0 where the polynomials cannot be computed.
+    in [0, 4] and b = beta/dx, in units of dx. Symplectic Euler is stable for
+    dt <= sqrt(dt_c^2 + c^2) - c, where dt_c = 2/sqrt(4 + gamma dx^2) and c = b + alpha dx/4. A
+    Taylor step is stable where it amplifies no mode; it expands slip to one order more than
+    velocity. The bound is 0 where the polynomials cannot be computed.
     """
     if scheme == "continuum":
         return math.inf
+    # Slip that grows physically may grow.
     drag = max(alpha_dx, 0.0)
     if scheme == "fixed_step":
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)

@@ -22,13 +22,9 @@ MOST_POSITIONS = 10**6
 def solve_exactly(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
 ) -> Solution:
-    """Solve a scene exactly in the limit dx -> 0 at its damping ratio, at multiples of dx.
+    """Solve a scene exactly as dx -> 0 at its damping ratio, or raise ValueError; NaN is not known.
 
-    ``progress`` is called once, at the start. The construction of the exact rupture may end before
-    the scene does. What is unknown then is NaN, and the numbers ``limit_position``, ``limit_time``
-    and ``limit_reason`` tell where and why.
-
-    Raises ValueError if `Rupture` refuses the scene, or dx is too small for its fronts.
+    The numbers ``limit_position``, ``limit_time`` and ``limit_reason`` tell where this ended.
     """
     if progress is not None:
         progress(0.0)

@@ -7,5 +7,5 @@ from ..theory.rupture import Rupture
 def exact_rupture(scene: Scene) -> Rupture:
     """The exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
     rule = scene.damping_ratio, scene.release
-    alpha = scene.friction.linear_rate
+    alpha = scene.friction.traits.linear_rate
     return Rupture(scene.prestress, scene.gamma, *rule, scene.duration, rate_strengthening=alpha)

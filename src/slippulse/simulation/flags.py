@@ -52,7 +52,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
 
 def long_step(scene: Scene) -> bool:
     """True if a Taylor step errs, above all where damping is strong."""
-    stiffness, drag = scene.gamma * scene.dx**2, scene.friction.steepest * scene.dx
+    stiffness, drag = scene.gamma * scene.dx**2, scene.friction.traits.steepest * scene.dx
     ratios = scene.damping_ratio, stiffness, drag
     return scene.max_step > accurate_step(LONG_STEP, scene.order, *ratios)
 
@@ -90,11 +90,7 @@ def locked_front(solution: Solution) -> bool:
 
 
 def narrowest_pulse(scene: Scene, solution: Solution) -> int:
-    """Number of blocks across the narrowest pulse at the end.
-
-    Under a stress boundary nucleation sets the scale: the width of the Gaussian, or the distance
-    from its peak to where it falls to 0 on the way to a strongly negative level.
-    """
+    """Blocks across the narrowest pulse at the end; under a stress boundary, across nucleation."""
     if scene.boundary == "stress":
         profile = scene.prestress
         widths = [profile.width]

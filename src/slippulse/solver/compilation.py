@@ -11,10 +11,7 @@ from .layer import LayerScene, simulate_layer
 
 
 def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
-    """Compile kernels that are not in the cache, unless the compiler is off.
-
-    They are those of schemes of the lattice, and "layer", those of the layer in the plane.
-    """
+    """Compile the kernels of schemes, and of the layer, unless the compiler is off."""
     if numba.config.DISABLE_JIT:  # type: ignore[attr-defined]
         return
     prestress = Prestress(0.5, 0.5)

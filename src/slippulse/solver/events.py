@@ -142,11 +142,8 @@ def add_difference(motion, difference, first, last, block, now, h, top):
 def change_course(medium, motion, segments, forecast, difference, event, h, top):
     """Change the polynomials within reach of an event, and foresee further events there until h.
 
-    ``segments`` are those after the event.
-
-    Returns: all velocities are finite; first block that changed and the one after the last;
-    velocity of the block before the event; lowest stress of a stuck block; sum over neighbours of
-    dv times the change of da.
+    Returns: velocities are finite; first block that changed and the one after the last; velocity
+    of the block before; lowest stress of a stuck block; sum of dv times the change of da.
     """
     w, offset, velocity = motion.w, motion.offset, motion.velocity
     block, now, stick, weak = event

@@ -43,10 +43,7 @@ def forces(medium, motion, sliding, history, t):
 
 @inner()
 def move(medium, motion, sliding, history, dt, end):
-    """Advance velocity, then slip, and hold blocks that would move backwards.
-
-    Returns the largest velocity, or inf where one is not finite.
-    """
+    """Advance velocity, then slip, never backwards. Returns the largest velocity, or inf."""
     slip, velocity = motion.w[0], motion.w[1]
     force, tally = motion.w[2], history.tally
     fastest = 0.0
@@ -100,12 +97,7 @@ def take_samples(recorder, motion, tally, end):
 
 @entry
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
-    """Advance by at most ``limits.steps`` steps, to ``limits.end_time`` at most.
-
-    w has three rows: slip, velocity, force. ``sliding`` is true for each block that slides.
-
-    Returns the reason why it stopped.
-    """
+    """Advance until a limit; w has slip, velocity, force. Returns the reason why it stopped."""
     size, tally = motion.tau.shape[0], history.tally
     slip, velocity = motion.w[0], motion.w[1]
     for _ in range(limits.steps):

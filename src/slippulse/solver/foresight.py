@@ -27,11 +27,7 @@ def polynomial(coefficients, degree, h):
 
 @inner()
 def crossing(coefficients, degree, lower, upper):
-    """Root of a polynomial that changes sign between two times.
-
-    Newton's steps begin at the root of the secant; bisection keeps them between the two times.
-    Where the sign at ``upper`` is lost to rounding, ``upper`` is the root.
-    """
+    """Root between two times, ``upper`` where its sign is lost there; by Newton, or bisection."""
     start = polynomial(coefficients, degree, lower)
     end = polynomial(coefficients, degree, upper)
     rising = start < 0.0
@@ -59,10 +55,7 @@ def crossing(coefficients, degree, lower, upper):
 
 @inner()
 def turning_point(coefficients, slopes, degree, lower, upper):
-    """Time at which a polynomial turns, if its slope changes sign between them; else ``upper``.
-
-    The coefficients of its slope are left in ``slopes``.
-    """
+    """Time at which a polynomial turns once between two, else ``upper``; leaves ``slopes``."""
     for k in range(degree):
         slopes[k] = (k + 1) * coefficients[k + 1]
     if polynomial(slopes, degree - 1, lower) * polynomial(slopes, degree - 1, upper) < 0.0:
@@ -125,10 +118,7 @@ def foresee_release(medium, motion, forecast, block, now, h, top):
 
 @inner(inline=True)
 def foresee_releases(medium, motion, segments, forecast, first, last, now, h):
-    """Find when the stuck neighbours of segments among blocks first..last-1 are released until h.
-
-    Returns the lowest of their stresses at ``now``.
-    """
+    """Foresee releases until h of blocks first..last-1. Returns their lowest stress at ``now``."""
     top = motion.w.shape[0] - 1
     lowest = math.inf
     for r in range(segments.count.n):
@@ -161,10 +151,7 @@ def next_event(segments, forecast):
 
 @once
 def simultaneous(segments, forecast, mirror, block, latest):
-    """True if the reach of an event meets that of another until ``latest``, or its mirror image.
-
-    If one was taken after the other, the result would differ from that of the mirrored scene.
-    """
+    """True if a later event would meet this one or its mirror image: both must happen at once."""
     near = 2 * REACH + 1
     others = 1 if mirror and 1 < block <= 1 + REACH else 0
     for r in range(segments.count.n):
@@ -211,10 +198,7 @@ def foresee_stick(coefficients, slopes, degree, after, now, h):
 
 @inner(inline=True)
 def find_sticks(motion, forecast, first, last, suspects, now, h, top):
-    """Add the sticks until h of the blocks first..last-1, of which at most ``suspects`` may stick.
-
-    Returns False where the velocity of a suspect at h is not finite.
-    """
+    """Add sticks until h among blocks of few suspects. Returns False if one is not finite at h."""
     w, velocity = motion.w, motion.velocity
     coefficients = forecast.coefficients
     for i in range(first, last):

@@ -20,7 +20,7 @@ def constants_of(
 ) -> tuple[float, int, float, float, float | None]:
     """The constants alpha, law, first, second and d_c of `Medium`."""
     if localised or "continuum" in friction.schemes:
-        return float(friction.linear_rate), 0, 0.0, 0.0, friction.linear_weakening
+        return float(friction.traits.linear_rate), 0, 0.0, 0.0, friction.traits.linear_weakening
     first, second = friction.constants
     return 0.0, LAWS.index(type(friction)), float(first), float(second), None
 
@@ -45,11 +45,7 @@ law_of_friction = choose(LAWS)
 
 @inner()
 def resist(medium, motion, sliding, dt):
-    """Subtract the friction of sliding blocks, except alpha v, from the force in w[2].
-
-    Returns the work of the step against it, with the mean of the velocities before and after. A
-    block that stops in the step works against nothing: its kinetic energy is a loss of its own.
-    """
+    """Subtract friction, except alpha v, from the force of blocks. Returns the work against it."""
     if medium.law == 0:
         return 0.0
     slip, velocity = motion.w[0], motion.w[1]
@@ -62,6 +58,7 @@ def resist(medium, motion, sliding, dt):
         friction = motion.resists[i] * value
         force[i] -= friction
         after = before + dt * force[i]
+        # A block that stops works against nothing: its kinetic energy is a loss of its own.
         if after > 0.0:
             weight = 2.0 if medium.mirror and i > 1 else 1.0
             work += weight * friction * 0.5 * (before + after)

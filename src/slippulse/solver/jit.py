@@ -29,10 +29,7 @@ LAWS = SOURCES.parent / "model" / "friction_laws"
 
 
 def source_digest(folder: Path = SOURCES) -> str:
-    """Digest of every kernel source, so that an edited helper is compiled anew into its callers.
-
-    numba's own cache looks only at the file of the compiled function, not at those that it calls.
-    """
+    """Digest of every source of kernels; numba looks only at the file of the compiled function."""
     digest = hashlib.sha256()
     for path in [*sorted(folder.glob("*.py")), *sorted(LAWS.glob("*.py"))]:
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
@@ -61,10 +58,6 @@ once = numba.njit(inline="always", **FLAGS)
 
 
 def inner(*, inline: bool = False, reorder: bool = False):
-    """Decorator of functions that kernels call. Called from Python, they are plain Python.
-
-    inline puts their machine code into that of their caller, which then hands on no groups of
-    arrays; reorder lets their sums vectorise.
-    """
+    """Decorator of functions inside kernels. If inlined, they hand on no groups of arrays."""
     flags = FLAGS | {"fastmath": REORDER} if reorder else FLAGS
     return register_jitable(forceinline=inline, **flags)

@@ -42,7 +42,7 @@ class Lattice:
         total, friction = scene.release == "total", constants_of(scene.friction, self.localised)
         self.medium = arrays.make_medium(scene.dx, leaf, beta, self.mirror, total, friction)
         # Where friction weakens with slip rate, without a limit, velocity can grow by this factor.
-        weakening = max(-scene.friction.linear_rate, 0.0) * scene.duration
+        weakening = max(-scene.friction.traits.linear_rate, 0.0) * scene.duration
         self.growth = float(np.exp(min(weakening, 600.0)))
         # The block at array position 0; block 0 lies at x = 0.
         self.first_block = -1 if self.mirror else -FIRST_BLOCKS - 1
@@ -110,19 +110,16 @@ class Lattice:
         inside = slice(left, left + self.size)
         size = left + self.size + right
         self.motion = arrays.make_motion(old.w.shape[0], size)
-        self.motion.w[:, inside] = old.w
-        self.motion.strain[inside] = old.strain
-        self.motion.tau[inside] = old.tau
-        self.motion.released[inside] = old.released
-        self.motion.falls[inside] = old.falls
+        for values, kept in zip(self.motion, old, strict=True):
+            values[..., inside] = kept
         away = np.abs(np.arange(size) + self.first_block) * self.scene.dx
-        self.motion.resists[:] = away >= self.scene.friction.zone
+        self.motion.resists[:] = away >= self.scene.friction.traits.zone
         for first, last in ((0, left), (inside.stop, size)):
             x = (np.arange(first, last) + self.first_block) * self.scene.dx
             self.motion.tau[first:last] = self.scene.prestress(x)
         if self.mirror:
             self.motion.tau[0] = self.motion.tau[2]
-        self.largest_force = float(np.abs(self.motion.tau).max()) + self.scene.friction.drive
+        self.largest_force = float(np.abs(self.motion.tau).max()) + self.scene.friction.traits.drive
         self.sliding = np.pad(self.sliding, (left, right))
         release, stick = np.full((2, size), np.nan)
         release[inside], stick[inside] = self.history.release_time, self.history.stick_time
@@ -147,13 +144,7 @@ class Lattice:
         return UnstableRun(f"the run became unstable at t = {time:.6g}: {reason} ({settings})")
 
     def advance_to_end(self, progress: Callable[[float], None] | None) -> int:
-        """Advance to the end of the scene. Returns why the kernel stopped, DONE or ALL_STUCK.
-
-        ``progress`` is told the fraction of the duration done, several times a second.
-
-        Raises UnstableRun if slip velocity is not finite or beyond anything the pre-stress can
-        drive, or time no longer advances.
-        """
+        """Advance to the end of the scene, or raise UnstableRun. Returns why the kernel stopped."""
         scene = self.scene
         step = scene.max_step * scene.dx
         while True:

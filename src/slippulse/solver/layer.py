@@ -31,29 +31,18 @@ MARGIN = 32
 
 @dataclass(frozen=True)
 class LayerScene:
-    """Rupture of the layer in the plane, with friction that weakens linearly with slip.
+    """Rupture of the layer in the plane, with friction that weakens linearly with slip."""
 
-    boundary: held at the top, "displacement" (v_x = 0) or "stress" (s_xy = 0)
-    gamma: 2G/(lambda + 2G), in (0, 1)
-    prestress: shear stress tau(x) at the bottom before the rupture, as in `Scene`
-    weakening: slip d_c over which the strength falls from 1 to 0 (units of U), > 0
-    duration: end of the run, > 0
-    cells: cells of the grid over the thickness, >= 4
-    nucleation: friction is 0 for |x| <= this from t = 0 on, >= 0
-    bottom, top: normal displacement there, "held" or "free" (no change of normal stress)
-    coupling: friction coefficient mu of a strength that follows the normal stress, - mu s_yy, >= 0
-    """
-
-    boundary: str
-    gamma: float
-    prestress: Prestress
-    weakening: float
+    boundary: str  # held at the top: "displacement" (v_x = 0) or "stress" (s_xy = 0)
+    gamma: float  # 2G/(lambda + 2G), in (0, 1)
+    prestress: Prestress  # shear stress tau(x) at the bottom before the rupture, as in `Scene`
+    weakening: float  # slip d_c over which the strength falls from 1 to 0 (units of U)
     duration: float
-    cells: int = 40
-    nucleation: float = 2.0
-    bottom: str = "held"
+    cells: int = 40  # over the thickness
+    nucleation: float = 2.0  # friction is 0 for |x| <= this from t = 0 on
+    bottom: str = "held"  # normal displacement, or "free": no change of normal stress
     top: str = "held"
-    coupling: float = 0.0
+    coupling: float = 0.0  # friction coefficient mu of a strength - mu s_yy that follows pressure
 
     def __post_init__(self) -> None:
         check_choice("boundary", self.boundary, ("displacement", "stress"))
@@ -221,10 +210,7 @@ def slide(elastic, fields, fault, i, dt, time):
 
 @entry
 def advance_layer(elastic, fields, fault, dt, steps, centre):
-    """Advance from the first of two ``steps`` to the second.
-
-    ``centre`` has a node and how many columns from it friction is 0: no wave starts farther out.
-    """
+    """Advance between two steps; ``centre``: a node, and columns without friction on each side."""
     for number in range(steps[0], steps[1]):
         reach = centre[1] + int(number * elastic.ratio) + MARGIN
         first, last = max(1, centre[0] - reach), min(fault.tau.shape[0] - 1, centre[0] + reach)

@@ -154,9 +154,6 @@ def solve_on_lattice(
     damping_sign: int = 1,
     kind: type[Lattice] = Lattice,
 ) -> Solution:
-    """Solve a scene by the localised scheme, or by another kind of lattice.
-
-    ``damping_sign = -1`` gives the damping the sign that is printed in the paper, and blows up.
-    """
+    """Solve a scene; ``damping_sign = -1`` gives damping the sign printed, which blows up."""
     lattice = kind(scene, samples, damping_sign * scene.beta)
     return solution_of(lattice, lattice.advance_to_end(progress))

@@ -93,10 +93,7 @@ def take_samples(recorder, motion, tally, start, end, order):
 
 @once
 def dissipation(medium, motion, segments):
-    """Dissipation D and dD/dt, where D = beta dx sum of ((v_{i+1} - v_i)/dx)^2 over all segments.
-
-    The dissipation by rate strengthening is included.
-    """
+    """Dissipation D = beta dx sum of ((v_{i+1} - v_i)/dx)^2, with that by slip rate, and dD/dt."""
     square, product = 0.0, 0.0
     rate, change = 0.0, 0.0
     for r in range(segments.count.n):
@@ -277,12 +274,7 @@ def take_events_at_once(medium, motion, segments, scratch, history, end, latest,
 def advance(  # noqa: C901, PLR0912, PLR0915
     medium, motion, segments, scratch, history, recorder, limits
 ):
-    """Advance the lattice by at most ``limits.steps`` steps, to ``limits.end_time`` at most.
-
-    At the end the viscous loss is complete and w[2] holds the accelerations.
-
-    Returns the reason why it stopped.
-    """
+    """Advance until a limit. Returns why; then the loss is complete and w[2] is acceleration."""
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
     instantly = SIMULTANEOUS * limits.largest_step

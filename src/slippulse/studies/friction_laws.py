@@ -101,7 +101,7 @@ def _run(level: float, law: Friction, step: float, dx: float, still: float) -> d
 
     Strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2.
     """
-    step = min(step, 0.9 * law.longest_step / dx)
+    step = min(step, 0.9 * law.traits.longest_step / dx)
     beta = _damping(law, dx)
     profile = Prestress(level, level)
     values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..checks import check_number
-from .law import Friction
+from .law import Friction, Traits
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,6 @@ class BoundedRate(Friction):
         return limit * velocity / (velocity + v_0)
 
     @property
-    def steepest(self) -> float:
-        """The slope at rest, F/v_0."""
-        return self.limit / self.v_0
-
-    @property
-    def drive(self) -> float:
-        """The limit -F, where F < 0."""
-        return max(-self.limit, 0.0)
+    def traits(self) -> Traits:
+        """The slope at rest is the steepest, and the law drives slip where F < 0."""
+        return Traits(steepest=self.limit / self.v_0, drive=max(-self.limit, 0.0))

@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from .law import Traits
 from .slip_weakening import SlipWeakening
 
 
@@ -13,9 +14,13 @@ class ExponentialWeakening(SlipWeakening):
 
     law: ClassVar = "exponential_weakening"
     schemes: ClassVar = ("fixed_step",)
-    linear_weakening: ClassVar = None
 
     @staticmethod
     def friction(slip, velocity, d_c, nucleation):
         """Return exp(-slip/d_c)."""
         return math.exp(-slip / d_c)
+
+    @property
+    def traits(self) -> Traits:
+        """The traits of slip weakening that is not linear."""
+        return super().traits._replace(linear_weakening=None)

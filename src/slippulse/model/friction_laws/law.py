@@ -1,12 +1,24 @@
 """The type that all laws of friction have."""
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import asdict, astuple, dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
+
+
+class Traits(NamedTuple):
+    """Properties of a law that solvers need besides its friction."""
+
+    linear_rate: float = 0.0  # alpha, where friction is alpha du/dt
+    linear_weakening: float | None = None  # d_c, where friction falls linearly over this slip
+    steepest: float = 0.0  # upper bound on the slope of friction over slip rate
+    drive: float = 0.0  # upper bound on the friction that drives slip instead of resisting it
+    zone: float = 0.0  # half-length around x = 0 without friction, which nucleates the rupture
+    longest_step: float = math.inf  # longest time step that resolves the law
 
 
 @dataclass(frozen=True)
-class Friction:
+class Friction(ABC):
     """Friction of a sliding block: 0 at the kinetic, 1 at the static friction of the paper.
 
     A law is a subclass. Its fields are its parameters, and ``__post_init__`` refuses those out of
@@ -18,42 +30,14 @@ class Friction:
     schemes: ClassVar[tuple[str, ...]] = ("fixed_step",)
 
     @staticmethod
+    @abstractmethod
     def friction(slip, velocity, first, second):
         """Friction of a block."""
-        raise NotImplementedError
-
-    def check(self, gamma: float) -> None:
-        """Refuse a law by which slip runs away against leaf springs of stiffness ``gamma``."""
 
     @property
-    def linear_rate(self) -> float:
-        """The factor alpha of a term alpha du/dt; 0 for laws that are not linear in slip rate."""
-        return 0.0
-
-    @property
-    def linear_weakening(self) -> float | None:
-        """The slip d_c over which friction falls linearly; None for other laws."""
-        return None
-
-    @property
-    def steepest(self) -> float:
-        """Upper bound on the slope of friction over slip rate."""
-        return 0.0
-
-    @property
-    def drive(self) -> float:
-        """Upper bound on the friction that drives slip instead of resisting it."""
-        return 0.0
-
-    @property
-    def zone(self) -> float:
-        """Half-length around x = 0 without friction, which nucleates the rupture."""
-        return 0.0
-
-    @property
-    def longest_step(self) -> float:
-        """Longest time step that resolves the law."""
-        return math.inf
+    def traits(self) -> Traits:
+        """Traits of the law and its parameters."""
+        return Traits()
 
     @property
     def constants(self) -> tuple[float, float]:

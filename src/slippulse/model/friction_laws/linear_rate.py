@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..checks import check_number, check_runaway
-from .law import Friction
+from ..checks import check_number
+from .law import Friction, Traits
 
 
 @dataclass(frozen=True)
@@ -24,16 +24,7 @@ class LinearRate(Friction):
         """Return alpha v."""
         return alpha * velocity
 
-    def check(self, gamma: float) -> None:
-        """Refuse alpha <= -2 sqrt(gamma), and alpha < 0 without leaf springs."""
-        check_runaway(gamma, self.alpha, "friction.alpha")
-
     @property
-    def linear_rate(self) -> float:
-        """The factor alpha."""
-        return self.alpha
-
-    @property
-    def steepest(self) -> float:
-        """The factor alpha, too."""
-        return self.alpha
+    def traits(self) -> Traits:
+        """The slope is alpha at any slip rate."""
+        return Traits(linear_rate=self.alpha, steepest=self.alpha)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..checks import check_number
-from .law import Friction
+from .law import Friction, Traits
 
 
 @dataclass(frozen=True)
@@ -26,6 +26,6 @@ class RateWeakening(Friction):
         return -min(slope * velocity, limit)
 
     @property
-    def drive(self) -> float:
-        """The limit F."""
-        return self.limit
+    def traits(self) -> Traits:
+        """The law drives slip by up to F."""
+        return Traits(drive=self.limit)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ..checks import check_number
-from .law import Friction
+from .law import Friction, Traits
 
 # The longest step over sqrt(d_c), the time by which slip grows e-fold where friction weakens.
 RESOLVED = 0.5
@@ -34,16 +34,7 @@ class SlipWeakening(Friction):
         return max(0.0, 1.0 - slip / d_c)
 
     @property
-    def linear_weakening(self) -> float | None:
-        """The slip d_c."""
-        return self.d_c
-
-    @property
-    def zone(self) -> float:
-        """The nucleation."""
-        return self.nucleation
-
-    @property
-    def longest_step(self) -> float:
-        """A fraction of sqrt(d_c); beyond it the speed of the front is wrong at any spacing."""
-        return RESOLVED * math.sqrt(self.d_c)
+    def traits(self) -> Traits:
+        """Beyond a fraction of sqrt(d_c), a step makes the speed of the front wrong."""
+        step = RESOLVED * math.sqrt(self.d_c)
+        return Traits(linear_weakening=self.d_c, zone=self.nucleation, longest_step=step)
