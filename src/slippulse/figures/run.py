@@ -5,7 +5,6 @@ import io
 import matplotlib
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 DRAWN = ("prestress", "release_time", "stick_time", "slip")
@@ -70,12 +69,16 @@ def _draw(run: xr.Dataset) -> Picture:
     figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
     profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
     space_time.draw_profile(profile, roles["prestress"])
-    if _has_map(run):
+    sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
+    if sampled and (run["sample_velocity"] > 0.0).any():
         roles |= by_role(space_time.velocity_map(run))
         image = space_time.draw_map(times, roles)
         figure.colorbar(image, ax=times, pad=0.02).set_label(r"slip velocity $\dot u$")
         if run.attrs.get("limit_reason"):
-            _hatch_unknown(times, run)
+            # The exact run does not reach this part of the map.
+            unknown = run["sample_velocity"].isnull().T
+            hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
+            times.contourf(run["sample_time"], run["sample_position"], unknown, **hatched)
             figure.suptitle(f"hatched: not known, since {run.attrs['limit_reason']}")
     else:
         # A run in which nothing moves ends at 0.
@@ -85,17 +88,3 @@ def _draw(run: xr.Dataset) -> Picture:
     slip.plot(run["slip"], run["x"], color=BLUE)
     slip.set_xlabel(r"slip $u$")
     return figure
-
-
-def _has_map(run: xr.Dataset) -> bool:
-    """Return whether the run has samples over time and position in which anything slides."""
-    sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
-    return sampled and bool((run["sample_velocity"] > 0.0).any())
-
-
-def _hatch_unknown(axes: Axes, run: xr.Dataset) -> None:
-    """Hatch the part of the map that an exact run does not reach."""
-    unknown = run["sample_velocity"].isnull().T
-    levels = [0.5, 1.5]
-    times, positions = run["sample_time"], run["sample_position"]
-    axes.contourf(times, positions, unknown, levels, colors="none", hatches=["///"])

@@ -73,10 +73,10 @@ def draw(table: pd.DataFrame) -> Figure:
     bar = figure.colorbar(image, ax=maps, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOURS)
-    # The curves are at the larger damping ratio, the last above.
-    curves = table[(table["part"] == "curve") & (table["damping_ratio"] == ratio)]
-    _draw_curves(curve_axes, curves, marked)
-    curve_axes.set_title(conditions(True, damping_ratio=ratio), loc="right")
+    largest = ratios[-1]
+    curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest)]
+    _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest])
+    curve_axes.set_title(conditions(True, damping_ratio=largest), loc="right")
     _draw_convergence(convergence_axes, runs)
     return figure
 
