@@ -74,6 +74,10 @@ TAKE_A_NUMBER = [
 ]
 
 
+def linear(alpha: float) -> dict:
+    return {"friction": sp.friction("linear_rate", alpha=alpha)}
+
+
 # Values of the right kind that are refused, by what the refusal says of argument and value.
 SCENES = {
     "boundary: 'strain'; allowed: displacement, stress": {"boundary": "strain"},
@@ -99,6 +103,18 @@ SCENES = {
     "resolved_blocks: 1.5; allowed: a whole number >= 1": {"resolved_blocks": 1.5},
     "half_lattice: 'no'; allowed: true or false": {"half_lattice": "no"},
     "prestress: 0.5; allowed: a Prestress": {"prestress": 0.5},
+    "friction.alpha: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, or slip runs": linear(-1.62),
+    "friction.alpha: -0.01; allowed: >= 0 without leaf springs, or slip runs away": GOOD
+    | {"gamma": 0.0}
+    | linear(-0.01),
+}
+LAWS = {
+    "law: 'velocity'; allowed: coulomb, linear_rate": ("velocity", {}),
+    "alpha: 0.1; allowed: law 'coulomb' with nothing": ("coulomb", {"alpha": 0.1}),
+    "nucleation: missing; allowed: law 'slip_weakening' with": ("slip_weakening", {"d_c": 0.1}),
+    "d_c: 0.0; allowed: a finite number": ("slip_weakening", {"d_c": 0.0, "nucleation": 1.0}),
+    "slope: -1.0; allowed: a finite number": ("rate_weakening", {"slope": -1.0, "limit": 1.0}),
+    "alpha: nan; allowed: a finite number": ("linear_rate", {"alpha": math.nan}),
 }
 EXACT_SCENES = {
     "damping_ratio: ": {"beta": 1e300},
@@ -141,6 +157,13 @@ RUPTURES = {
     },
     "prestress: 'flat'; allowed: a Prestress": {"prestress": "flat"},
     "lowest prestress: -1e+308; allowed": {"prestress": sp.Prestress(-1e308, 0.0)},
+    "rate_strengthening: -1.62; allowed: > -2 sqrt(gamma) = -1.61245, or slip": {
+        "rate_strengthening": -1.62
+    },
+    "rate_strengthening: -0.01; allowed: >= 0 without leaf springs, or slip runs": {
+        "rate_strengthening": -0.01,
+        "gamma": 0.0,
+    },
     "refinement: 0; allowed: a whole number and >= 1": {"refinement": 0},
     "refinement: 2.7; allowed: a whole number and >= 1": {"refinement": 2.7},
     "refinement: 1000; allowed: a whole number and >= 1": {"refinement": 1000},
@@ -173,10 +196,18 @@ def recorded_sweep(name: str):
 
 LONGER = SWEEP.assign(row_size=SWEEP["row_size"] + 1)
 EXACT = sp.Scene(**GOOD, scheme="continuum")
+LATE = sp.Samples([0.1, 3.5], [0.0])
+TOO_LATE = "samples.times: 3.5; allowed: up to the duration of the scene, 0.2"
 LARGEST = "damping_ratio: -1.0; allowed: a finite number and >= 0 and <= 1e+100"
 SLOW = "tau0: 0.3; allowed: > 0.50849, values whose front outr"
 # Further calls: what the refusal says, the function, and its arguments.
 CALLS = [
+    (TOO_LATE, sp.simulate, TINY, LATE),
+    (TOO_LATE, sp.simulate, EXACT, LATE),
+    (TOO_LATE, sp.run_sweep, [TINY], [LATE]),
+    (TOO_LATE, sp.run_sweep, [EXACT], [LATE]),
+    ("run: a sweep of 2; allowed: one run", sp.measure, SWEEP),
+    ("allowed: a Dataset that simulate returned", sp.measure, TINY),
     ("scene: None; allowed: a Scene", sp.simulate, None),
     ("scene: {'boundary': 'stress'}; allowed: a Scene", sp.simulate, {"boundary": "stress"}),
     ("scenes: []; allowed: a list of Scenes, at least one", sp.run_sweep, []),
@@ -231,6 +262,7 @@ REFUSED = [(named, partial(function, *arguments)) for named, function, *argument
 for cases, call in (
     (SCENES, lambda change: sp.Scene(**HELD | change)),
     (EXACT_SCENES, lambda change: sp.simulate(sp.Scene(**HELD | {"scheme": "continuum"} | change))),
+    (LAWS, lambda law: sp.friction(law[0], **law[1])),
     (PRESTRESSES, lambda change: sp.Prestress(**{"left": 0.3, "right": 0.3} | change)),
     (ATTRIBUTES, lambda change: sp.Scene.from_attributes(TINY.attributes() | change)),
     (RUPTURES, lambda change: theory.Rupture(**{"prestress": PLAIN, "gamma": 0.65} | change)),

@@ -82,16 +82,6 @@ ONE = sp.Scene(
 )
 
 
-@pytest.mark.parametrize("scheme", ["localised", "continuum"])
-def test_samples_after_the_end_are_refused(scheme):
-    scene = dataclasses.replace(ONE, duration=1.0, scheme=scheme)
-    samples = sp.Samples([0.5, 1.0, 3.5], [0.0])
-    refusal = r"^samples\.times: 3\.5; allowed: up to the duration of the scene, 1$"
-    for call in (lambda: sp.simulate(scene, samples), lambda: sp.run_sweep([scene], [samples])):
-        with pytest.raises(ValueError, match=refusal):
-            call()
-
-
 def test_a_sample_is_the_state_of_a_run_that_ends_there():
     """At rest where no block is near."""
     times = np.array([0.0, 0.777, 2.5, 5.9])

@@ -297,7 +297,3 @@ def test_one_run_of_a_sweep_has_the_numbers_of_its_row(shipped):
     assert list(table["transition_time"].isna()) == [True, False]
     uneven = Scene("displacement", Prestress(0.5, 0.3), 2.0, 0.1, 0.65)
     assert np.isnan(sp.measure(simulate(uneven))["transition_time"])
-    with pytest.raises(TypeError, match="run: a sweep of 2; allowed: one run"):
-        sp.measure(sweep)
-    with pytest.raises(TypeError, match="allowed: a Dataset that simulate returned"):
-        sp.measure(scenes[0])

@@ -4,6 +4,7 @@ import getpass
 import json
 import os
 import socket
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -79,9 +80,8 @@ def put_folder(path: Path) -> None:
     path.mkdir()
 
 
-def rewrite(results: Path, name: str, **change) -> None:
-    """Change the record of a result."""
-    path = results / f"records/{name}.json"
+def rewrite(path: Path, **change) -> None:
+    """Change a record."""
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
 
 
@@ -91,10 +91,37 @@ OLDER = {
     TABLE: f"older than {DATA}, which it is made from",
     PAGE: f"older than {TABLE}, which it is made from",
 }
+MISSING, UNREADABLE = {DATA: "missing"}, {OTHER: "its record cannot be read"}
+RULE, SOURCES = {OTHER: "made by another rule"}, {OTHER: "made by other sources"}
+RECORD, OTHER_RECORD = f"records/{DATA}.json", f"records/{OTHER}.json"
+# A file, a change of it, and the results that are named, by reason.
+HARMED = {
+    "edited": (DATA, lambda path: path.write_text("datA"), CHANGED),
+    "emptied": (DATA, lambda path: path.write_text(""), CHANGED),
+    "removed": (DATA, Path.unlink, MISSING),
+    "a folder": (DATA, put_folder, MISSING),
+    "other outputs": (OTHER_RECORD, partial(rewrite, outputs={}), RULE),
+    "other step": (OTHER_RECORD, partial(rewrite, step="measure"), RULE),
+    "other sources": (OTHER_RECORD, partial(rewrite, sources=""), SOURCES),
+    "other data": (RECORD, partial(rewrite, outputs={DATA: "0"}), CHANGED | OLDER),
+    "no record": (RECORD, Path.unlink, {DATA: "no record"} | OLDER),
+    "record a folder": (OTHER_RECORD, put_folder, UNREADABLE),
+}
+for name, text in {
+    "empty": "",
+    "cut": "{",
+    "a list": "[]",
+    "a number": "5",
+    "without fields": '{"step": 1}',
+    "nested too deep": "[" * 100_000,
+}.items():
+    HARMED[f"record {name}"] = OTHER_RECORD, partial(Path.write_text, data=text), UNREADABLE
 
 
-def check_named(results: Path, expected: dict[str, str]) -> None:
+@pytest.mark.parametrize(("name", "harm", "expected"), HARMED.values(), ids=HARMED)
+def test_a_result_that_is_not_as_made_is_named(results, name, harm, expected):
     """Exactly the expected results are faulty, whatever the times of the files."""
+    harm(results / name)
     for path in results.rglob("*"):
         os.utime(path, ns=(0, 0))
     assert faults(results) == expected
@@ -102,57 +129,6 @@ def check_named(results: Path, expected: dict[str, str]) -> None:
     tree, names = compared(results)
     present = {name: reason for name, reason in expected.items() if reason != "missing"}
     assert tree.to_renew(names) == present
-
-
-@pytest.mark.parametrize(
-    ("harm", "expected"),
-    [
-        pytest.param(lambda path: path.write_text("datA"), CHANGED, id="edited"),
-        pytest.param(lambda path: path.write_text(""), CHANGED, id="emptied"),
-        pytest.param(Path.unlink, {DATA: "missing"}, id="removed"),
-        pytest.param(put_folder, {DATA: "missing"}, id="a folder"),
-    ],
-)
-def test_a_result_that_was_changed_is_named(results, harm, expected):
-    harm(results / DATA)
-    check_named(results, expected)
-
-
-@pytest.mark.parametrize(
-    ("name", "change", "expected"),
-    [
-        pytest.param(OTHER, {"outputs": {}}, {OTHER: "made by another rule"}, id="other outputs"),
-        pytest.param(OTHER, {"step": "measure"}, {OTHER: "made by another rule"}, id="other step"),
-        pytest.param(OTHER, {"sources": ""}, {OTHER: "made by other sources"}, id="other sources"),
-        pytest.param(DATA, {"outputs": {DATA: "0"}}, CHANGED | OLDER, id="other data"),
-    ],
-)
-def test_a_result_whose_record_was_changed_is_named(results, name, change, expected):
-    rewrite(results, name, **change)
-    check_named(results, expected)
-
-
-def test_a_result_without_a_record_is_named(results):
-    (results / f"records/{DATA}.json").unlink()
-    check_named(results, {DATA: "no record"} | OLDER)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        pytest.param("", id="empty"),
-        pytest.param("{", id="cut"),
-        pytest.param("[]", id="a list"),
-        pytest.param("5", id="a number"),
-        pytest.param('{"step": 1}', id="fields missing"),
-        pytest.param("[" * 100_000, id="nested too deep"),
-        pytest.param(None, id="a folder"),
-    ],
-)
-def test_a_result_whose_record_cannot_be_read_is_named(results, text):
-    path = results / f"records/{OTHER}.json"
-    put_folder(path) if text is None else path.write_text(text)
-    check_named(results, {OTHER: "its record cannot be read"})
 
 
 def test_only_what_is_wanted_and_what_that_is_made_from_or_with_is_renewed(results):
@@ -168,20 +144,16 @@ def test_only_what_is_wanted_and_what_that_is_made_from_or_with_is_renewed(resul
     assert tree.to_renew(["a.png"]) == {"a.png": "made with a file that is not as made"}
 
 
-@pytest.mark.parametrize(
-    ("index", "change", "reasons"),
-    [
-        pytest.param(
-            0,
-            {"settings": {"level": 0.6}},
-            dict.fromkeys((DATA, TABLE, PAGE), "configuration"),
-            id="level",
-        ),
-        pytest.param(2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}, id="title"),
-        pytest.param(2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}, id="text"),
-        pytest.param(2, {"inputs": (f"results/{DATA}", SUMMARY)}, {PAGE: "rule"}, id="table"),
-    ],
-)
+AFTER_DATA = dict.fromkeys((DATA, TABLE, PAGE), "configuration")
+OTHER_JOBS = {
+    "level": (0, {"settings": {"level": 0.6}}, AFTER_DATA),
+    "title": (2, {"settings": {"title": "Other"}}, {PAGE: "configuration"}),
+    "text": (2, {"inputs": (f"results/{TABLE}",)}, {PAGE: "sources"}),
+    "table": (2, {"inputs": (f"results/{DATA}", SUMMARY)}, {PAGE: "rule"}),
+}
+
+
+@pytest.mark.parametrize(("index", "change", "reasons"), OTHER_JOBS.values(), ids=OTHER_JOBS)
 def test_another_configuration_is_told(results, index, change, reasons):
     jobs = [*JOBS]
     jobs[index] = jobs[index]._replace(**change)
@@ -193,10 +165,8 @@ def test_a_file_that_no_rule_makes_is_not_known(results):
     (results / "logs").mkdir()
     (results / "logs/a.log").write_text("")
     write_text("{}", results / "records/gone.csv.json")
-    unknown = [
-        f"{results / name}: not known; no rule makes it"
-        for name in ("data/mine.nc", "records/gone.csv.json")
-    ]
+    names = ("data/mine.nc", "records/gone.csv.json")
+    unknown = [f"{results / name}: not known; no rule makes it" for name in names]
     assert problems(results)[0] == unknown
 
 

@@ -164,20 +164,3 @@ def test_schemes_that_do_not_solve_a_law_refuse_it(law, scheme, allowed):
     refusal = rf"scheme: '{scheme}'; allowed: {allowed}, with friction law '{law}'"
     with pytest.raises(ValueError, match=refusal):
         run(sp.friction(law, **EXAMPLES[law]), 0.05, scheme=scheme)
-
-
-@pytest.mark.parametrize(
-    ("law", "parameters", "refusal"),
-    [
-        ("velocity", {}, "law: 'velocity'; allowed: coulomb, linear_rate"),
-        ("coulomb", {"alpha": 0.1}, "alpha: 0.1; allowed: law 'coulomb' with nothing"),
-        ("slip_weakening", {"d_c": 0.1}, "nucleation: missing; allowed: law 'slip_weakening' with"),
-        ("slip_weakening", {"d_c": 0.0, "nucleation": 1.0}, "d_c: 0.0; allowed: a finite number"),
-        ("rate_weakening", {"slope": -1.0, "limit": 1.0}, "slope: -1.0; allowed: a finite number"),
-        ("linear_rate", {"alpha": np.nan}, "alpha: nan; allowed: a finite number"),
-    ],
-)
-def test_bad_laws_are_refused_in_one_line(law, parameters, refusal):
-    with pytest.raises(ValueError) as error:
-        sp.friction(law, **parameters)
-    assert str(error.value).startswith(refusal) and "\n" not in str(error.value)

@@ -82,26 +82,6 @@ def test_a_step_just_below_the_bound_is_stable_with_strong_strengthening(scheme)
         run(16.0, **values, max_step=1.03 * scene.largest_stable_step)
 
 
-@pytest.mark.parametrize(
-    ("boundary", "gamma", "alpha", "allowed"),
-    [
-        ("displacement", 0.65, -1.62, "> -2 sqrt(gamma) = -1.61245, or slip runs away"),
-        ("stress", 0.0, -0.01, ">= 0 without leaf springs, or slip runs away"),
-    ],
-)
-def test_weakening_by_which_slip_runs_away_is_refused(boundary, gamma, alpha, allowed):
-    calls = {
-        "friction.alpha": lambda: sp.Scene(
-            boundary, PROFILE, 1.0, 0.1, gamma=gamma, friction=law(alpha)
-        ),
-        "rate_strengthening": lambda: theory.Rupture(PROFILE, gamma, rate_strengthening=alpha),
-    }
-    for key, call in calls.items():
-        with pytest.raises(ValueError) as error:
-            call()
-        assert str(error.value) == f"{key}: {alpha}; allowed: {allowed}"
-
-
 @pytest.mark.parametrize("scheme", ["localised", "continuum"])
 @pytest.mark.parametrize("fraction", [0.8, 1.2])
 def test_a_run_in_which_nothing_sticks_any_more_is_flagged(fraction, scheme):
