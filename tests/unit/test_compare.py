@@ -12,35 +12,27 @@ from slippulse.report.compare import compare, main
 
 RUN = {"boundary": "stress", "left": -1.0, "right": 0.0, "width": 1.0, "gamma": 0.65}
 RUN |= {"damping_ratio": 0.1, "duration": 10.0, "release": "total"}
+OWN = "measurements/own.csv"
 TABLE, STUDY = "measurements/sweep.csv", "uncertainties/sweep.csv"
 CONFIG = {"preset": "paper", "model": {"release": "total"}}
 
 
-def tree(
-    folder,
-    run=None,
-    speed=1.0,
-    studied=None,
-    uncertainty=0.01,
-    verdict="reproduced",
-    config=None,
-    **columns,
-) -> Path:
+PLAIN = {"run": {}, "speed": 1.0, "uncertainty": 0.01, "verdict": "reproduced", "config": CONFIG}
+
+
+def tree(folder: Path, **changes) -> Path:
     """Results with one measured number and further columns, and a grid study of it."""
-    run = RUN | (run or {})
+    named = PLAIN | {key: changes.pop(key) for key in {*PLAIN} & {*changes}}
+    run, speed, studied = RUN | named["run"], named["speed"], changes.pop("studied", named["speed"])
     folder = folder / "results"
     for name in ("measurements", "uncertainties"):
         (folder / name).mkdir(parents=True)
     lattice = {"scheme": "localised", "dx": 0.01, "order": 8, "max_step": 1.0, "speed": speed}
-    pd.DataFrame([run | lattice | columns]).to_csv(folder / TABLE, index=False)
-    study = {
-        "quantity": "speed",
-        "value": speed if studied is None else studied,
-        "uncertainty": uncertainty,
-    }
+    pd.DataFrame([run | lattice | changes]).to_csv(folder / TABLE, index=False)
+    study = {"quantity": "speed", "value": studied, "uncertainty": named["uncertainty"]}
     pd.DataFrame([{"point": 0} | run | study]).to_csv(folder / STUDY, index=False)
-    (folder / "claims.json").write_text(json.dumps([{"id": "speed", "verdict": verdict}]))
-    (folder / "provenance.json").write_text(json.dumps({"config": config or CONFIG}))
+    (folder / "claims.json").write_text(json.dumps([{"id": "speed", "verdict": named["verdict"]}]))
+    (folder / "provenance.json").write_text(json.dumps({"config": named["config"]}))
     return folder
 
 
@@ -57,11 +49,7 @@ DIFFERENT = [
     # On one lattice everything agrees.
     ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: 1 against 1.5"),
     ({}, {"speed": NAN, "studied": 1.0}, "speed: 1 against nan"),
-    (
-        {"pulse_state": "steady"},
-        {"pulse_state": "unsteady"},
-        "pulse_state: 'steady' against 'unsteady'",
-    ),
+    ({"pulse_state": "a"}, {"pulse_state": "b"}, "pulse_state: 'a' against 'b'"),
     ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
     ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
     ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one tree only: width_at_end"),
@@ -80,10 +68,7 @@ CHANGED = pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}])
 MISSING = [
     # A run of a single figure with another gamma leaves the old study of uncertainties.
     (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
-    (
-        lambda tree: shutil.copy(tree / TABLE, tree / "measurements/own.csv"),
-        "own.csv: in one tree only",
-    ),
+    (lambda tree: shutil.copy(tree / TABLE, tree / OWN), "own.csv: in one tree only"),
     (lambda tree: (tree / "provenance.json").unlink(), "configurations not compared"),
     (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one tree only"),
     (lambda tree: shutil.rmtree(tree / "measurements"), "allowed: a finished tree of results"),
@@ -106,15 +91,12 @@ def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
 
 
 TEXT = ",".join(RUN) + "\n" + ",".join(["x"] * len(RUN)) + "\n"
+VALUE = "point,quantity,value,uncertainty\n0,speed,1x0,0.1\n"
 ODD = {
     "other columns": (TABLE, "a,b\n1,2\n", "no column boundary"),
     "other columns in a study": (STUDY, "a,b\n1,2\n", "no column point"),
     "text for a width": (TABLE, TEXT, "text in column left"),
-    "text for a value": (
-        STUDY,
-        "point,quantity,value,uncertainty\n0,speed,1x0,0.1\n",
-        "text in column value",
-    ),
+    "text for a value": (STUDY, VALUE, "text in column value"),
     "a folder for a table": (TABLE, None, "Is a directory"),
     "a folder for a study": (STUDY, None, "Is a directory"),
     "a folder for the provenance": ("provenance.json", None, "Is a directory"),
@@ -136,8 +118,5 @@ def test_an_odd_tree_is_refused_in_one_line(tmp_path, capsys, case, which):
     path.mkdir() if text is None else path.write_text(text)
     assert main([str(trees["here"]), str(trees["there"])]) == 1
     printed = capsys.readouterr().out
-    assert (
-        printed.startswith(f"{path}: cannot be read (")
-        and said in printed
-        and printed.count("\n") == 1
-    )
+    assert printed.startswith(f"{path}: cannot be read (")
+    assert said in printed and printed.count("\n") == 1

@@ -77,9 +77,8 @@ def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_
         run_sweep([*SCENES, broken], None, ("fronts",), 2)
 
 
-ONE = sp.Scene(
-    "displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, gamma=0.65, beta=0.005, max_step=0.4
-)
+STEP = {"gamma": 0.65, "beta": 0.005, "max_step": 0.4}
+ONE = sp.Scene("displacement", sp.Prestress(0.4, 0.6), 6.0, 0.05, **STEP)
 
 
 def test_a_sample_is_the_state_of_a_run_that_ends_there():

@@ -21,6 +21,8 @@ from slippulse.model.measured_columns import RECORD_FOR
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE = VERDICTS
 NAN = float("nan")
+KNOWN = [1e-4, 1e-4]
+EQUATION, OVER_CHOICES = rules.equation, rules.verdict_over_choices
 
 
 # A rule, its arguments (a tolerance where it takes one), and the verdict.
@@ -34,30 +36,18 @@ CASES = {
     "number: badly known, outside": (rules.within, (0.025, 0.02, 0.01), OPEN),
     "number: no deviation": (rules.within, (NAN, 0.001, 0.01), NONE),
     "number: no uncertainty": (rules.within, (0.001, NAN, 0.01), NONE),
-    "equation: the farthest off decides": (
-        rules.equation,
-        ([0.001, 0.02, 0.03], [1e-4] * 3, 0.01),
-        (NO, 2),
-    ),
-    "equation: a failure is not hidden": (
-        rules.equation,
-        ([0.001, 0.02], [0.5, 1e-4], 0.01),
-        (NO, 1),
-    ),
-    "equation: badly known": (rules.equation, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 0)),
-    "equation: one without a number": (
-        rules.equation,
-        ([NAN, 0.002], [1e-4, 1e-4], 0.01),
-        (YES, 1),
-    ),
-    "equation: no number": (rules.equation, ([NAN], [1e-4], 0.01), (NONE, None)),
-    "choices: all hold": (rules.verdict_over_choices, ([YES, YES, YES],), YES),
-    "choices: a caveat": (rules.verdict_over_choices, ([YES, CAVEAT, NONE],), CAVEAT),
-    "choices: one open": (rules.verdict_over_choices, ([OPEN, YES],), OPEN),
-    "choices: one fails": (rules.verdict_over_choices, ([YES, YES, NO],), DEPENDS),
-    "choices: one of each": (rules.verdict_over_choices, ([CAVEAT, NO, OPEN],), DEPENDS),
-    "choices: none holds": (rules.verdict_over_choices, ([NO, NO, OPEN],), NO),
-    "choices: no numbers": (rules.verdict_over_choices, ([NONE, NONE],), NONE),
+    "equation: the farthest off decides": (EQUATION, ([0.02, 0.03], KNOWN, 0.01), (NO, 1)),
+    "equation: a failure is not hidden": (EQUATION, ([0.001, 0.02], [0.5, 1e-4], 0.01), (NO, 1)),
+    "equation: badly known": (EQUATION, ([0.001, 0.002], [0.02, 1e-4], 0.01), (OPEN, 0)),
+    "equation: one without a number": (EQUATION, ([NAN, 0.002], KNOWN, 0.01), (YES, 1)),
+    "equation: no number": (EQUATION, ([NAN], [1e-4], 0.01), (NONE, None)),
+    "choices: all hold": (OVER_CHOICES, ([YES, YES, YES],), YES),
+    "choices: a caveat": (OVER_CHOICES, ([YES, CAVEAT, NONE],), CAVEAT),
+    "choices: one open": (OVER_CHOICES, ([OPEN, YES],), OPEN),
+    "choices: one fails": (OVER_CHOICES, ([YES, YES, NO],), DEPENDS),
+    "choices: one of each": (OVER_CHOICES, ([CAVEAT, NO, OPEN],), DEPENDS),
+    "choices: none holds": (OVER_CHOICES, ([NO, NO, OPEN],), NO),
+    "choices: no numbers": (OVER_CHOICES, ([NONE, NONE],), NONE),
     "worst: open": (rules.worst, ([YES, OPEN, CAVEAT],), OPEN),
     "worst: failed": (rules.worst, ([YES, NO, OPEN],), NO),
     "worst: none": (rules.worst, ([],), NONE),
@@ -157,15 +147,10 @@ def test_no_claim_compares_a_function_with_itself(project):
             assert quantities and {*quantities.strip().split(", ")} <= {*RECORD_FOR, *OF_RUNS}, id
 
 
+ESTIMATED = {"kind": "approximate", "tolerance": 0.2, "earlier_tolerance": 0.01, "sentences": []}
 ENTRIES = {
     "equation": {"kind": "exact", "tolerance": 0.01, "sentences": ["a"]},
-    "estimate": {
-        "kind": "approximate",
-        "tolerance": 0.2,
-        "earlier_tolerance": 0.01,
-        "sentences": [],
-        "follows_from": ["equation"],
-    },
+    "estimate": ESTIMATED | {"follows_from": ["equation"]},
 }
 LEVELS = [0.2, 0.4, 0.6, 0.8]
 
@@ -175,8 +160,7 @@ def evidence(measure=lambda level, factor: level, flagged: int | None = None) ->
     tables = []
     for factor in (1.0, 2.0, 4.0):
         numbers = [measure(level, factor) for level in LEVELS]
-        table = pd.DataFrame({"left": LEVELS, "run_flags": "", "number": numbers})
-        tables.append(table)
+        tables.append(pd.DataFrame({"left": LEVELS, "run_flags": "", "number": numbers}))
     if flagged is not None:
         tables[0].loc[flagged, "run_flags"] = "unresolved"
     coarser = [tables[1].assign(factor=2.0), tables[2].assign(factor=4.0)]
@@ -257,9 +241,8 @@ def test_what_must_hold_besides_decides_at_every_tolerance():
     numbers = {"deviations": np.array([0.1]), "left_out": 0, "median": (0.1, 0.001)}
     claim = Approximate(tolerance=0.2, besides=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
-    claim = Approximate(
-        tolerance=0.2, besides=lambda allowed: YES if allowed > 0.3 else OPEN, **numbers
-    )
+    far = lambda allowed: YES if allowed > 0.3 else OPEN
+    claim = Approximate(tolerance=0.2, besides=far, **numbers)
     assert claim.verdict() == OPEN
     assert [flip["above"] for flip in claim.flips()] == [OPEN, YES]
 
@@ -306,6 +289,8 @@ CLAIM |= {"deviation": 0.25, "further": {}, "why": "", "counted": True, "follows
 CLAIM |= {"flips_at": [], "choices": [], "at_earlier": "", "beyond": False}
 ESTIMATE = {"kind": "approximate", "exact_largest": None, "largest": None}
 SCALING = {"kind": "scaling", "tolerance": 0.1}
+ZERO = {"predicted": 0.0, "deviation": 0.5, "tolerance": 0.1}
+UNLIKELY = {"deviation": 2e-4}
 ALWAYS = {"kind": "qualitative", "held": 4, "failed": 0, "undecided": 0, "runs": 5}
 READING = {"kind": "reading", "predicted": 7.0, "measured": 1.62, "deviation": 0.98}
 READING |= {"tolerance": 0.05}
@@ -320,17 +305,11 @@ def claim(**fields) -> SimpleNamespace:
 WHY = {
     "reproduced": ({"verdict": "reproduced"}, ""),
     "equation": ({}, "It is off by 25 %, tolerance 20 %; its uncertainty is 1 %."),
-    "zero predicted": (
-        {"predicted": 0.0, "deviation": 0.5, "tolerance": 0.1},
-        "It is off by 0.50, tolerance 0.1; its uncertainty is 0.0100.",
-    ),
+    "zero predicted": (ZERO, "It is off by 0.50, tolerance 0.1; its uncertainty is 0.0100."),
     "estimate": (ESTIMATE, "It is off by median 25 %, tolerance 20 %; its uncertainty is 1 %."),
     "scaling": (SCALING, "It is off by 0.25, tolerance 0.1; its uncertainty is 1 %."),
     "always": (ALWAYS | {"failed": 1}, "It holds in 4 of 5 cases, with 1 against."),
-    "reading": (
-        READING | {"deviation": 2e-4},
-        "At the best fit p = 2.0×10⁻⁴, at least 0.05 is asked.",
-    ),
+    "reading": (READING | UNLIKELY, "At the best fit p = 2.0×10⁻⁴, at least 0.05 is asked."),
     "not testable": ({"verdict": "not testable"}, "This run leaves no number to judge by."),
     "its own reason": ({"why": "It needs a reason."}, "It needs a reason."),
 }
