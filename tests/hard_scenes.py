@@ -81,18 +81,16 @@ def barriers(rng: np.random.Generator) -> Prestress:
 def asymmetric(rng: np.random.Generator) -> Prestress:
     left, right = rng.uniform(-0.9, 0.9, 2)
     steps = ((rng.choice([-1, 1]) * rng.uniform(1.0, 9.0), rng.uniform(-0.9, 0.9)),)
-    return Prestress(
-        left, right, rng.uniform(0.4, 2.5), steps=steps, bumps=bumps(rng, 1, -0.5, 0.5)
-    )
+    width = rng.uniform(0.4, 2.5)
+    return Prestress(left, right, width, steps=steps, bumps=bumps(rng, 1, -0.5, 0.5))
 
 
 def ending_tails(rng: np.random.Generator) -> Prestress:
     left, right = rng.uniform(-0.6, 0.8, 2)
     ends = rng.uniform(2.0, 9.0, 2)
     beyond = rng.choice([0.0, -0.2, -0.6], 2)
-    return Prestress(
-        left, right, rng.uniform(0.5, 2.0), steps=((-ends[0], beyond[0]), (ends[1], beyond[1]))
-    )
+    steps = ((-ends[0], beyond[0]), (ends[1], beyond[1]))
+    return Prestress(left, right, rng.uniform(0.5, 2.0), steps=steps)
 
 
 def stop_and_go(rng: np.random.Generator) -> Prestress:
@@ -101,13 +99,8 @@ def stop_and_go(rng: np.random.Generator) -> Prestress:
     humps = []
     for side in (1.0, -1.0)[: rng.integers(1, 3)]:
         size = rng.uniform(0.4, 1.2)
-        humps.append(
-            (
-                side * (2.0 * width + rng.uniform(1.0, 2.5) * size),
-                rng.uniform(0.3, 1.4) - level,
-                size,
-            )
-        )
+        centre = side * (2.0 * width + rng.uniform(1.0, 2.5) * size)
+        humps.append((centre, rng.uniform(0.3, 1.4) - level, size))
     return Prestress(level, level, width, bumps=tuple(humps))
 
 
@@ -129,9 +122,8 @@ def scene(number: int) -> Keys:
     gamma = 0.0 if stress else float(10.0 ** rng.uniform(-1.5, 0.0))
     ratio = float(rng.choice([0.0, 0.1, 10.0 ** rng.uniform(-2.0, 0.3)]))
     duration = min(rng.uniform(0.7, 1.8) * np.pi / np.sqrt(gamma or 0.25), 25.0)
-    return Keys(
-        FAMILIES[family](rng), gamma, ratio, str(rng.choice(["total", "elastic"])), duration
-    )
+    prestress, release = FAMILIES[family](rng), str(rng.choice(["total", "elastic"]))
+    return Keys(prestress, gamma, ratio, release, duration)
 
 
 class Answers:

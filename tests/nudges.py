@@ -10,10 +10,8 @@ from slippulse.model.prestress import Prestress
 def nudged(value, rng: np.random.Generator):
     """Numbers moved by 1 to 4 units in the last place, in tuples, arrays, a pre-stress; 0 stays."""
     if isinstance(value, Prestress):
-        keys = {
-            f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.name != "peak"
-        }
-        moved = {name: nudged(key, rng) for name, key in keys.items()}
+        names = [field.name for field in dataclasses.fields(value) if field.name != "peak"]
+        moved = {name: nudged(getattr(value, name), rng) for name in names}
         if value.symmetric:
             moved |= {"right": moved["left"], "steps": value.steps, "bumps": value.bumps}
         return dataclasses.replace(value, **moved)

@@ -14,6 +14,7 @@ from slippulse.steps import join, measure, simulate, study_grid
 
 # The digest of a configuration, which each file notes.
 CONFIGURATION = "0123456789abcdef"
+EVEN = {"left": 0.3, "right": 0.3}
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either
 # kind alone too. A level of 0, so that integers in one chunk are fractions in the next.
@@ -43,10 +44,7 @@ SWEEPS = {
         "duration": {"time": 4.0},
         "record": ["fronts", "samples"],
         # A symmetric profile and an oblique one.
-        "profiles": [
-            {"left": 0.3, "right": 0.3},
-            {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]},
-        ],
+        "profiles": [EVEN, {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]}],
         "samples": {"times": 4, "positions": 1, "extent": 0.0},
         "resolved_blocks": 1,
     },

@@ -82,33 +82,31 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
     """The two evaluations of the velocity may differ in the sign of a rounding error."""
     random = np.random.default_rng(0)
     for _ in range(2000):
-        coefficients = np.array(
-            [random.uniform(0.1, 1), random.uniform(-3, -1), *random.uniform(-1, 1, 3)]
-        )
+        start = [random.uniform(0.1, 1), random.uniform(-3, -1)]
+        coefficients = np.array([*start, *random.uniform(-1, 1, 3)])
         if from_python(foresight.polynomial)(coefficients, 4, 1.0) < 0.0:
             root = from_python(foresight.crossing)(coefficients, 4, 0.0, 1.0)
             for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):
                 assert stop(coefficients, h) in ((), (pytest.approx(root, abs=1e3 * tol.ROOT),))
 
 
-@pytest.mark.parametrize(
-    ("height", "speed", "slowing", "h", "now", "release"),
-    [
-        # Stress 0.9 + 3.2 t - 6.4 t^2 passes 1, and comes back below it at 0.4665.
-        (0.9, 3.2, 12.8, 0.5, 0.0, min(np.roots([-6.4, 3.2, -0.1]))),
-        (0.9, 3.2, 12.8, 0.6, 0.47, math.inf),
-        # Stress of at most 1.00125, between two instants at which it is evaluated; and 0.99925.
-        (0.9, 0.9, 4.0, 1.0, 0.0, min(np.roots([-2.0, 0.9, -0.1]))),
-        (0.898, 0.9, 4.0, 1.0, 0.0, math.inf),
-        # Above from the start.
-        (1.0, 0.0, 0.0, 0.5, 0.0, 0.0),
-        (0.9, 1.0, 0.0, 0.5, 0.2, 0.2),
-    ],
-)
-def test_a_block_is_released_when_its_stress_passes_the_threshold(
-    height, speed, slowing, h, now, release
-):
-    """A neighbour moves with ``speed`` and ``slowing``."""
+# Stress, speed and slowing of a neighbour, step, time, and the release.
+RELEASES = [
+    # Stress 0.9 + 3.2 t - 6.4 t^2 passes 1, and comes back below it at 0.4665.
+    (0.9, 3.2, 12.8, 0.5, 0.0, min(np.roots([-6.4, 3.2, -0.1]))),
+    (0.9, 3.2, 12.8, 0.6, 0.47, math.inf),
+    # Stress of at most 1.00125, between two instants at which it is evaluated; and 0.99925.
+    (0.9, 0.9, 4.0, 1.0, 0.0, min(np.roots([-2.0, 0.9, -0.1]))),
+    (0.898, 0.9, 4.0, 1.0, 0.0, math.inf),
+    # Above from the start.
+    (1.0, 0.0, 0.0, 0.5, 0.0, 0.0),
+    (0.9, 1.0, 0.0, 0.5, 0.2, 0.2),
+]
+
+
+@pytest.mark.parametrize("case", RELEASES)
+def test_a_block_is_released_when_its_stress_passes_the_threshold(case):
+    (height, speed, slowing), (h, now, release) = case[:3], case[3:]
     motion, forecast = arrays.make_motion(6, 5), arrays.make_forecast(5, 4)
     motion.w[1, 1], motion.w[2, 1], motion.tau[2] = speed, -slowing, height
     medium = arrays.make_medium(1.0, 0.0, 0.0, False, True)

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from slippulse.model.balance import root_to_last_bit
-from slippulse.model.roots import (
-    increasing_roots,
-    root_between,
-    roots_between,
-)
+from slippulse.model.roots import increasing_roots, root_between, roots_between
 
 VALUES = np.array([0.1, 0.5, 2.0, 900.0])
 

@@ -193,10 +193,7 @@ def wave_equation_at_zero(layer, tau, random):
 
 
 def layer_average(layer, tau, random):
-    """Mean over the height of the divergence of stress, by exact quadrature, and equation (3).
-
-    u_y = 0, and y is in units of H.
-    """
+    """Mean over y of the divergence of stress, where u_y = 0, by quadrature, and equation (3)."""
     u = random.normal(size=(DEGREE + 1, DEGREE + 1))
     x = random.uniform(-1.0, 1.0)
     shear = layer.shear_modulus / layer.thickness**2
@@ -316,30 +313,22 @@ def burridge_knopoff_identity(layer, tau, random):
     return [relative(force / mass * layer.time_scale**2 / scale, scheme)]
 
 
-FORMULAS = (
-    wave_equation_at_zero,
-    layer_average,
-    displacement_reduction,
-    prestress_is_initial_displacement,
-    nondimensional_form,
-    units_wave_speed,
-    pulse_algebra,
-    transition_estimate_algebra,
-    burridge_knopoff_identity,
-)
+FORMULAS = (wave_equation_at_zero, layer_average, displacement_reduction, nondimensional_form)
+FORMULAS += (prestress_is_initial_displacement, units_wave_speed, pulse_algebra)
+FORMULAS += (transition_estimate_algebra, burridge_knopoff_identity)
 ALGEBRA = {formula.__name__: formula for formula in FORMULAS} | {
     # Equation (7) at the static strength, forwards.
-    "static_threshold": lambda layer, *_: [
-        layer.prestress(layer.static_friction * layer.normal_stress)
+    "static_threshold": lambda rock, *_: [
+        rock.prestress(rock.static_friction * rock.normal_stress)
     ],
-    "dimensional_transition_length": lambda layer, tau, _: dimensional_lengths(layer, tau)[:1],
+    "dimensional_transition_length": lambda rock, tau, _: dimensional_lengths(rock, tau)[:1],
     # The printed one is half of it.
-    "dimensional_peak_velocity": lambda layer, *_: [
-        2.0 * layer.printed_peak_velocity() / layer.peak_velocity()
+    "dimensional_peak_velocity": lambda rock, *_: [
+        2.0 * rock.printed_peak_velocity() / rock.peak_velocity()
     ],
-    "dimensional_width": lambda layer, tau, _: dimensional_lengths(layer, tau)[1:],
-    "transition_length_scales_with_H": lambda layer, tau, _: (
-        dimensional_lengths(layer, tau, 2.0) / 2.0
+    "dimensional_width": lambda rock, tau, _: dimensional_lengths(rock, tau)[1:],
+    "transition_length_scales_with_H": lambda rock, tau, _: (
+        dimensional_lengths(rock, tau, 2.0) / 2.0
     ),
     "damage_zone_stress_drop": damage_zone_in_series,
     # A zone of 1e-9 of the stiffness of rock ten times as thick.

@@ -12,19 +12,13 @@ import slippulse as sp
 
 DURATION = 16.0
 REACH = 40
+UNEVEN = sp.Prestress(0.2, 0.6, bumps=((5.0, -0.7, 1.0),))
+TWO_POINTS = sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0)))
 PROFILES = {
     "displacement, even": ("displacement", 0.3, sp.Prestress(0.3, 0.3)),
-    "displacement, uneven": (
-        "displacement",
-        0.5,
-        sp.Prestress(0.2, 0.6, bumps=((5.0, -0.7, 1.0),)),
-    ),
+    "displacement, uneven": ("displacement", 0.5, UNEVEN),
     "stress, one-way": ("stress", 0.0, sp.Prestress(-0.5, 0.0)),
-    "stress, two points": (
-        "stress",
-        0.0,
-        sp.Prestress(-0.2, 0.1, bumps=((9.0, 1.0, 1.0), (-7.0, 0.3, 2.0))),
-    ),
+    "stress, two points": ("stress", 0.0, TWO_POINTS),
 }
 RULES = ((0.0, "total"), (0.3, "total"), (0.3, "elastic"))
 CASES = [(name, *rule) for name, rule in product(PROFILES, RULES)]

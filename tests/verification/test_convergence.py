@@ -25,9 +25,8 @@ STEPS = (0.2, 0.1, 0.05)
 def run(base: str, **accuracy):
     """The blocks that are released by the end in every case."""
     boundary, gamma, beta, profile = BASES[base]
-    scene = sp.Scene(
-        boundary, profile, 10.0, 0.1, gamma=gamma, beta=beta, resolved_blocks=1, **accuracy
-    )
+    how = {"resolved_blocks": 1} | accuracy
+    scene = sp.Scene(boundary, profile, 10.0, 0.1, gamma=gamma, beta=beta, **how)
     return sp.simulate(scene).sel(x=slice(-8.0, 8.0))
 
 
@@ -52,17 +51,11 @@ def slope(steps, errors) -> float:
     return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
-@pytest.mark.parametrize(
-    ("order", "quantity", "above"),
-    [
-        (4, "release_time", tol.ORDER_ABOVE),
-        (4, "slip", tol.ORDER_ABOVE),
-        (6, "release_time", tol.ORDER_ABOVE),
-        (6, "slip", tol.ORDER_ABOVE),
-        (3, "slip", math.inf),
-        (5, "slip", math.inf),
-    ],
-)
+ORDERS = [(order, name, tol.ORDER_ABOVE) for order in (4, 6) for name in ("release_time", "slip")]
+ORDERS += [(order, "slip", math.inf) for order in (3, 5)]
+
+
+@pytest.mark.parametrize(("order", "quantity", "above"), ORDERS)
 @pytest.mark.parametrize("base", BASES)
 def test_release_times_and_slip_converge_at_the_order_of_the_step(base, order, quantity, above):
     observed = orders(errors(base, quantity, order=order))[-1]
@@ -131,9 +124,8 @@ def test_the_energy_balance_closes(paper_accuracy, case, rates):
     numbers = sp.simulate(scene).attrs
     assert numbers["energy_residual"] < tol.ENERGY
     stored = ("kinetic_energy", "elastic_energy", "leaf_spring_energy", "viscous_loss")
-    assert numbers["work_of_prestress"] == pytest.approx(
-        sum(map(numbers.get, stored)), rel=tol.ENERGY
-    )
+    all_of_it = sum(map(numbers.get, stored))
+    assert numbers["work_of_prestress"] == pytest.approx(all_of_it, rel=tol.ENERGY)
     assert np.sign(numbers["viscous_loss"]) == np.sign(ratio + alpha)
     finer = replace(scene, max_step=0.1 * scene.max_step, order=8)
     assert sp.simulate(finer).attrs["energy_residual"] < tol.ENERGY_FINE

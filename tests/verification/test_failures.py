@@ -8,10 +8,8 @@ from slippulse.solver.fixed_step import LATTICES
 from slippulse.solver.solution import solve_on_lattice
 
 
-def displacement(
-    left: float, duration: float, dx: float, right: float | None = None, **values
-) -> sp.Scene:
-    prestress = sp.Prestress(left, left if right is None else right)
+def displacement(left: float, duration: float, dx: float, **values) -> sp.Scene:
+    prestress = sp.Prestress(left, values.pop("right", left))
     return sp.Scene("displacement", prestress, duration, dx, **{"gamma": 0.65} | values)
 
 

@@ -23,10 +23,8 @@ EXAMPLES = {
 
 def run(law, dx, level=0.5, duration=40.0, beta=BETA, step=0.1, **values):
     values = {"scheme": "fixed_step", "max_step": step, "beta": beta} | values
-    profile = sp.Prestress(level, level)
-    return sp.simulate(
-        sp.Scene("displacement", profile, duration, dx, GAMMA, friction=law, **values)
-    )
+    layer = "displacement", sp.Prestress(level, level)
+    return sp.simulate(sp.Scene(*layer, duration, dx, GAMMA, friction=law, **values))
 
 
 def test_every_law_has_an_example():
@@ -37,9 +35,8 @@ def test_every_law_has_an_example():
 @pytest.mark.parametrize("half", [True, False])
 def test_the_energy_balance_closes_with_the_work_against_friction(law, half):
     friction = sp.friction(law, **EXAMPLES[law])
-    coarse, fine = (
-        run(friction, 0.05, 0.7, 15.0, step=step, half_lattice=half).attrs for step in (0.04, 0.02)
-    )
+    scene = friction, 0.05, 0.7, 15.0
+    coarse, fine = (run(*scene, step=step, half_lattice=half).attrs for step in (0.04, 0.02))
     if law in ("coulomb", "linear_rate"):
         assert fine["friction_loss"] == 0.0
         return
@@ -81,10 +78,8 @@ def test_slip_weakening_selects_the_speed_of_theory_as_the_spacing_falls(level, 
 def test_lattices_tend_to_the_steady_pulse_of_a_bounded_law_of_slip_rate(law, ratio):
     friction = sp.friction(law, **EXAMPLES[law])
     exact = theory.rate_pulse(0.5, GAMMA, ratio, friction)
-    step = 0.0213
-    measured = [
-        sp.measure(run(friction, dx, duration=25.0, beta=ratio * dx, step=step)) for dx in SPACINGS
-    ]
+    how = {"duration": 25.0, "step": 0.0213}
+    measured = [sp.measure(run(friction, dx, beta=ratio * dx, **how)) for dx in SPACINGS]
     errors = [abs(numbers["pulse_slip"] / exact.slip - 1.0) for numbers in measured]
     assert errors[0] >= errors[1] >= errors[2] and errors[2] < 5e-3
     # Fronts of this scheme lock to a whole number of steps a block.

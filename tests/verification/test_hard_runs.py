@@ -47,7 +47,7 @@ def made_up(reached, stopped=0.0, pulses=(), wait=0.0) -> dict:
     return measured_row(xr.Dataset(data, {"x": x}, attributes), SETTINGS)
 
 
-def a_promise_looks_at_the_prestress_that_fronts_cross():
+def test_a_promise_looks_at_the_prestress_that_fronts_cross():
     """L of the first scene was 1.7e-2 off at an accuracy of 1e-2, and said to be 4e-4 off."""
     for distance, promised in ((2.92, False), (60.0, True)):
         barriers = ((distance, -1.096, 0.938), (-distance, -1.096, 0.938))
@@ -56,7 +56,7 @@ def a_promise_looks_at_the_prestress_that_fronts_cross():
         assert covers(row, "transition_length", 0.95) == promised
 
 
-def an_undone_first_stick_is_flagged():
+def test_an_undone_first_stick_is_flagged():
     for dx in (0.04, 0.02):
         row = measured(-0.5, 0.5, duration=6.0, dx=dx, ratio=0.0)
         assert row["first_stick_time"] < 3.0 and row["run_flags"] == "first_stick_undone"
@@ -66,24 +66,22 @@ def an_undone_first_stick_is_flagged():
     assert row["first_stick_time"] == pytest.approx(exact.time, rel=0.01)
 
 
-def strong_damping_has_a_step_that_its_front_allows():
+def test_strong_damping_has_a_step_that_its_front_allows():
     """At 0.9 of the stability bound the fronts were 0.8 to 1.4 per cent slow at order 4."""
     for ratio in (2.0, 10.0):
         exact = theory.front_speed(0.5, ratio)
         for order in (4, 8):
             step = chosen_step("localised", order, ratio, 0.0)
             for factor, flags in ((1.0, ""), (1.3, "long_step")):
-                scene = sp.Scene(
-                    "stress", sp.Prestress(0.5, 0.5), 2.0, 0.05, beta=0.05 * ratio, order=order,
-                    max_step=factor * step,
-                )  # fmt: skip
+                how = {"beta": 0.05 * ratio, "order": order, "max_step": factor * step}
+                scene = sp.Scene("stress", sp.Prestress(0.5, 0.5), 2.0, 0.05, **how)
                 numbers = sp.measure(sp.simulate(scene))
                 assert numbers["run_flags"] == flags
                 if not flags:
                     assert numbers["front_speed_right"] == pytest.approx(exact, rel=1e-3)
 
 
-def a_rough_chain_that_a_long_step_moves_is_flagged():
+def test_a_rough_chain_that_a_long_step_moves_is_flagged():
     """Near the stability bound slip was up to 61 per cent off, and the energy balance closed."""
     centres = [*range(-15, 0), *range(1, 16)]
     for seed in (9, 12, 13):
@@ -92,10 +90,8 @@ def a_rough_chain_that_a_long_step_moves_is_flagged():
         layer = sp.Prestress(0.4, 0.4, 1.0, 1.01, (), bumps)
         slips = []
         for order, step, flags in ((8, 0.02, ""), (5, 0.6, ""), (5, 1.33, "long_step")):
-            scene = sp.Scene(
-                "displacement", layer, 12.0, 1.0, 0.3, 0.1, max_step=step, order=order,
-                resolved_blocks=1,
-            )  # fmt: skip
+            how = {"max_step": step, "order": order, "resolved_blocks": 1}
+            scene = sp.Scene("displacement", layer, 12.0, 1.0, 0.3, 0.1, **how)
             run = sp.simulate(scene)
             assert run.attrs["run_flags"] == flags
             slips.append(run["slip"])
@@ -104,7 +100,7 @@ def a_rough_chain_that_a_long_step_moves_is_flagged():
         assert float(abs(long - exact).max()) > 0.02 * float(exact.max())
 
 
-def a_front_that_stopped_is_not_extrapolated():
+def test_a_front_that_stopped_is_not_extrapolated():
     """It was said to be at 30 and to have the patch as its pulse."""
     for pulses in ((), ((2.0, 3.0, 3.0),)):
         row = made_up(12.0, stopped=15.0, pulses=pulses)
@@ -112,7 +108,7 @@ def a_front_that_stopped_is_not_extrapolated():
         assert row["pulse_peak_velocity"] == 0.0 and np.isnan(row["pulse_width"])
 
 
-def the_leading_one_of_two_pulses_is_measured():
+def test_the_leading_one_of_two_pulses_is_measured():
     pulse, other = (27.0, 30.0, 1.0), (2.0, 5.0, 1.3)
     one, two = made_up(30.0, pulses=(pulse,)), made_up(30.0, pulses=(pulse, other))
     assert two["pulse_state"] == "several" != one["pulse_state"]
@@ -121,22 +117,6 @@ def the_leading_one_of_two_pulses_is_measured():
     assert two["pulse_width"] == pytest.approx(3.0, abs=0.1)
 
 
-def a_front_is_measured_after_its_pause():
+def test_a_front_is_measured_after_its_pause():
     row = made_up(30.0, wait=8.0)
     assert row["front_speed_right"] == pytest.approx(SPEED, rel=tol.ALGEBRA)
-
-
-CASES = [
-    a_promise_looks_at_the_prestress_that_fronts_cross,
-    an_undone_first_stick_is_flagged,
-    strong_damping_has_a_step_that_its_front_allows,
-    a_rough_chain_that_a_long_step_moves_is_flagged,
-    a_front_that_stopped_is_not_extrapolated,
-    the_leading_one_of_two_pulses_is_measured,
-    a_front_is_measured_after_its_pause,
-]
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
-def test_what_was_wrong_is_right_or_flagged(case):
-    case()

@@ -17,13 +17,8 @@ from slippulse.model.stability import largest_step
 from slippulse.solver.fixed_step import LATTICES
 
 FIELDS = ("release_time", "stick_time", "slip", "slip_velocity", "slip_acceleration")
-SETTINGS = settings(
-    max_examples=600,
-    derandomize=True,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+SAME = {"derandomize": True, "deadline": None, "database": None}
+SETTINGS = settings(max_examples=600, suppress_health_check=list(HealthCheck), **SAME)
 # Each scene takes some tenths of a second, too long to search for the simplest failure.
 FEWER = settings(SETTINGS, max_examples=200, phases=[Phase.generate])
 # The number of scenes of each kind.
@@ -59,9 +54,8 @@ def random_scenes(draw) -> sp.Scene:
     duration = draw(st.one_of(real(0.5, 3.0), real(5.0, 10.0)))
     release = draw(st.sampled_from(RELEASES))
     max_step = min(0.5, 0.9 * bound) * draw(st.sampled_from([0.25, 0.5, 1.0]))
-    return sp.Scene(
-        boundary, profile, duration, dx, gamma, ratio * dx, release, scheme, max_step, order
-    )
+    how = release, scheme, max_step, order
+    return sp.Scene(boundary, profile, duration, dx, gamma, ratio * dx, *how)
 
 
 # A front of the textbook scheme that moves by a block a step, near the end of its lattice.

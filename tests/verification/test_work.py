@@ -11,12 +11,9 @@ from slippulse.model.scene import Scene
 from slippulse.solver.lattice import Lattice
 from slippulse.solver.solution import solve_on_lattice
 
-PULSE = Scene(
-    "displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, beta=0.1 * 0.04, max_step=0.5
-)
-CRACK = Scene(
-    "stress", Prestress(0.5, 0.5), 50.0, 0.04, beta=0.1 * 0.04, max_step=0.5, half_lattice=False
-)
+HOW = {"beta": 0.1 * 0.04, "max_step": 0.5}
+PULSE = Scene("displacement", Prestress(0.5, 0.5), 50.0, 0.04, gamma=0.65, **HOW)
+CRACK = Scene("stress", Prestress(0.5, 0.5), 50.0, 0.04, half_lattice=False, **HOW)
 # Scene; expected block updates a step over the mean number of sliding blocks (1: no others are
 # touched, 1/2: half of a symmetric scene); most blocks changed by events over block updates; least
 # blocks of the lattice over the sliding ones.
