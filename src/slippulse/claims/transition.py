@@ -214,8 +214,9 @@ def held_stress(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     why = ""
     if drawn:
         over, error = drawn.values()
-        why = f"The paper calls agreement an arrow of {with_uncertainty(over, error)} times "
-        why += "the estimate, read off figure 4, right, whose origin may be shifted besides."
+        why = "The paper says that the estimate is short, and calls agreement an arrow of "
+        why += f"{with_uncertainty(over, error)} times it, at the pre-stress that we read off "
+        why += "figure 4, right; its origin may be shifted besides."
     further = drawn | fraction_medians(combinations)
     return over_choices(combinations, from_exact=exact, further=further, why=why)
 
