@@ -84,6 +84,18 @@ def test_samples_reach_beyond_the_fronts_and_the_figure_shows_them(drawn, name):
         assert label.split("_")[0].strip("|") in texts
 
 
+def test_the_pre_stress_goes_on_beyond_the_lattice(drawn):
+    """The front stops inside the barrier, so the lattice ends there, and the level lies beyond."""
+    run, table = drawn["barrier"].run, drawn["barrier"].table
+    profile = table[table["role"] == "prestress"]
+    position, value = profile["position"].to_numpy(), profile["value"].to_numpy()
+    assert position[-1] > run["x"].values[-1] and run["prestress"].values[-1] < 0.0
+    prestress = sp.Prestress(0.5, 0.2, bumps=((10.0, -2.5, 1.0),))
+    # Positions are written to nine digits, and the barrier is steep.
+    assert value == pytest.approx(prestress(position), rel=1e-6, abs=1e-6)
+    assert position[np.argmax(value)] == pytest.approx(0.0, abs=1e-9)
+
+
 def test_numbers_agree_with_theory_where_there_is_one(drawn):
     numbers = drawn["displacement"].numbers.set_index("quantity")
     for quantity in ("front_speed_right", "transition_time", "pulse_peak_velocity", "pulse_slip"):
