@@ -38,7 +38,7 @@ CLAIM = {
     "figure": "fig01_one",
 }
 CLAIM |= {"further": {}, "follows_from": [], "flips_at": [], "choices": [], "at_earlier": ""}
-CLAIM |= {"beyond": False}
+CLAIM |= {"beyond": False, "asked": ""}
 CLAIM |= dict.fromkeys(["held", "failed", "undecided", "ninety", "largest"])
 CLAIM |= dict.fromkeys(["exact_median", "exact_largest"])
 

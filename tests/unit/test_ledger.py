@@ -19,7 +19,7 @@ from slippulse.claims.rules import VERDICTS, WORST_FIRST
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.model.measured_columns import RECORD_FOR
 
-YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE = VERDICTS
+YES, CAVEAT, DEPENDS, UNMET, NO, BEYOND, OPEN, NONE = VERDICTS
 NAN = float("nan")
 KNOWN = [1e-4, 1e-4]
 EQUATION, OVER_CHOICES = rules.equation, rules.verdict_over_choices
@@ -241,6 +241,7 @@ def test_what_must_hold_besides_decides_at_every_tolerance():
     numbers = {"deviations": np.array([0.1]), "left_out": 0, "median": (0.1, 0.001)}
     claim = Approximate(tolerance=0.2, besides=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
+    assert replace(claim, beyond=True).verdict() == BEYOND
     far = lambda allowed: YES if allowed > 0.3 else OPEN
     claim = Approximate(tolerance=0.2, besides=far, **numbers)
     assert claim.verdict() == OPEN
@@ -286,7 +287,7 @@ def test_what_is_missing_is_named(tmp_path):
 CLAIM = {"id": "one", "kind": "exact", "verdict": "not reproduced", "note": "", "source": "runs"}
 CLAIM |= {"predicted": 1.0, "measured": 1.25, "uncertainty": 0.01, "tolerance": 0.2}
 CLAIM |= {"deviation": 0.25, "further": {}, "why": "", "counted": True, "follows_from": []}
-CLAIM |= {"flips_at": [], "choices": [], "at_earlier": "", "beyond": False}
+CLAIM |= {"flips_at": [], "choices": [], "at_earlier": "", "beyond": False, "asked": ""}
 ESTIMATE = {"kind": "approximate", "exact_largest": None, "largest": None}
 SCALING = {"kind": "scaling", "tolerance": 0.1}
 ZERO = {"predicted": 0.0, "deviation": 0.5, "tolerance": 0.1}

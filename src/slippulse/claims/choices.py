@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import permutations
 from typing import Any, NamedTuple
 
@@ -53,8 +53,15 @@ class Change(NamedTuple):
 
 
 def changes(combinations: Iterable[Combination]) -> list[Change]:
-    """All ordered pairs of combinations with a deviation that differ in one choice alone."""
-    measured = [one for one in combinations if one.result["deviation"] is not None]
+    """All ordered pairs of combinations with a deviation that differ in one choice alone.
+
+    The last release is that of a lattice, so that what it changes with is no choice of the paper.
+    """
+    measured = [
+        one
+        for one in combinations
+        if one.result["deviation"] is not None and one.choice.get("fraction") != LAST
+    ]
     out = []
     for before, after in permutations(measured, 2):
         names = before.choice | after.choice
@@ -108,15 +115,13 @@ class OverChoices(ByNumber):
             holding, failing = (
                 [row["deviation"] for row in rows if row["holds"] is side] for side in (True, False)
             )
-            words = partial(number, digits=2) if isinstance(self.shown, Scaling) else percent
             causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
             why = (
                 f"{self.shown.why} It holds at {out['holds_at']} of {len(rows)} combinations, with "
             )
-            why += (
-                f"deviations up to {words(max(holding))}, and fails with {words(min(failing))} or "
-            )
-            out["why"] = f"{why}more. It depends on {causes}.".strip()
+            most, least = self.size(max(holding)), self.size(min(failing))
+            why += f"deviations up to {most}, and fails with {least} or more."
+            out["why"] = f"{why} It depends on {causes}.{self.at_last_release()}".strip()
         elif out["verdict"] == rules.CAVEAT:
             unsure = next(one for one in self.combinations if one.result["verdict"] == rules.CAVEAT)
             settings = [
@@ -131,17 +136,31 @@ class OverChoices(ByNumber):
     def written(self) -> dict[str, Any]:
         return self.shown.written() | self.fields() | {"flips_at": self.flips()}
 
+    def size(self, deviation: float, digits: int = 2) -> str:
+        """A deviation in the unit of the kind: of an exponent, or relative."""
+        if isinstance(self.shown, Scaling):
+            return number(deviation, 2)
+        return percent(deviation, digits)
+
+    def at_last_release(self) -> str:
+        """How far the last release is off, in a sentence; empty if it is no choice."""
+        last = [one.result for one in self.combinations if one.choice.get("fraction") == LAST]
+        sizes = [result["deviation"] for result in last if result["deviation"] is not None]
+        if not sizes:
+            return ""
+        low, high = self.size(min(sizes)), self.size(max(sizes))
+        text = f" At {len(sizes)} of the combinations, at the last release, it is off by {low} to "
+        return f"{text}{high}, and that it depends on the damping there is the lattice's doing."
+
     def cause(self, name: str, change: Change | None) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""
         sides = []
         for one in (change.before, change.after) if change else ():
-            size = percent(one.result["deviation"], 3)
+            size = self.size(one.result["deviation"], 3)
             if isinstance(self.shown, Scaling):
-                size = f"exponent off by {number(one.result['deviation'], 2)}"
+                size = f"exponent off by {size}"
             elif isinstance(self.shown, Qualitative):
                 size += " of the runs against"
-            if name != "fraction" and one.choice.get("fraction") == LAST:
-                size += ", at the last release"
             verb = "holds" if one.result["holds"] else "fails"
             sides.append(f"it {verb} at {named(one.choice[name])} ({size})")
         return f"{NAMES[name]}: {' and '.join(sides)}"

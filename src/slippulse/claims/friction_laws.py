@@ -25,7 +25,9 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     wide = len(two_way) > 0 and fewest > ABOUT_ONE
     shown = " and ".join(f"{count} of {runs} runs {name}" for name, (count, runs) in cases.items())
     why = f"There are pulses in {shown} leaf springs, the others arrest; they are "
-    why += f"{number(fewest)} to {number(most)} blocks wide, not about one."
+    why += (
+        f"{number(fewest)} to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
+    )
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
     decided = [True if count else None for count, _ in cases.values()]
     why = why if wide else ""

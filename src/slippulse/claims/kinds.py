@@ -87,6 +87,8 @@ class ByNumber(Claim):
     tolerance: float
     # The verdict, at a tolerance, on what must hold besides.
     besides: Callable[[float], str] | None = None
+    # The paper does not make it.
+    beyond: bool = False
 
     @abstractmethod
     def by_number(self, tolerance: float) -> str:
@@ -95,7 +97,8 @@ class ByNumber(Claim):
     def verdict_at(self, tolerance: float) -> str:
         """The verdict if the tolerance were this one."""
         verdicts = [self.by_number(tolerance)]
-        return rules.worst(verdicts + ([self.besides(tolerance)] if self.besides else []))
+        verdict = rules.worst(verdicts + ([self.besides(tolerance)] if self.besides else []))
+        return rules.BEYOND if self.beyond and verdict == rules.FAILED else verdict
 
     def verdict(self) -> str:
         return self.verdict_at(self.tolerance)

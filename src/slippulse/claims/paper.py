@@ -92,7 +92,7 @@ CLAIMS: dict[str, Callable[[Evidence, str], Claim]] = {
 # Fields of every claim in claims.json, where neither its text nor its result sets them.
 EMPTY: dict[str, Any] = {"figure": "", "follows_from": [], "note": "", "source": "", "further": {}}
 EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 0, "holds_at": 0}
-EMPTY |= {"beyond": False, "flips_at": [], "at_earlier": ""} | dict.fromkeys(
+EMPTY |= {"beyond": False, "flips_at": [], "at_earlier": "", "asked": ""} | dict.fromkeys(
     ("predicted", "measured", "uncertainty", "deviation")
 )
 # Fields of an approximate claim: the spread of its runs, and the exact theory.
@@ -121,7 +121,7 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
         out |= dict.fromkeys(ESTIMATE)
     out |= {"id": id} | claim.written()
     counted = not out["follows_from"] and not out["beyond"]
-    out |= {"figure_or_section": where, "counted": counted}
+    out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
     if "earlier_tolerance" in entry and isinstance(claim, ByNumber) and not out["at_earlier"]:
         out["at_earlier"] = claim.verdict_at(float(entry["earlier_tolerance"]))
     out = finite(out)

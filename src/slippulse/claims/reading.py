@@ -163,7 +163,7 @@ def compared_text(claim: SimpleNamespace) -> str:
     if claim.deviation is None:
         return number(None)
     if claim.kind == "qualitative":
-        text = "no run may contradict"
+        text = claim.asked or "no run may contradict"
         if claim.tolerance > SLIGHT:
             text += f" (tolerance {setting(100.0 * claim.tolerance)} %)"
         return text
@@ -171,8 +171,9 @@ def compared_text(claim: SimpleNamespace) -> str:
         return f"p = {number(claim.deviation, 2)}, at least {setting(claim.tolerance)}"
     if claim.kind == "scaling" or claim.predicted == 0.0:
         return f"{number(claim.deviation, 2)}, tolerance {setting(claim.tolerance)}"
-    text = f"{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
-    return text if claim.kind == "exact" else f"median {text}"
+    text = "" if claim.kind == "exact" else "median "
+    text += f"{percent(claim.deviation)}, tolerance {setting(100.0 * claim.tolerance)} %"
+    return f"{text}; {claim.asked}" if claim.asked else text
 
 
 def why_text(claim: SimpleNamespace) -> str:

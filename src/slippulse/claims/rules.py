@@ -8,13 +8,14 @@ REPRODUCED = "reproduced"
 CAVEAT = "reproduced with caveat"
 DEPENDS = "depends on an open choice"
 UNMET = "premise not met"
+BEYOND = "different beyond the paper"
 FAILED = "not reproduced"
 INCONCLUSIVE = "inconclusive"
 NOT_TESTABLE = "not testable"
-VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, INCONCLUSIVE, NOT_TESTABLE)
+VERDICTS = (REPRODUCED, CAVEAT, DEPENDS, UNMET, FAILED, BEYOND, INCONCLUSIVE, NOT_TESTABLE)
 # The first of these decides among several verdicts; readers look for it first, too.
-WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, CAVEAT, REPRODUCED)
-HOLDS = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False}
+WORST_FIRST = (FAILED, UNMET, DEPENDS, INCONCLUSIVE, NOT_TESTABLE, BEYOND, CAVEAT, REPRODUCED)
+HOLDS = {REPRODUCED: True, CAVEAT: True, FAILED: False, UNMET: False, BEYOND: False}
 # The number of tolerances at which a verdict is computed, and of halvings where it changes.
 SCANNED, BISECTED = 41, 12
 # A qualitative claim stays open if a larger fraction of its runs is undecided.

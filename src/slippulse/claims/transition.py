@@ -15,6 +15,7 @@ from .choices import LAST, Chosen, Combination, OverChoices, named, over_choices
 from .evidence import Evidence, agreeing, exponent, ratios, studied
 from .kinds import NAN, Approximate, Claim, Qualitative, Scaling
 from .rules import Uncertain
+from .space_time_figure import arrow_and_stick
 
 # At or below -1 the printed threshold, which has two sides, lets the pre-stress itself slide back.
 INSIDE = "left > -1"
@@ -179,10 +180,14 @@ def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices
     why = undamped_and_damped(combinations)
     if quantity == "time":
         literal = slips["slip_time_nucleation"].count()
-        why = r"The slip $2\tau/\gamma$ that the paper prints as the criterion, and the arrow of "
-        why += "figure 4, which ends at the first stick, differ: "
-        why += rf"{literal} of {len(ratio)} runs reach that slip with $\tau=1$, as stands at the "
-        why += rf"nucleation point, and {ratio.count()} with $\tau_0$."
+        why = (
+            "Section III B has both readings, so that neither is an error: it defines the time by "
+        )
+        why += r"the slip $2\tau/\gamma$ at the nucleation point, and takes it from a reduced "
+        why += "equation in which that is the first stick. In the full equation they differ: "
+        why += rf"{literal} of {len(ratio)} runs reach the slip with $\tau=1$, as printed for that "
+        why += rf"point, and {ratio.count()} with $\tau_0$, by which it is judged. "
+        why += arrow_and_stick(evidence)
     return over_choices(combinations, from_exact=exact, further=further, why=why)
 
 
@@ -236,7 +241,9 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
         tolerance, runs = evidence.tolerance(id), len(tables[0])
         return Scaling(tolerance=tolerance, exponent=exponents[symbol], runs=runs, note=note)
 
-    return over_choices(judged(transitions(evidence) if displacement else arrests(evidence), judge))
+    why = r"By both readings of $T_\mathrm{trans}$ in section III B." if displacement else ""
+    runs = transitions(evidence) if displacement else arrests(evidence)
+    return over_choices(judged(runs, judge), why=why)
 
 
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
@@ -288,7 +295,8 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         if small == rules.CAVEAT:
             why = "lattices stop it early, which is theirs and not the equation's: the median gap, "
             why += f"{number(gap[0], 2)} $H$ with an uncertainty of {number(gap[1], 2)}, is below "
-            why += "$H$, but their sum is not"
+            why += "$H$, but their sum is not. The caveat stays, since no damping is the limit in "
+            why += "which the paper gives its formulas"
         besides = rules.worst([small, rules.within(abs(power[0] - 1.0), power[1], allowed)])
         return replace(claim, besides=lambda _: besides, further=further, why=why)
 

@@ -14,7 +14,7 @@ from ..data.numerals import rounded
 from .html import markup_of, page
 
 # Each verdict has a sign, so that colour is not needed.
-MARKS = "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{NOT EQUAL TO}\N{MULTIPLICATION SIGN}?\N{EN DASH}"
+MARKS = "\N{CHECK MARK}~\N{UP DOWN ARROW}\N{NOT EQUAL TO}\N{MULTIPLICATION SIGN}→?\N{EN DASH}"
 SIGNS = dict(zip(VERDICTS, MARKS, strict=True))
 # The bar of a deviation ends at this many tolerances.
 LONGEST = 2.0

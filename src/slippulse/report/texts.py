@@ -16,7 +16,7 @@ FEW = 3
 # Verdicts that one sentence of the answer names together.
 SENTENCES = (
     ("depends on an open choice",),
-    ("not reproduced", "premise not met"),
+    ("not reproduced", "different beyond the paper", "premise not met"),
     ("inconclusive",),
     ("not testable",),
 )
@@ -27,6 +27,7 @@ EXCEPTIONS = {
         "depend on choices that the paper leaves open",
     ),
     "not reproduced": ("is not reproduced", "are not reproduced"),
+    "different beyond the paper": ("is different", "are different"),
     "premise not met": ("is not met", "are not met"),
     "inconclusive": ("stays open", "stay open"),
     "not testable": ("is not tested in this run", "are not tested in this run"),
@@ -141,7 +142,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     for entry in summary["verdict"]:
         claims = [ledger(id) for id in entry["claims"]]
         worst = min(claims, key=lambda claim: WORST_FIRST.index(claim.verdict))
-        said = entry.get("said", {}).get(worst.verdict, "")
+        said = fill(entry.get("said", {}).get(worst.verdict, ""))
         told = told_verdicts(entry["claims"] | entry.get("beside", {}), ledger)
         lines.append(Line(entry["topic"], entry["named"], said, fill(entry["text"]), worst, told))
     return lines
