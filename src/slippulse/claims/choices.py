@@ -149,8 +149,8 @@ class OverChoices(ByNumber):
         if not sizes:
             return ""
         low, high = self.size(min(sizes)), self.size(max(sizes))
-        text = f" At {len(sizes)} of the combinations, at the last release, it is off by {low} to "
-        return f"{text}{high}, and that it depends on the damping there is the lattice's doing."
+        text = f" With the last release, {len(sizes)} of the combinations, it is off by {low} to {high}"
+        return f"{text}: that is the lattice's, by its spacing and damping."
 
     def cause(self, name: str, change: Change | None) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""

@@ -39,21 +39,23 @@ def arrows(evidence: Evidence, id: str) -> Reading:
     # The last fit is the one without arrows.
     lengths = " and ".join(number(by, 2) for by in longer.values())
     why = f"They are longer by {lengths} than in the run that meets all other readings of the "
-    why += f"panel best. {arrow_and_stick(evidence)} The caption calls them definitions; no number "
-    why += "of the paper rests on them, and the verdict is on the drawing alone."
+    why += f"panel best. {arrow_and_stick(evidence)} The arrow of the length ends at that instant: "
+    drawn = {name: entry["value"] for name, entry in evidence.readings.items()}
+    apart = 2.0 * (drawn["intercept"] + drawn["front_speed"] * drawn["arrow_time"])
+    why += f"it is {setting(drawn['arrow_length'])} long, and the drawn fronts are then "
+    why += (
+        f"{number(apart)} apart. The caption calls the arrows definitions; no number of the paper "
+    )
+    why += "rests on them, and the verdict is on the drawing alone."
     rise, degrees = (fits["with"][name] - fits["without"][name] for name in ("chi2", "dof"))
     return reading(evidence, id, rise, degrees, further=further, why=why)
 
 
 def arrow_and_stick(evidence: Evidence) -> str:
-    """Where the drawn arrows of the left panel end, and its drawn slip at the nucleation point."""
-    drawn = {name: read["value"] for name, read in evidence.readings.items()}
-    stick, arrow = drawn["centre_stick"], drawn["arrow_time"]
-    apart = 2.0 * (drawn["intercept"] + drawn["front_speed"] * arrow)
+    """Where the arrow of the time and the slip at the nucleation point end, in the left panel."""
+    stick, arrow = (evidence.readings[name]["value"] for name in ("centre_stick", "arrow_time"))
     text = f"In figure 4, left, the first stick is at {setting(stick)}, and the arrow of the time "
-    text += f"ends at {setting(arrow)}, {percent(arrow / stick - 1.0)} later. The drawn fronts are "
-    text += f"then {number(apart)} apart, and the arrow of the length is "
-    return text + f"{setting(drawn['arrow_length'])} long: both end at one instant."
+    return text + f"ends at {setting(arrow)}, {percent(arrow / stick - 1.0)} later."
 
 
 def right(evidence: Evidence, id: str) -> Reading:

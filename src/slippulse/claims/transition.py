@@ -185,7 +185,9 @@ def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices
         )
         why += r"the slip $2\tau/\gamma$ at the nucleation point, and takes it from a reduced "
         why += "equation in which that is the first stick. In the full equation they differ: "
-        why += rf"{literal} of {len(ratio)} runs reach the slip with $\tau=1$, as printed for that "
+        why += (
+            rf"{literal} of {len(ratio)} runs reach the slip with the $\tau=1$ that stands at that "
+        )
         why += rf"point, and {ratio.count()} with $\tau_0$, by which it is judged. "
         why += arrow_and_stick(evidence)
     return over_choices(combinations, from_exact=exact, further=further, why=why)
