@@ -148,9 +148,11 @@ class OverChoices(ByNumber):
         sizes = [result["deviation"] for result in last if result["deviation"] is not None]
         if not sizes:
             return ""
-        low, high = self.size(min(sizes)), self.size(max(sizes))
-        text = f" With the last release, {len(sizes)} of the combinations, it is off by {low} to {high}"
-        return f"{text}: that is the lattice's, by its spacing and damping."
+        ends = f"{self.size(min(sizes))} to {self.size(max(sizes))}"
+        text = (
+            f" With the last release, {len(sizes)} of the combinations, it is off by {ends}: that "
+        )
+        return f"{text}is the lattice's, by its spacing and damping."
 
     def cause(self, name: str, change: Change | None) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""
