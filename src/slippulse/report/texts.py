@@ -16,7 +16,7 @@ FEW = 3
 # Verdicts that one sentence of the answer names together.
 SENTENCES = (
     ("depends on an open choice",),
-    ("not reproduced", "different beyond the paper", "premise not met"),
+    ("not reproduced", "premise not met", "different beyond the paper"),
     ("inconclusive",),
     ("not testable",),
 )
