@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from slippulse.claims import reading, rules
-from slippulse.claims.choices import Combination, over_choices
+from slippulse.claims.choices import LAST, Combination, over_choices
 from slippulse.claims.evidence import Evidence, agreeing, exponent
 from slippulse.claims.findings import findings
 from slippulse.claims.kinds import Approximate, Qualitative, Scaling
@@ -110,6 +110,14 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
     assert (above["below"], above["above"]) == (DEPENDS, "reproduced")
     assert below["tolerance"] == pytest.approx(0.136, rel=1e-3)
     assert above["tolerance"] == pytest.approx(0.235, rel=1e-3)
+
+
+def test_the_last_release_of_a_lattice_decides_nothing_and_is_told_beside():
+    last = [replace(one, choice=one.choice | {"fraction": LAST}) for one in LENGTHS]
+    claim = over_choices(last).written()
+    assert claim["verdict"] == DEPENDS and claim["choice"] == "" and "depends" not in claim["why"]
+    told = "With the last release, 4 of the combinations, it is off by 14 % to 24 %"
+    assert told in claim["why"] and "last release" not in over_choices(LENGTHS).written()["why"]
 
 
 def test_one_verdict_at_every_choice_is_the_verdict():
@@ -314,12 +322,18 @@ WHY = {
     "not testable": ({"verdict": "not testable"}, "This run leaves no number to judge by."),
     "its own reason": ({"why": "It needs a reason."}, "It needs a reason."),
 }
+ASKED = {"asked": "some run"}
 # Fields of a claim, and texts: predicted, measured and compared.
 NUMBERS = {
     "always": (
         ALWAYS | OPEN_RUNS,
         ("all of 8", "5 of 8, 1 against, 2 undecided", "no run may contradict"),
     ),
+    "some": (
+        ALWAYS | OPEN_RUNS | ASKED,
+        ("all of 8", "5 of 8, 1 against, 2 undecided", "some run"),
+    ),
+    "also": (ESTIMATE | ASKED, ("1", "1.250(10)", "median 25 %, tolerance 20 %; some run")),
     "reading": (READING, ("7 degrees of freedom", "χ² = 1.62", "p = 0.98, at least 0.05")),
     "estimate": (ESTIMATE, ("1", "1.250(10)", "median 25 %, tolerance 20 %")),
 }

@@ -116,12 +116,13 @@ class OverChoices(ByNumber):
                 [row["deviation"] for row in rows if row["holds"] is side] for side in (True, False)
             )
             causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
+            depends = f" It depends on {causes}." if causes else ""
             why = (
                 f"{self.shown.why} It holds at {out['holds_at']} of {len(rows)} combinations, with "
             )
             most, least = self.size(max(holding)), self.size(min(failing))
             why += f"deviations up to {most}, and fails with {least} or more."
-            out["why"] = f"{why} It depends on {causes}.{self.at_last_release()}".strip()
+            out["why"] = f"{why}{depends}{self.at_last_release()}".strip()
         elif out["verdict"] == rules.CAVEAT:
             unsure = next(one for one in self.combinations if one.result["verdict"] == rules.CAVEAT)
             settings = [
