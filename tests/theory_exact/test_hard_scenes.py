@@ -1,10 +1,12 @@
 """No answer on random hard scenes owes anything to scale, direction, duration or panels."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from hard_scenes import FAMILIES, VARIANTS, Compared, scene
+from tolerances import NUDGED
 
 # The first scenes are in each run of the tests, each with one variant; all with the slow tests.
 FAST, ALL = 50, 500
@@ -16,6 +18,18 @@ def test_two_solutions_agree_before_either_has_a_limit(number):
     variant = list(VARIANTS)[number // len(FAMILIES) % len(VARIANTS)]
     other = compared.answers_of(VARIANTS[variant](compared.keys))
     assert compared.faults(other) == [], variant
+
+
+@pytest.mark.parametrize("number", [13, 28, 37, 41])
+def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
+    """A smooth minimum or a kink of the trailing edge, before there is a knot on either side."""
+    keys = scene(number)
+    first = keys.rupture().first_stick.time
+    for after in (1e-8, 1e-5, 1e-3, 0.02):
+        found = replace(keys, duration=first * (1.0 + after)).rupture().first_stick
+        assert found is not None, after
+        assert found.time == pytest.approx(first, rel=NUDGED), after
+    assert replace(keys, duration=first * (1.0 - 1e-8)).rupture().first_stick is None
 
 
 @cache

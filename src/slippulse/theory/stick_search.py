@@ -56,7 +56,11 @@ class VelocitySamples(NamedTuple):
 
 @dataclass(frozen=True)
 class StickSearch:
-    """A search at steps in time, until an end; velocity(x, time) is du/dt at points."""
+    """A search at steps in time, until an end; velocity(x, time) is du/dt at points.
+
+    Between the waves that come du/dt is analytic, and a step turns the kernel by 0.2
+    (`part.SEARCH`): a dip between samples shows in the lowest of three, and is searched again.
+    """
 
     velocity: Callable[[np.ndarray, np.ndarray], np.ndarray]
     step: float

@@ -7,7 +7,10 @@ that has stuck is then d2u/dt2 (1 - (dt/dx)^2) < 0, with the acceleration just b
 block is ever released again.
 
 The edge is known at knots: at the panels of the curve and where waves from its marks meet the edge,
-then halfway between knots as long as these do not predict what is found there.
+then halfway between knots as long as these do not predict what is found there. No first stick lies
+unseen between knots that slide: what sticks grows to both sides faster than the waves, so what the
+middle does not show has begun within half an interval of the end, and du/dt at the end dips below
+0 there, where `Knots.dips` looks.
 """
 
 from collections.abc import Callable
@@ -17,13 +20,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.roots import root_between
+from ..model.roots import root_between, roots_between
 from .curve import SAME, Point
 from .part import Part
 
 # Stick times halfway between knots are predicted to this fraction of the interval, and their slopes
 # to this.
 PREDICTED, PREDICTED_SLOPE = 1e-5, 0.05
+# Fraction of du/dt at the ends of an interval down to which a dip between them may be a zero, and
+# pace of the edge that is not level.
+MARGIN, LEVEL = 0.5, 0.01
 # The shortest interval that is halved, and that in which the edge reaches the end, or a front that
 # has stopped, in units of `Part.scale`.
 SHORTEST, AT_END = 1e-3, 0.01
@@ -113,10 +119,6 @@ class Knots(NamedTuple):
         rise = stick[k + 1] - stick[k]
         return stick[k] + s**2 * (3.0 - 2.0 * s) * rise + s * (1.0 - s) * bow
 
-    def those(self, k: np.ndarray | slice) -> "Knots":
-        """Some knots."""
-        return Knots._make(values[k] for values in self)
-
     def predict(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
         """Mask of the intervals whose ends predict the knot in the middle."""
         same = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
@@ -124,18 +126,28 @@ class Knots(NamedTuple):
         slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
         slope -= 0.25 * (self.pace[k] + self.pace[k + 1])
         near = np.abs(middle.stick - self.stick_between(k, middle.x)) <= 2.0 * PREDICTED * half
-        near &= np.abs(middle.pace - slope) <= PREDICTED_SLOPE
-        slides = ~middle.may_stick(self.those(k)) & ~middle.may_stick(self.those(k + 1))
-        return same & np.where(middle.kind == SLIDES, slides, near | (middle.kind != FAST))
+        # The closer the edge is to the speed of the waves, the less it may turn unseen.
+        steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
+        near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
+        return same & (near | (middle.kind != FAST))
 
-    def may_stick(self, other: "Knots") -> np.ndarray:
-        """Mask of knots that slide whose tangents to du/dt meet below 0 before other knots."""
-        span = other.x - self.x
-        slope, other_slope = self.by_eta - self.by_xi, other.by_eta - other.by_xi
-        valley = (slope * span < 0.0) & (other_slope * span > 0.0)
-        difference = other.velocity - self.velocity - other_slope * span
-        distance = difference / np.where(valley, slope - other_slope, 1.0)
-        return valley & (self.velocity + slope * distance <= 0.0) & (self.velocity > ROUNDING)
+    def dips(self, k: np.ndarray) -> np.ndarray:
+        """Mask of the intervals that slide, in which du/dt at the end may have a zero.
+
+        Its tangents at the ends meet below it where it bends upwards; elsewhere they have a margin.
+        """
+        span, slope = self.x[k + 1] - self.x[k], self.by_eta - self.by_xi
+        slides = np.minimum(self.velocity[k], self.velocity[k + 1]) > ROUNDING
+        valley = slides & (slope[k] < -ROUNDING) & (slope[k + 1] > ROUNDING)
+        difference = self.velocity[k + 1] - self.velocity[k] - slope[k + 1] * span
+        distance = difference / np.where(valley, slope[k] - slope[k + 1], 1.0)
+        least = self.velocity[k] + slope[k] * distance
+        return valley & (least <= MARGIN * np.minimum(self.velocity[k], self.velocity[k + 1]))
+
+    def goes_down(self, k: np.ndarray) -> np.ndarray:
+        """Mask of the intervals into which the edge goes down, towards an end that slides."""
+        pace = np.where(self.kind[k] == FAST, -self.pace[k], self.pace[k + 1])
+        return self.of_kinds(k, FAST, SLIDES) & (pace > LEVEL)
 
 
 @dataclass
@@ -211,19 +223,36 @@ class TrailingEdge:
         short = np.full(k.size, SHORTEST * scale)
         short[at_end | knots.brief(k)] = AT_END * scale
         short[jumps] = LOCATED * size
+        short[knots.dips(k) | knots.goes_down(k)] = LOCATED * size
         long = knots.x[k + 1] - knots.x[k] > short
         cut = k[long & (jumps | at_end)]
         halved = k[long & ~jumps & ~at_end]
         pieces = np.linspace(knots.x[cut], knots.x[cut + 1], CUTS + 1)[:-1]
         middle = 0.5 * (knots.x[halved] + knots.x[halved + 1])
+        dips = knots.dips(halved)
+        middle[dips] = self._lowest(knots, halved[dips])
         x = np.append(pieces[1:].ravel(), middle)
         found = self._knots_of(x, stick_time(x))
-        surprise = ~knots.predict(halved, found.those(slice(x.size - middle.size, None)))
-        halves = np.append(knots.x[halved[surprise]], middle[surprise])
-        refined, pieces = knots.joined(found), pieces.ravel()
-        k = np.searchsorted(refined.x, pieces)
+        in_middle = Knots._make(values[x.size - middle.size :] for values in found)
+        surprise = ~knots.predict(halved, in_middle)
+        halves = np.append(knots.x[halved], middle)
+        refined, left = knots.joined(found), np.append(halves, pieces)
+        k = np.searchsorted(refined.x, left)
+        again = refined.dips(k)
+        again[: halves.size] |= np.tile(surprise, 2)
         rough = refined.jumps(k) | refined.of_kinds(k, FAST, SLIDES)
-        return refined, np.append(halves, pieces[rough])
+        again[halves.size :] |= rough[halves.size :]
+        return refined, left[again]
+
+    def _lowest(self, knots: Knots, k: np.ndarray) -> np.ndarray:
+        """Where du/dt at the end is lowest in intervals into which it falls from both ends."""
+
+        def slope(x: np.ndarray, which: np.ndarray) -> np.ndarray:
+            by_xi, by_eta = self.part.past(x, np.full(x.size, self.part.until)).velocity_slopes()
+            return by_eta - by_xi
+
+        slopes = knots.by_eta - knots.by_xi
+        return roots_between(slope, knots.x[k], knots.x[k + 1], slopes[k], slopes[k + 1], xtol=STEP)
 
     def _before_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
         """Intervals without those in the future of a jump, wherever it is in its interval."""
@@ -306,22 +335,32 @@ class TrailingEdge:
         first = np.flatnonzero(stuck & (knots.stick <= earliest + 1e-10))
         nearest = int(first[np.argmin(np.abs(knots.x[first]))])
         out = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
-        # A minimum may lie in each interval at whose ends the edge goes down into it.
         k = np.arange(knots.x.size - 1)
-        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & knots.of_kinds(k, FAST, FAST)
-        span = np.diff(knots.x)
-        lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * span
-        for low in np.flatnonzero(down & ~knots.jumps(k) & (lowest < out.time)).tolist():
-            ends = knots.x[low], knots.x[low + 1]
-            # Where rounding alone says that the edge goes down, the knot itself is the minimum.
-            if not self._pace(ends[0]) < 0.0 < self._pace(ends[1]):
-                continue
-            x = root_between(self._pace, *ends, xtol=STEP)
-            time = float(self.stick_time(np.array([x]))[0])
+        fast = knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
+        side = nearest - int(knots.pace[nearest] > 0.0)
+        if 0 <= side < fast.size and not fast[side]:
+            # The minimum is beyond the last knot that has stuck.
+            reach = 4.0 * self.part.scale * abs(float(knots.pace[nearest]))
+            ends = (out.x + np.array([-reach, reach])).clip(knots.x[0], knots.x[-1])
+            found = self._minimum(*ends.tolist())
+            out = found if found and found.time <= out.time else out
+        # A minimum may lie in each interval at whose ends the edge goes down into it.
+        down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & fast
+        lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
+        for low in np.flatnonzero(down & (lowest < out.time)).tolist():
+            found = self._minimum(*knots.x[[low, low + 1]].tolist())
             # Neither a kink nor an equal time is taken for a minimum.
-            if time < out.time - ROUNDING:
-                out = FirstStick(time, x)
+            if found and found.time < out.time - ROUNDING:
+                out = found
         return out
+
+    def _minimum(self, left: float, right: float) -> FirstStick | None:
+        """The first sticking between two positions, if the edge goes down into the interval."""
+        # Where rounding alone says that it does, the knot itself is the minimum.
+        if not self._pace(left) < 0.0 < self._pace(right):
+            return None
+        x = root_between(self._pace, left, right, xtol=STEP)
+        return FirstStick(float(self.stick_time(np.array([x]))[0]), x)
 
     def _pace(self, position: float) -> float:
         x = np.array([position])
