@@ -25,7 +25,7 @@ def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
     """A smooth minimum or a kink of the trailing edge, before there is a knot on either side."""
     keys = scene(number)
     first = keys.rupture().first_stick.time
-    for after in (1e-8, 1e-5, 1e-3, 0.02):
+    for after in (1e-7, 1e-3):
         found = replace(keys, duration=first * (1.0 + after)).rupture().first_stick
         assert found is not None, after
         assert found.time == pytest.approx(first, rel=NUDGED), after
