@@ -299,7 +299,7 @@ def damage_zone_in_series(layer, tau, random):
     shear, height = layer.shear_modulus, layer.thickness
     compliance = height / shear + thickness * height / (rock * shear)
     drop = damage_zone_stress_drop(slip, shear, rock * shear, height, thickness * height)
-    rigid = damage_zone_stress_drop(slip, shear, np.inf, height, thickness * height)
+    rigid = damage_zone_stress_drop(slip, shear, 1e100, height, thickness * height)
     return [drop * compliance / slip, rigid * height / shear / slip]
 
 

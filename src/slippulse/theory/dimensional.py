@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import numpy as np
-
 from .domains import broadcast_numbers
 
 # No product of numbers up to this overflows.
@@ -21,7 +19,7 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     ----------
     slip : float or array, delta (m), -1e100 to 1e100
     shear_modulus, rock_shear_modulus : floats or arrays, G of the zone and G_r of the rock (Pa),
-        1e-100 to 1e100, G_r infinite too, for a rigid one
+        1e-100 to 1e100
     thickness, rock_thickness : floats or arrays, H of the zone and H_r of the rock, to the imposed
         displacement (m), 1e-100 to 1e100, H_r 0 too
 
@@ -30,9 +28,6 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6
     5.0
     """
-    if isinstance(rock_shear_modulus, float | np.ndarray):
-        # A rigid rock is one of the largest modulus, to rounding.
-        rock_shear_modulus = np.where(rock_shear_modulus == np.inf, LARGEST, rock_shear_modulus)
     given = {
         "slip": slip,
         "shear_modulus": shear_modulus,

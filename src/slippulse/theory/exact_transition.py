@@ -49,9 +49,8 @@ def exact_transition_displacement(
     check_domains(gamma=gamma)
     level = float(prestress.level(np.asarray(1e300)))
     if not prestress.symmetric or level <= 0.0:
-        raise ValueError(
-            "prestress: not symmetric and positive; allowed: equal levels > 0 on both sides"
-        )
+        allowed = "equal levels > 0 on both sides"
+        raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
     gamma = float(gamma)
     period = float(np.pi / np.sqrt(gamma))
     # The past of (0, t) begins at x + T(x) = t, so x < t.

@@ -87,13 +87,11 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     released = fronts.curve.arrival(y) < time
     past = Past(fronts.curve, stiffness[released], y[released], time[released])
     if not np.all(past.left.known & past.right.known):
-        raise ValueError(
-            f"time: {time!r}; allowed: earlier, its past leaves the part that outruns the waves"
-        )
+        allowed = "earlier, its past leaves the part that outruns the waves"
+        raise ValueError(f"time: {time!r}; allowed: {allowed}")
     out = np.zeros(released.shape)
     out[released] = past.slip_velocity()
     if not np.isfinite(out).all():
-        raise ValueError(
-            f"gamma: {gamma!r}; allowed: numbers whose waves the panels of the fronts resolve"
-        )
+        allowed = "numbers whose waves the panels of the fronts resolve"
+        raise ValueError(f"gamma: {gamma!r}; allowed: {allowed}")
     return out if out.ndim else float(out)

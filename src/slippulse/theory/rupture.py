@@ -235,8 +235,7 @@ class Rupture:
             check_choice("fields", name, FIELDS)
         x, time = as_numbers("positions", positions), as_numbers("times", times)
         if x.ndim != 1 or time.ndim != 1:
-            given = f"arrays of {time.ndim} and {x.ndim} dimensions"
-            raise ValueError(f"times, positions: {given}; allowed: one dimension")
+            raise ValueError(f"times, positions: {time.ndim}-d, {x.ndim}-d; allowed: one dimension")
         check_number("times and positions", x.size * time.size, at_most=MOST_POINTS)
         return self._points(tuple(fields), x[None, :], time[:, None])
 

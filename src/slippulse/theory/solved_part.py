@@ -40,25 +40,18 @@ class SolvedPart(Part):
             self._last = x, out
         return self._last[1]
 
-    def fill(
-        self,
-        fields: dict[str, np.ndarray],
-        positions: np.ndarray,
-        index: np.ndarray,
-        time: np.ndarray,
-    ) -> None:
+    def fill(self, fields: dict, x: np.ndarray, index: np.ndarray, time: np.ndarray) -> None:
         """Put values into arrays of fields, by name, at distinct positions, by index, and times."""
-        release = self.curve.arrival(positions)
-        stick = np.nan_to_num(self.stick_time(positions), nan=np.inf)
+        release, stick = self.curve.arrival(x), np.nan_to_num(self.stick_time(x), nan=np.inf)
         sliding = (time > release[index]) & (time < stick[index])
         stuck = time >= stick[index]
         # The part that has stuck is computed once for each position.
         ended = np.unique(index[stuck])
         for name, values in fields.items():
-            values[sliding] = self.field(name, positions[index[sliding]], time[sliding])
+            values[sliding] = self.field(name, x[index[sliding]], time[sliding])
             if name != "slip_velocity" and ended.size:
-                last = np.zeros(positions.size)
-                last[ended] = self.field(name, positions[ended], stick[ended])
+                last = np.zeros(x.size)
+                last[ended] = self.field(name, x[ended], stick[ended])
                 values[stuck] = last[index[stuck]]
 
     def falling_slip(self, horizon: Callable) -> list[Point]:
