@@ -55,7 +55,6 @@ class Rest:
     """
 
     def __init__(self, curve: Curve, gamma: float) -> None:
-        self.curve = curve
         if gamma == 0.0:
             # p = p' = 0 at the left end.
             slope = -_integral(curve.source)
@@ -242,6 +241,7 @@ class Past:
         stiffness = np.broadcast_to(self.stiffness, self.xi.shape)[points, None]
         z = stiffness * d_xi
         z *= d_eta
+        # It is the sign of k that counts here: gamma may vary for alpha = 0 only.
         kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
         values = integrand(Sources(d_xi, d_eta, kernel, panels))
         if self.alpha:

@@ -144,6 +144,7 @@ def _step(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
     elif stretch.ends[side].time >= until:
         stretch.end_reason[side] = "duration"
     elif stop == "mark":
+        # Where the next piece is negative, too, the next step goes on.
         if mark >= stretch.next_start[side]:
             stretch.end_reason[side] = "met"
         elif law.piece_right_of(mark).supersonic:

@@ -71,21 +71,6 @@ class _Exponentials:
         return -nearest * FACTOR ** np.arange(math.log(farthest / nearest) / math.log(FACTOR))
 
 
-def _weakening_zone(
-    b: float, inertia: float, gamma: float, tau0: float, weakening: float
-) -> tuple[_Exponentials, float]:
-    """U in the zone where friction weakens, and its end; -inf where slip velocity ends first."""
-    zone = _Exponentials(b, inertia, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
-    xi = zone.samples()
-    weak = zone.at(xi) >= weakening
-    stopped = zone.at(xi, 1) >= 0.0
-    if not weak.any() or stopped[: np.argmax(weak)].any():
-        return zone, -math.inf
-    first = int(np.argmax(weak))
-    before = 0.0 if first == 0 else float(xi[first - 1])
-    return zone, root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
-
-
 @dataclass(frozen=True)
 class _Tail:
     """U behind the weakening zone, which ends at ``start``; ``turn`` is where U'' returns to 0."""
@@ -99,9 +84,14 @@ class _Tail:
 def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) -> _Tail | None:
     """Tail behind the weakening zone at a trial speed; None where the slip stops in that zone."""
     b, inertia = beta * v, (v - 1.0) * (v + 1.0)
-    zone, end = _weakening_zone(b, inertia, gamma, tau0, weakening)
-    if end == -math.inf:
+    zone = _Exponentials(b, inertia, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
+    xi = zone.samples()
+    weak = zone.at(xi) >= weakening
+    first = int(np.argmax(weak))
+    if not weak[first] or (zone.at(xi, 1) >= 0.0)[:first].any():
         return None
+    before = 0.0 if first == 0 else float(xi[first - 1])
+    end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
     start = np.array([float(zone.at(end, n)) for n in range(3)])
     tail = _Exponentials(b, inertia, gamma, tau0, start)
     xi = tail.samples()

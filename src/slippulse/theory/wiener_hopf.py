@@ -85,8 +85,9 @@ def log_prestress(
     if springs > 0.0:
         edge = 0.5 * np.sqrt(springs)
         origin = np.log(2.0 * edge / (np.sqrt(1.0 + edge**2) + edge))
+        # The contour leaves 0 at an angle: the value there enters with the rest of half a residue.
         out = (0.5 - angle / np.pi) * origin + out
-    if springs == 0.0:
+    else:
         out += np.log(excess / (1.0 + excess))
     if release == "elastic" and np.any(ratio > 0.0):
         # With b = 0 both rules are the same: M_+(i infinity) = 1.
@@ -153,7 +154,7 @@ def roots(
 
 
 @lru_cache(maxsize=32)
-def nodes(panels: int, angle: float = ANGLE) -> Nodes:
+def nodes(panels: int, angle: float) -> Nodes:
     """Nodes on the contour, with its ray in panels."""
     edges = np.log(REACH) - PANEL * np.arange(panels, -1.0, -1.0)
     ray, ray_weight = _panels(edges)
