@@ -109,9 +109,9 @@ def judge(number, accuracy, most_steps):
     """
     family, layer, ratio, duration = drawn(number)
     dx = sp.settings_for(accuracy, damping_ratio=ratio, **layer)["dx"]
-    found = {"accuracy": accuracy, "scene": number, "family": family, "steps": duration / dx}
+    result = {"accuracy": accuracy, "scene": number, "family": family, "steps": duration / dx}
     if duration / dx > most_steps:
-        return found
+        return result
     rows = []
     for spacing in (factor * dx for factor in FACTORS if factor * dx <= layer["prestress"].width):
         step = chosen_step("localised", 8, ratio, layer["gamma"] * spacing**2, enough=1.0)
@@ -122,7 +122,7 @@ def judge(number, accuracy, most_steps):
     )
     fine = min(0.01, duration / 2000.0)
     truth = numbers(layer, duration, fine, ratio, scheme="continuum")
-    found |= dict.fromkeys(KINDS, 0)
+    result |= dict.fromkeys(KINDS, 0)
     keeping = np.ones(len(rows), dtype=bool)
     for name, kept in study.loc[study["kept"] != "", ["quantity", "kept"]].itertuples(index=False):
         exact = truth.get(name, math.nan)
@@ -135,14 +135,14 @@ def judge(number, accuracy, most_steps):
             keeping &= errors <= accuracy
         else:
             kind = "missed" if right else "missed_rightly"
-        found[kind] += 1
+        result[kind] += 1
         if not right:
-            found["not_kept"] = f"{found.get('not_kept', '')} {name} {errors[0]:.1e}"
-    if found["kept"] and not found["missed"] + found["missed_rightly"]:
+            result["not_kept"] = f"{result.get('not_kept', '')} {name} {errors[0]:.1e}"
+    if result["kept"] and not result["missed"] + result["missed_rightly"]:
         updates = [row["block_updates"] for row in rows]
         cheapest = int(np.argmin(np.append(keeping, False))) - 1
-        found["cost"] = updates[0] / updates[cheapest]
-    return found
+        result["cost"] = updates[0] / updates[cheapest]
+    return result
 
 
 def run(path, accuracy, first, count, most_steps):

@@ -250,8 +250,8 @@ def test_what_must_hold_besides_decides_at_every_tolerance():
     claim = Approximate(tolerance=0.2, besides=lambda tolerance: NO, **numbers)
     assert claim.verdict() == NO and claim.flips() == []
     assert replace(claim, beyond=True).verdict() == BEYOND
-    far = lambda allowed: YES if allowed > 0.3 else OPEN
-    claim = Approximate(tolerance=0.2, besides=far, **numbers)
+    lenient = lambda allowed: YES if allowed > 0.3 else OPEN
+    claim = Approximate(tolerance=0.2, besides=lenient, **numbers)
     assert claim.verdict() == OPEN
     assert [flip["above"] for flip in claim.flips()] == [OPEN, YES]
 

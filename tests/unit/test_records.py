@@ -175,10 +175,10 @@ def test_what_another_overlay_has_made_is_harmless_as_long_as_it_is_as_made(resu
     for options in ("--configfile mine.yaml", ""):
         run(results.parent, mine, options)
         lines, count, foreign = problems(results)
-        by = f"made with {options or 'the shipped configuration'}: harmless"
+        reason = f"made with {options or 'the shipped configuration'}: harmless"
         names = ("records/scenes/mine.png.json", "scenes/mine.pdf", "scenes/mine.png")
         assert (lines, count) == ([], len(JOBS))
-        assert foreign == [f"{results / name}: {by}" for name in names]
+        assert foreign == [f"{results / name}: {reason}" for name in names]
     (results / "scenes/mine.pdf").write_text("edited")
     assert len(problems(results)[0]) == 3 and problems(results)[2] == []
 

@@ -164,8 +164,8 @@ def studies_without(*read: str) -> set[str]:
         needs = declared(f"studies.{study}", "NEEDS")
         keys = {*needs, *needs.get("settings", ())} - {"settings"}
         # A study that reads all of `measure` reads its parts.
-        whole = any(key.startswith(f"{need}.") for key in read for need in keys)
-        if not whole and not any(key.startswith(read) for key in keys):
+        parents = {key.partition(".")[0] for key in read}
+        if parents.isdisjoint(keys) and not any(key.startswith(read) for key in keys):
             without.add(rule)
     return without
 

@@ -48,7 +48,7 @@ def classify(run: AnyRun, still: float, steady_tolerance: float) -> dict[str, fl
     elif not is_pulse(centre, largest, still):
         regime = f"crack-like, {ways}"
     else:
-        regime = _pulse_regime(ways, change, steady_tolerance)
+        regime = pulse_regime(ways, change, steady_tolerance)
     return {
         "regime": regime,
         "centre_velocity_share": centre / largest if largest > 0.0 else float("nan"),
@@ -71,7 +71,7 @@ def _late_speed(run: AnyRun, side: str) -> float:
     return float(np.diff(covered)[0] / np.diff(window)[0]) if known else 0.0
 
 
-def _pulse_regime(ways: str, change: float, tolerance: float) -> str:
+def pulse_regime(ways: str, change: float, tolerance: float) -> str:
     """Regime of one or two pulses, by the relative change of the largest velocity."""
     if ways == "two-way":
         return "pulses, two-way"

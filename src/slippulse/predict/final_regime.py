@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from ..measurement.regime import UNDECIDED
+from ..measurement.regime import UNDECIDED, pulse_regime
 from ..model.checks import check_number
 from ..model.scene import Scene
 from ..theory.front_speeds import front_speed
@@ -72,6 +72,4 @@ def largest_pulse_ratio(level, damping_ratio: float, release: str, still: float)
 
 def regime_of_far_pulse(level: float) -> str:
     """Regime of a pulse under a stress boundary; it grows by half the integral of tau."""
-    if level == 0.0:
-        return "pulse, one-way, steady"
-    return "pulse, one-way, growing" if level > 0.0 else "pulse, one-way, decaying"
+    return pulse_regime("one-way", level, 0.0)
