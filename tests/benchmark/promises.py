@@ -22,6 +22,8 @@ from slippulse.predict.one_run import SETTINGS
 
 # The first three are the grid study, the others look for the cheapest spacing that is enough.
 FACTORS = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+# Scenes with this number of covered numbers or more have a pulse or a transition among them.
+MANY = 5
 KINDS = ["kept", "wrong", "missed", "missed_rightly", "unknown"]
 COLUMNS = ["accuracy", "scene", "family", "steps", *KINDS, "cost", "not_kept"]
 BARRIERS = 1000
@@ -155,14 +157,21 @@ def run(path, accuracy, first, count, most_steps):
             row.to_csv(path, mode="a", header=not path.exists(), index=False)
 
 
+def median(costs):
+    """Median cost with its range; "-" for none."""
+    if not len(costs):
+        return "-"
+    return f"{costs.median():.0f} ({costs.min():.0f} to {costs.max():.0f})"
+
+
 def table(path):
     """Print the table of config/README.md, the numbers not kept, and the scenes left out."""
-    rows = pd.read_csv(path).sort_values(["accuracy", "scene"])
+    rows = pd.read_csv(path).sort_values(["accuracy", "scene"], ascending=[False, True])
     for (accuracy, family), group in rows.groupby(["accuracy", "family"], sort=False):
-        done, cost = group.dropna(subset="kept"), group["cost"].dropna()
-        costs = f"{cost.median():.0f} ({cost.min():.0f} to {cost.max():.0f})" if len(cost) else "-"
+        done, costly = group.dropna(subset="kept"), group.dropna(subset="cost")
+        costs = [median(part["cost"]) for part in (costly, costly[costly["kept"] >= MANY])]
         sums = done[KINDS].sum().astype(int)
-        cells = [family, f"{accuracy:g}", len(done), len(group) - len(done), *sums, costs]
+        cells = [family, f"{accuracy:g}", len(done), len(group) - len(done), *sums, *costs]
         print("|", " | ".join(map(str, cells)), "|")
     for row in rows.dropna(subset="not_kept").itertuples():
         print(f"not within {row.accuracy:g} in scene {row.scene}:{row.not_kept}")
