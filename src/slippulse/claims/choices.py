@@ -112,9 +112,8 @@ class OverChoices(ByNumber):
         out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
         out["holds_at"] = sum(row["holds"] is True for row in rows)
         if out["verdict"] == rules.DEPENDS:
-            holding, failing = (
-                [row["deviation"] for row in rows if row["holds"] is side] for side in (True, False)
-            )
+            holding = [row["deviation"] for row in rows if row["holds"]]
+            failing = [row["deviation"] for row in rows if row["holds"] is False]
             causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
             depends = f" It depends on {causes}." if causes else ""
             why = (
@@ -124,15 +123,16 @@ class OverChoices(ByNumber):
             why += f"deviations up to {most}, and fails with {least} or more."
             out["why"] = f"{why}{depends}{self.at_last_release()}".strip()
         elif out["verdict"] == rules.CAVEAT:
-            unsure = next(one for one in self.combinations if one.result["verdict"] == rules.CAVEAT)
-            settings = [
-                f"{NAMES[name]} {named(value)}"
-                for name, value in unsure.choice.items()
-                if name in NAMES
-            ]
-            why = unsure.claim.why or "it is within the tolerance, but not with its uncertainty"
-            out["why"] = f"With {' and '.join(settings)}, {why}."
+            out["why"] = self.doubt()
         return self.shown.fields() | out
+
+    def doubt(self) -> str:
+        """Why the first combination with a caveat has it."""
+        unsure = next(one for one in self.combinations if one.result["verdict"] == rules.CAVEAT)
+        choice = unsure.choice.items()
+        settings = [f"{NAMES[name]} {named(value)}" for name, value in choice if name in NAMES]
+        why = unsure.claim.why or "it is within the tolerance, but not with its uncertainty"
+        return f"With {' and '.join(settings)}, {why}."
 
     def written(self) -> dict[str, Any]:
         return self.shown.written() | self.fields() | {"flips_at": self.flips()}

@@ -41,8 +41,10 @@ def ratios(table: pd.DataFrame, measured: str, predicted: str) -> pd.Series:
 
 def agreeing(first: Iterable, second: Iterable) -> list[bool | None]:
     """The answer in each run of two lattices; None where they differ or have none."""
-    pairs = zip(first, second, strict=True)
-    return [bool(one) if one is not None and one == other else None for one, other in pairs]
+    answers: list[bool | None] = []
+    for one, other in zip(first, second, strict=True):
+        answers.append(bool(one) if one is not None and one == other else None)
+    return answers
 
 
 def studied(tables: Lattices, values: Sequence[float]) -> Uncertain:

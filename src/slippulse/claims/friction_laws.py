@@ -29,7 +29,7 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
         f"{number(fewest)} to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
     )
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
-    decided = [True if count else None for count, _ in cases.values()]
+    decided = [bool(count) or None for count, _ in cases.values()]
     why = why if wide else ""
     return Qualitative.counted(decided, condition=wide, further=further, why=why)
 

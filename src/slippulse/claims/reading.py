@@ -62,10 +62,11 @@ def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
 def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> dict[str, str]:
     """Sections, appendices and figures of the sentences that each claim tests, in their order."""
     where = {sentence["id"]: sentence["place"].split(",")[0] for sentence in sentences}
-    return {
-        name: "; ".join(dict.fromkeys(where[id] for id in where if id in entry["sentences"]))
-        for name, entry in entries.items()
-    }
+    out = {}
+    for name, entry in entries.items():
+        places = [place for id, place in where.items() if id in entry["sentences"]]
+        out[name] = "; ".join(dict.fromkeys(places))
+    return out
 
 
 class Ledger:
@@ -202,15 +203,11 @@ def uncertainty_text(claim: SimpleNamespace) -> str:
 
 def evidence_text(claim: SimpleNamespace) -> str:
     """The evidence for the verdict besides the numbers shown, as Markdown."""
-    parts, estimate = [claim.note], claim.kind == "approximate"
+    parts = [claim.note]
     if claim.kind in ("exact", "approximate", "scaling"):
-        parts.append(f"{claim.runs} runs" if claim.runs else "")
-        if estimate and claim.largest is not None:
-            parts.append(f"90 % of them within {percent(claim.ninety)}")
-            parts.append(f"the largest deviation {percent(claim.largest)}")
-        parts.append(f"left out, without numbers: {claim.left_out}" if claim.left_out else "")
+        parts += spread_texts(claim)
     parts += [f"{name}: {rounded(value)}" for name, value in claim.further.items()]
-    if estimate and claim.exact_largest is not None:
+    if claim.kind == "approximate" and claim.exact_largest is not None:
         median, largest = percent(claim.exact_median), percent(claim.exact_largest)
         parts.append(f"runs off the exact theory by {median} (median) to {largest}")
     for flip in claim.flips_at:
@@ -226,3 +223,14 @@ def evidence_text(claim: SimpleNamespace) -> str:
     if claim.beyond:
         parts.append("beyond the paper, and not counted")
     return "; ".join(filter(None, parts))
+
+
+def spread_texts(claim: SimpleNamespace) -> list[str]:
+    """The runs behind a number: how many, their spread, and how many are left out."""
+    parts = [f"{claim.runs} runs"] if claim.runs else []
+    if claim.kind == "approximate" and claim.largest is not None:
+        ninety, largest = percent(claim.ninety), percent(claim.largest)
+        parts.append(f"90 % of them within {ninety}, the largest deviation {largest}")
+    if claim.left_out:
+        parts.append(f"left out, without numbers: {claim.left_out}")
+    return parts

@@ -34,10 +34,10 @@ def arrows(evidence: Evidence, id: str) -> Reading:
             for name, entry in evidence.readings.items()
             if name in fits["with"]["pulls"] and entry.get("arrow")
         }
-        for arrow, by in longer.items():
-            further[f"{arrow}, longer than at the fit {words} arrows by"] = by
+        for arrow, excess in longer.items():
+            further[f"{arrow}, longer than at the fit {words} arrows by"] = excess
     # The last fit is the one without arrows.
-    lengths = " and ".join(number(by, 2) for by in longer.values())
+    lengths = " and ".join(number(excess, 2) for excess in longer.values())
     why = f"They are longer by {lengths} than in the run that meets all other readings of the "
     why += f"panel best. {arrow_and_stick(evidence)} The arrow of the length ends at that instant: "
     drawn = {name: entry["value"] for name, entry in evidence.readings.items()}

@@ -115,12 +115,12 @@ def arrests(evidence: Evidence) -> list[Runs]:
     nucleation is the only length, so that one run for each level is independent of the others.
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    runs = [(*run, CRITERIA[STICK]) for run in solved(evidence, "stress")]
+    out = []
+    for choice, tables in solved(evidence, "stress"):
+        out.append(Runs(choice, [widest(tables[0], CRITERIA[STICK])]))
     for choice, tables in simulated(evidence, "stress", INSIDE):
-        runs.append((choice | last, tables, LAST_RELEASE))
-    return [
-        Runs(choice, [widest(table, names) for table in tables]) for choice, tables, names in runs
-    ]
+        out.append(Runs(choice | last, [widest(table, LAST_RELEASE) for table in tables]))
+    return out
 
 
 def widest(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:

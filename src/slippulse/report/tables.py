@@ -82,7 +82,7 @@ def verdicts(lines: Iterable[Line]) -> str:
     link = "[{0.verdict}](../claims.html#{0.id})".format
     rows = []
     for line in lines:
-        told = [f"{link(claim)}{f' ({names})' if names else ''}" for claim, names in line.verdicts]
+        told = [f"{link(claim)} {names}".strip() for claim, names in line.verdicts]
         rows.append((line.topic, "; ".join(told), line.text))
     return table("what the paper says l28 | verdict l16 | what was found l56", rows)
 

@@ -149,15 +149,15 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
 
 
 def told_verdicts(names: Mapping[str, str], ledger: Ledger) -> list[tuple[SimpleNamespace, str]]:
-    """The first claim of each verdict, and the names of all that have it; claims by id."""
+    """The first claim of each verdict, and in brackets what has it if there are several."""
     groups: dict[str, list[str]] = {}
     for id in names:
         groups.setdefault(ledger(id).verdict, []).append(id)
-    several = len(groups) > 1
-    return [
-        (ledger(ids[0]), listed([*dict.fromkeys(names[id] for id in ids)]) if several else "")
-        for ids in groups.values()
-    ]
+    told = []
+    for ids in groups.values():
+        words = listed([*dict.fromkeys(names[id] for id in ids)])
+        told.append((ledger(ids[0]), f"({words})" if len(groups) > 1 else ""))
+    return told
 
 
 def answer(lines: Sequence[Line]) -> str:
