@@ -6,7 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 from hard_scenes import FAMILIES, VARIANTS, Compared, scene
-from tolerances import NUDGED
+from tolerances import NUDGED, NUDGED_DOUBLE
+
+from slippulse.theory import part
 
 # The first scenes are in each run of the tests, each with one variant; all with the slow tests.
 FAST, ALL = 50, 500
@@ -30,6 +32,22 @@ def test_a_first_stick_is_known_as_soon_as_it_has_come(number):
         assert found is not None, after
         assert found.time == pytest.approx(first, rel=NUDGED), after
     assert replace(keys, duration=first * (1.0 - 1e-8)).rupture().first_stick is None
+
+
+@pytest.mark.parametrize("number", [39, 53, 59])
+def test_without_leaf_springs_no_answer_owes_anything_to_the_scale(number, monkeypatch):
+    """The scale of a part is a fraction of the duration then."""
+    keys = scene(number)
+    assert keys.gamma == 0.0
+    compared = Compared(keys)
+    one, fraction = compared.answers, part.SCALE_WITHOUT_SPRINGS
+    for factor in (1.0 / 3.0, 3.0):
+        monkeypatch.setattr(part, "SCALE_WITHOUT_SPRINGS", factor * fraction)
+        two = compared.answers_of(keys)
+        for name in ("release", "stick", "first", "slip"):
+            expected = pytest.approx(getattr(one, name), rel=NUDGED, abs=NUDGED, nan_ok=True)
+            assert getattr(two, name) == expected, name
+        assert two.limit == pytest.approx(one.limit, rel=NUDGED_DOUBLE)
 
 
 @cache

@@ -338,7 +338,7 @@ class TrailingEdge:
         k = np.arange(knots.x.size - 1)
         fast = knots.of_kinds(k, FAST, FAST) & ~knots.jumps(k)
         side = nearest - int(knots.pace[nearest] > 0.0)
-        if 0 <= side < fast.size and not fast[side]:
+        if 0 <= side < k.size and knots.of_kinds(k, FAST, SLIDES)[side]:
             # The minimum is beyond the last knot that has stuck.
             reach = 4.0 * self.part.scale * abs(float(knots.pace[nearest]))
             ends = (out.x + np.array([-reach, reach])).clip(knots.x[0], knots.x[-1])
