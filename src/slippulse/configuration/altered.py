@@ -48,11 +48,11 @@ class Alterations:
         for change in changes(self.shipped.model.plain(), self.here.model.plain()):
             key = change["key"]
             alone = {key, "beta"} if key == "damping_ratio" else {key}
-            own = [name for name, run in self._runs.items() if alone & {*run.plain()}]
-            if own:
+            givers = [name for name, run in self._runs.items() if alone & {*run.plain()}]
+            if givers:
                 lines.append(
                     f"model.{key} = {change['here']} is a default; simulations that give {key}"
-                    f" themselves do not take it: {', '.join(own)}"
+                    f" themselves do not take it: {', '.join(givers)}"
                 )
         return lines
 

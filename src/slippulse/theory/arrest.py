@@ -47,7 +47,16 @@ class ArrestingCrack:
         self.zero = -float(self.fronts.ends[-1.0])
 
     def entry_for(self, position: float) -> float:
-        """Where the characteristic that ends on the left front, from x_minus to x*, entered."""
+        """Where the characteristic that ends on the left front, from x_minus to x*, entered.
+
+        Parameters
+        ----------
+        position : float, between x_minus and the zero x* of the pre-stress
+
+        Returns
+        -------
+        float : e, to the right of x*
+        """
         check_number("position", position, above=self.balance_position, at_most=self.zero)
         last = self.end - 1e-9
         if self.prestress.integral(position, last) <= 0.0:
@@ -62,7 +71,16 @@ class ArrestingCrack:
         return root_between(balance, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
-        """Time when the left front reaches a position, in (x_minus, 0]."""
+        """Time when the left front reaches a position, in (x_minus, 0].
+
+        Parameters
+        ----------
+        position : float, in (x_minus, 0]
+
+        Returns
+        -------
+        float
+        """
         check_number("position", position, above=self.balance_position, at_most=0.0)
         if position >= self.zero:
             return float(self.fronts.arrival(position))
@@ -70,12 +88,30 @@ class ArrestingCrack:
         return entry + float(self.fronts.arrival(entry)) - position
 
     def time_at_fraction(self, fraction: float) -> float:
-        """Time when the left front has covered a fraction, in (0, 1), of |x_minus|."""
+        """Time when the left front has covered a fraction, in (0, 1), of |x_minus|.
+
+        Parameters
+        ----------
+        fraction : float, in (0, 1)
+
+        Returns
+        -------
+        float
+        """
         check_number("fraction", fraction, above=0.0, below=1.0)
         return self.time_at(fraction * self.balance_position)
 
     def length_at_fraction(self, fraction: float) -> float:
-        """Distance between the fronts at `time_at_fraction`."""
+        """Distance between the fronts at `time_at_fraction`.
+
+        Parameters
+        ----------
+        fraction : float, in (0, 1)
+
+        Returns
+        -------
+        float
+        """
         time = self.time_at_fraction(fraction)
         last = float(self.fronts.curve.edges[-1])
         last_time = float(self.fronts.curve.edge_times[-1])
@@ -88,7 +124,16 @@ class ArrestingCrack:
         return 0.5 * self.prestress.integral(self.zero, self.end)
 
     def far_pulse(self, count: int = 400) -> tuple[np.ndarray, np.ndarray]:
-        """Arrays of x - t and du/dt on characteristics of the pulse that runs far to the right."""
+        """Arrays of x - t and du/dt on characteristics of the pulse that runs far to the right.
+
+        Parameters
+        ----------
+        count : int, points of each third, 2 to 10000
+
+        Returns
+        -------
+        tuple of arrays : x - t of the characteristics, and du/dt on them
+        """
         check_number("count", count, integer=True, at_least=2, at_most=10_000)
         right = np.linspace(2.0 * self.reach, 0.0, count)
         left = np.linspace(0.0, self.zero, count)[1:]

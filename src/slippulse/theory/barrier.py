@@ -47,6 +47,13 @@ def barrier_depth(
     gamma : float, elasticity ratio, > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
 
+    Returns
+    -------
+    float, distance from the edge of the barrier (units of H), proportional to 1/sqrt(gamma)
+
+    Raises ValueError: outside the domain.
+    Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
+
     Examples
     --------
     >>> round(barrier_depth(0.5, -0.5, 0.65), 3)
@@ -92,6 +99,12 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
     Parameters
     ----------
     tau0, tau_barrier, gamma : float, pre-stress before it, in (0, 1), in it, < 0, and gamma > 0
+
+    Returns
+    -------
+    float, distance (units of H)
+
+    Raises ValueError: outside the domain. Source: the authors' public code of later work.
 
     Examples
     --------

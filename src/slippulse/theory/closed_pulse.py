@@ -44,7 +44,16 @@ class SteadyPulse:
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Arrays of slip, slip velocity and slip acceleration, at rest outside of the pulse."""
+        """Arrays of slip, slip velocity and slip acceleration, at rest outside of the pulse.
+
+        Parameters
+        ----------
+        xi : float or array, positions relative to the front (units of H)
+
+        Returns
+        -------
+        tuple of arrays of the shape of xi
+        """
         xi = as_numbers("xi", xi)
         p, q = self.growth, self.wavenumber
         v = self.speed
@@ -120,6 +129,10 @@ def critical_rate_strengthening(gamma: float, speed: float) -> float:
     ----------
     gamma, speed : floats, elasticity ratio, > 0, and front speed v (wave speeds), > 1
 
+    Returns
+    -------
+    float : alpha_c
+
     Examples
     --------
     >>> critical_rate_strengthening(0.25, 1.25)
@@ -139,6 +152,10 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     Parameters
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
+
+    Returns
+    -------
+    SteadyPulse : of speed 1/sqrt(1 - tau_0^2) and peak velocity 1/sqrt(gamma)
 
     Examples
     --------
@@ -160,6 +177,10 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
 
+    Returns
+    -------
+    tuple of floats : T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2)
+
     Examples
     --------
     >>> [round(number, 4) for number in paper_transition_displacement(0.6, 0.25)]
@@ -175,6 +196,14 @@ def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
 
     T_trans = |x_minus| and L_trans = 2 |x_minus| take front speeds as 1. The pre-stress is one that
     `prestress_balance_position` takes.
+
+    Parameters
+    ----------
+    prestress : Prestress, as `prestress_balance_position` takes it
+
+    Returns
+    -------
+    tuple of floats : T_trans = |x_minus| and L_trans = 2 |x_minus|
     """
     distance = abs(prestress_balance_position(prestress))
     return distance, 2.0 * distance

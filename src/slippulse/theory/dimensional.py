@@ -23,6 +23,10 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     thickness, rock_thickness : floats or arrays, H of the zone and H_r of the rock, to the imposed
         displacement (m), 1e-100 to 1e100, H_r 0 too
 
+    Returns
+    -------
+    float or array : G delta/(H + (G/G_r) H_r) (Pa)
+
     Examples
     --------
     >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6

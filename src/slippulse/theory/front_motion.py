@@ -66,6 +66,10 @@ def steady_front(
     blocks : int, blocks behind the front, 10 to 500, and many more than the b v/(v^2 - 1) of the
         layer of damped waves at the front
 
+    Returns
+    -------
+    SteadyFront
+
     Examples
     --------
     >>> round(steady_front(2.5, 1.0).prestress, 6)

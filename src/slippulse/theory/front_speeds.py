@@ -58,6 +58,10 @@ def front_speed_undamped(tau0: float | np.ndarray) -> float | np.ndarray:
     ----------
     tau0 : float or array in [0, 1), pre-stress ahead of the front
 
+    Returns
+    -------
+    float or array : front speed (wave speeds)
+
     Examples
     --------
     >>> round(float(front_speed_undamped(0.6)), 6)
@@ -79,6 +83,10 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
         from 0 to 1e100
     release : "total" or "elastic", whether the stress that is compared with the threshold includes
         the damping force
+
+    Returns
+    -------
+    float or array : front speed (wave speeds)
 
     Examples
     --------
@@ -112,6 +120,10 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
     ----------
     speed, damping_ratio : floats or arrays, broadcast: wave speeds, from 1 to 1e100, and beta/dx
     release : "total" or "elastic", as in `front_speed`
+
+    Returns
+    -------
+    float or array : pre-stress tau_0
 
     Examples
     --------
@@ -152,6 +164,10 @@ def lattice_front_speed(
     tau0, gamma, dx : floats, pre-stress, in (0, 1), elasticity ratio, > 0, and spacing (H), > 0
     damping_ratio, release : beta/dx, from 0 to 1e100; "total" or "elastic"
     rate_strengthening : float, alpha of a term -alpha du/dt; as dx -> 0 it no longer matters
+
+    Returns
+    -------
+    float : front speed (wave speeds)
 
     Examples
     --------
@@ -195,6 +211,10 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     Parameters
     ----------
     tau0, gamma, beta : floats, pre-stress, in (0, 1), elasticity ratio, >= 0, and damping, > 0
+
+    Returns
+    -------
+    float : front speed (wave speeds)
 
     Examples
     --------

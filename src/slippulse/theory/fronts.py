@@ -56,11 +56,29 @@ class Fronts:
         self.curve = Curve(seen_from(-1.0, left) + right)
 
     def arrival(self, x) -> np.ndarray:
-        """T(x): when the front reaches x, an array; NaN beyond where it outruns the waves."""
+        """T(x): when the front reaches x, an array; NaN beyond where it outruns the waves.
+
+        Parameters
+        ----------
+        x : float or array, positions, finite
+
+        Returns
+        -------
+        array, NaN beyond where the front outruns the waves
+        """
         return self.curve.arrival(as_numbers("x", x))
 
     def reached(self, time: float, sign: float) -> float:
-        """Distance from x = 0 of the right (sign +1) or left (-1) front, before its ``reach``."""
+        """Distance from x = 0 of the right (sign +1) or left (-1) front, before its ``reach``.
+
+        Parameters
+        ----------
+        time, sign : a time >= 0, before the front is at ``reach``; +1 (right) or -1 (left)
+
+        Returns
+        -------
+        float, >= 0
+        """
         check_choice("sign", sign, (-1, 1))
         last = 0 if sign < 0.0 else -1
         check_number("time", time, at_least=0.0, below=float(self.curve.edge_times[last]))
@@ -73,12 +91,18 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     Raises ValueError: outside these ranges, or if the past of a point leaves the part that outruns
     the waves. Source: Riemann's solution (`riemann`).
 
-
     Parameters
     ----------
     fronts : Fronts
     gamma : float or array, elasticity ratio, >= 0, whose waves the panels of the fronts resolve
     y, time : float or array, positions and times, finite; broadcast with gamma
+
+    Returns
+    -------
+    float or array, 0 where no front has been
+
+    Raises ValueError: outside these ranges, or if the past of a point leaves the part that outruns
+    the waves. Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
     stiffness, y, time = broadcast_numbers(

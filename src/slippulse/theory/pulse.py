@@ -30,6 +30,10 @@ def steady_pulse(
     rate_strengthening : float, alpha of a term -alpha du/dt, at most `critical_rate_strengthening`
         in size
 
+    Returns
+    -------
+    SteadyPulse
+
     Examples
     --------
     >>> round(steady_pulse(0.6, 0.65, speed=1.25).slip, 6)

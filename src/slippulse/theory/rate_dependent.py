@@ -36,6 +36,10 @@ def rate_pulse(
     tau0, gamma, damping_ratio : floats, pre-stress, in (0, 1), gamma > 0, and beta/dx, >= 0
     friction : Friction, a law that is 0 at rest and does not depend on slip
 
+    Returns
+    -------
+    RatePulse
+
     Examples
     --------
     >>> law = sp.friction("bounded_rate", limit=0.3, v_0=1.0)

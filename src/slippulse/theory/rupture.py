@@ -134,13 +134,31 @@ class Rupture:
         return FrontEnd(x, self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
-        """T(x): when the first front reaches x."""
+        """T(x): when the first front reaches x.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, NaN where no front arrives until ``duration``
+        """
         x = as_numbers("x", x)
         times = [part.curve.arrival(x) for part in self._parts]
         return self._until_end(x, np.fmin.reduce(times))
 
     def fronts_at(self, time: float, x: float = 0.0) -> tuple[float, float]:
-        """Left and right front of the connected part that holds x, which must slip by then."""
+        """Left and right front of the connected part that holds x, which must slip by then.
+
+        Parameters
+        ----------
+        time, x : a time in (0, duration], and a position that has slipped by then, or ValueError
+
+        Returns
+        -------
+        tuple of float, left and right
+        """
         time = self._time(time)
         check_number("x", x)
         for part in self._parts:
@@ -149,7 +167,16 @@ class Rupture:
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
-        """Time at which x sticks."""
+        """Time at which x sticks.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, NaN where x does not stick until ``duration``, or beyond the horizon
+        """
         x = as_numbers("x", x)
         return self._until_end(x, self._stick(x))
 
@@ -166,7 +193,16 @@ class Rupture:
         return np.fmin.reduce(times)[index]
 
     def final_slip(self, x) -> np.ndarray:
-        """Slip at x after sticking, 0 where nothing has slipped."""
+        """Slip at x after sticking, 0 where nothing has slipped.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, 0 where nothing has slipped, NaN where x has not stuck until ``duration``
+        """
         x = as_numbers("x", x)
         stick = self.stick_time(x)
         slides = np.isfinite(self.release_time(x)) & ~np.isfinite(stick)
@@ -193,7 +229,16 @@ class Rupture:
         return ExactTransition(self.first_stick.time, right - left)
 
     def pulse_width(self, time: float, side: str = "right") -> float:
-        """Distance between the "right" or "left" front and the trailing edge behind it."""
+        """Distance between the "right" or "left" front and the trailing edge behind it.
+
+        Parameters
+        ----------
+        time, side : a time in (0, duration]; "right" or "left"
+
+        Returns
+        -------
+        float, NaN before anything sticks
+        """
         check_choice("side", side, ("right", "left"))
         time = self._time(time)
         if not self.first_stick or time <= self.first_stick.time * (1.0 + SAME):
@@ -215,19 +260,56 @@ class Rupture:
         return max(part.largest_velocity(self.duration, self.horizon) for part in self._solved)
 
     def slip_velocity(self, x, time) -> np.ndarray:
-        """du/dt at points."""
+        """du/dt at points.
+
+        Parameters
+        ----------
+        x, time : float or array, positions and times up to ``duration``, broadcast
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
         return self._points(("slip_velocity",), x, time)["slip_velocity"]
 
     def slip(self, x, time) -> np.ndarray:
-        """u at points."""
+        """u at points.
+
+        Parameters
+        ----------
+        x, time : float or array, as for `slip_velocity`
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
         return self._points(("slip",), x, time)["slip"]
 
     def strain(self, x, time) -> np.ndarray:
-        """du/dx at points."""
+        """du/dx at points.
+
+        Parameters
+        ----------
+        x, time : float or array, as for `slip_velocity`
+
+        Returns
+        -------
+        array, NaN beyond the horizon
+        """
         return self._points(("strain",), x, time)["strain"]
 
     def map(self, times, positions, fields: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-        """Some of FIELDS on a grid of at most 1e7 points, by name: arrays [time, position]."""
+        """Some of FIELDS on a grid of at most 1e7 points, by name: arrays [time, position].
+
+        Parameters
+        ----------
+        times, positions : arrays of one dimension, together at most 1e7 points
+        fields : tuple of str, some of "slip_velocity", "slip" and "strain"
+
+        Returns
+        -------
+        dict of arrays [time, position], NaN beyond the horizon
+        """
         if not isinstance(fields, Sequence) or isinstance(fields, str):
             allowed = f"a list of {', '.join(FIELDS)}"
             raise ValueError(f"fields: {short_repr(fields)}; allowed: {allowed}")
@@ -277,10 +359,10 @@ class Rupture:
         for part in self._solved:
             slow = [Limit(*point, SLOW_EDGE) for point in part.edge.slow_points()]
             falling = part.falling_slip(partial(_horizon, limits + slow))
-            found = slow + [Limit(*point, FALLING_SLIP) for point in falling]
+            new = slow + [Limit(*point, FALLING_SLIP) for point in falling]
             if self.prestress.symmetric:
-                found += [Limit(-limit.x, limit.time, limit.reason) for limit in found]
-            limits += found
+                new += [Limit(-limit.x, limit.time, limit.reason) for limit in new]
+            limits += new
         return [limit for limit in limits if limit.time <= self._last]
 
     @property
@@ -289,7 +371,16 @@ class Rupture:
         return min(self._limits, key=lambda limit: limit.time, default=None)
 
     def horizon(self, x) -> np.ndarray:
-        """Time from which on the construction says nothing at x; inf for none."""
+        """Time from which on the construction says nothing at x; inf for none.
+
+        Parameters
+        ----------
+        x : float or array, positions
+
+        Returns
+        -------
+        array, inf where there is no such time
+        """
         return _horizon(self._limits, as_numbers("x", x))
 
 

@@ -180,12 +180,12 @@ class SlowFront:
             if chunk.start - chunk.stop < SHORTEST:
                 return self.straight(mark)
             solution = self.solve(chunk)
-            back = solution is not None and solution.goes_back()
+            returns = solution is not None and solution.goes_back()
             # This close to a mark rounding may send a front back.
-            if solution is None or (back and mark - self.x0 < NEAR_MARK * self.size):
+            if solution is None or (returns and mark - self.x0 < NEAR_MARK * self.size):
                 chunk, corrections = chunk.half(), 0
                 continue
-            if back:
+            if returns:
                 return Advance(None, "dead")
             s, stop = solution.first_event(mark, BEYOND if corrections else 1.0)
             near = AT_END if corrections <= MANY else NEAR_END
@@ -200,8 +200,8 @@ class SlowFront:
                 # start.
                 chunk, corrections = chunk.half(), 0
             else:
-                whole = s < np.inf or chunk.stop == -1.0
-                length = WHOLE if whole else GROWTH * (chunk.start - chunk.stop)
+                to_the_end = s < np.inf or chunk.stop == -1.0
+                length = WHOLE if to_the_end else GROWTH * (chunk.start - chunk.stop)
                 end = mark if stop == "mark" else None
                 return Advance(self.panel(chunk, solution, end), stop, length)
         return Advance(None, "unresolved")

@@ -43,7 +43,8 @@ class Stretch:
 
     def curve(self, side: float = RIGHT) -> Curve:
         """The panels as one curve, with a side turned to the right."""
-        left, right = ([side * x for x in self.restarts[each]] for each in (-side, side))
+        left = [side * x for x in self.restarts[-side]]
+        right = [side * x for x in self.restarts[side]]
         return Curve(seen_from(side, self.panels), left, right)
 
     def add(self, side: float, panels: list[Panel], end: Point) -> None:

@@ -121,7 +121,7 @@ class Knots(NamedTuple):
 
     def predict(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
         """Mask of the intervals whose ends predict the knot in the middle."""
-        same = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
+        one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
         half = middle.x - self.x[k]
         slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half
         slope -= 0.25 * (self.pace[k] + self.pace[k + 1])
@@ -129,7 +129,7 @@ class Knots(NamedTuple):
         # The closer the edge is to the speed of the waves, the less it may turn unseen.
         steepest = np.abs([self.pace[k], middle.pace, self.pace[k + 1]]).max(axis=0)
         near &= np.abs(middle.pace - slope) <= np.minimum(PREDICTED_SLOPE, 1.0 - steepest)
-        return same & (near | (middle.kind != FAST))
+        return one_kind & (near | (middle.kind != FAST))
 
     def dips(self, k: np.ndarray) -> np.ndarray:
         """Mask of the intervals that slide, in which du/dt at the end may have a zero.
@@ -232,11 +232,11 @@ class TrailingEdge:
         dips = knots.dips(halved)
         middle[dips] = self._lowest(knots, halved[dips])
         x = np.append(pieces[1:].ravel(), middle)
-        found = self._knots_of(x, stick_time(x))
-        in_middle = Knots._make(values[x.size - middle.size :] for values in found)
+        new = self._knots_of(x, stick_time(x))
+        in_middle = Knots._make(values[x.size - middle.size :] for values in new)
         surprise = ~knots.predict(halved, in_middle)
         halves = np.append(knots.x[halved], middle)
-        refined, left = knots.joined(found), np.append(halves, pieces)
+        refined, left = knots.joined(new), np.append(halves, pieces)
         k = np.searchsorted(refined.x, left)
         again = refined.dips(k)
         again[: halves.size] |= np.tile(surprise, 2)
@@ -342,16 +342,16 @@ class TrailingEdge:
             # The minimum is beyond the last knot that has stuck.
             reach = 4.0 * self.part.scale * abs(float(knots.pace[nearest]))
             ends = (out.x + np.array([-reach, reach])).clip(knots.x[0], knots.x[-1])
-            found = self._minimum(*ends.tolist())
-            out = found if found and found.time <= out.time else out
+            minimum = self._minimum(*ends.tolist())
+            out = minimum if minimum and minimum.time <= out.time else out
         # A minimum may lie in each interval at whose ends the edge goes down into it.
         down = (knots.pace[:-1] < 0.0) & (knots.pace[1:] > 0.0) & fast
         lowest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         for low in np.flatnonzero(down & (lowest < out.time)).tolist():
-            found = self._minimum(*knots.x[[low, low + 1]].tolist())
+            minimum = self._minimum(*knots.x[[low, low + 1]].tolist())
             # Neither a kink nor an equal time is taken for a minimum.
-            if found and found.time < out.time - ROUNDING:
-                out = found
+            if minimum and minimum.time < out.time - ROUNDING:
+                out = minimum
         return out
 
     def _minimum(self, left: float, right: float) -> FirstStick | None:

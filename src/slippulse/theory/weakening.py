@@ -121,6 +121,11 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     beta : float, damping, > 0 (H times the wave speed)
     weakening : float, slip d_c over which friction falls from 1 to 0 (U), > 0 and < 1/gamma
 
+    Returns
+    -------
+    WeakeningPulse
+        The slowest steady rupture; roots of the conditions need not be unique.
+
     Examples
     --------
     >>> round(weakening_pulse(0.8, 2 / 3, 0.05, 0.1).speed, 4)
@@ -167,6 +172,11 @@ def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> floa
     Parameters
     ----------
     tau0, gamma, weakening : floats, as in `weakening_pulse`, with gamma d_c <= tau_0^2
+
+    Returns
+    -------
+    float
+        Slip in units of U.
 
     Examples
     --------
