@@ -70,7 +70,8 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     why += f"{number(damped.max(), 2)}: friction and plane are not separated. By algebra a "
     why += rf"point of the steady pulse slides for {number(CROSSINGS)} $\tau_0$ times as long as a "
     why += (
-        r"shear wave goes to the top and back, whatever $\gamma$: the height is not quasi-static."
+        r"shear wave goes to the top and back, whatever $\gamma$: at a point the height is not "
+        r"quasi-static, though the rupture lasts longer than the $2H/c_s$ of section IV C 2."
     )
     further = {
         f"median of plane over formula, {quantity.replace('_', ' ')}": float(
