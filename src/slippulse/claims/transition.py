@@ -199,7 +199,7 @@ def undamped_and_damped(combinations: Iterable[Combination]) -> str:
     for one in combinations:
         choice, deviation = one.choice, one.result["deviation"]
         if choice["criterion"] == STICK and deviation is not None:
-            part = "undamped" if choice["damping_ratio"] == 0.0 else choice["release"]
+            part = "undamped" if choice["damping_ratio"] == 0.0 else str(choice["release"])
             sizes[part].append(deviation)
     if not all(sizes.values()):
         return ""
