@@ -14,7 +14,7 @@ AXES = {
     "left": r"$\tau_{0,l}$",
     "right": r"$\tau_{0,r}$",
     "gamma": r"$\gamma$",
-    "damping_ratio": r"$\beta/\Delta x$",
+    "damping_ratio": "$b$",
     "width": r"$W$",
     "beyond": "level beyond the step",
     "release": "release rule",
