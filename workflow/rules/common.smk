@@ -3,6 +3,7 @@
 import os
 import re
 import sys
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -68,6 +69,9 @@ def run_step(rule, wildcards, input, output, params, threads, log):
     try:
         JOBS.run(origin, name, plain(input), plain(output), settings, str(log))
     except JobFailed as reason:
+        # Snakemake reads the log of a failed job, which a process that never began has not written.
+        with suppress(OSError):
+            Path(str(log)).touch()
         FAILED.append(str(reason))
         raise
 
