@@ -31,8 +31,8 @@ SLOWEST, FASTEST = -80.0, 280.0
 SLOWEST_MARGIN = 1e-6
 # This number of elements is solved at once, which bounds the memory.
 CHUNK = 128
-# The least pre-stress is searched at this number of speeds, then NARROWINGS times around the lowest
-# at so many more.
+# The least pre-stress is searched at SCAN speeds, then NARROWINGS times at NARROWER_SCAN more
+# around the lowest.
 SCAN, NARROWER_SCAN, NARROWINGS = 64, 17, 6
 
 

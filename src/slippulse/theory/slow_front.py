@@ -23,7 +23,7 @@ from .prestress_pieces import analytic
 from .riemann import decay, kernel_of, partial_weights
 
 RESOLVED = 1e-11
-# The next chunk is at most so many times as long as one that was cut.
+# The next chunk is at most this factor longer than one that was cut.
 GROWTH = 4.0
 # The shortest fraction of a panel of entries.
 SHORTEST = 1e-11

@@ -10,8 +10,8 @@ from .curve import Point
 from .part import Part
 from .trailing_edge import TrailingEdge
 
-# The grid for the largest velocity has so many positions for each knot, where knots are farther
-# apart than a fraction of `Part.scale`.
+# The grid for the largest velocity has DENSER positions for each knot, where knots are farther
+# apart than this fraction of `Part.scale`.
 DENSER, SAME_GRID = 3, 0.01
 # Where a finer grid finds more, the next one is wider by this factor, and else narrower by this.
 WIDER, NARROWER = 1.2, 0.4

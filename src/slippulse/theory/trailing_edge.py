@@ -36,7 +36,7 @@ SHORTEST, AT_END = 1e-3, 0.01
 # Panels of the curve give one knot at most in a cell of this length, in units of `Part.scale`.
 CELL = 0.1
 # Where the edge changes its kind or jumps is located to this fraction of the part, in intervals
-# that are cut into so many.
+# that are cut into CUTS pieces.
 LOCATED, CUTS = 1e-10, 8
 # Size of Newton's last step to a stick time, and of the next one, about the product of the last
 # two, in units of the interval.
