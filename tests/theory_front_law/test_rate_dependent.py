@@ -14,15 +14,15 @@ GAMMA = 2.0 / 3.0
 def test_a_law_linear_in_slip_rate_gives_the_pulse_in_closed_form(alpha):
     pulse = theory.rate_pulse(0.5, GAMMA, 0.0, sp.friction("linear_rate", alpha=alpha))
     exact = theory.steady_pulse(0.5, GAMMA, damping_ratio=0.0, rate_strengthening=alpha)
-    for name in ("speed", "width", "slip"):
+    for name in ("speed", "width", "slip", "peak_velocity"):
         assert getattr(pulse, name) == pytest.approx(getattr(exact, name), rel=1e-7), name
     assert pulse.sticks
 
 
 def test_bounded_laws_give_the_numbers_of_trials():
     pulse = theory.rate_pulse(0.5, GAMMA, 0.1, sp.friction("bounded_rate", limit=0.3, v_0=1.0))
-    numbers = pulse.slip, pulse.width, pulse.speed
-    assert numbers == pytest.approx((1.1605, 2.829, 1.2358), rel=1e-4)
+    numbers = pulse.slip, pulse.width, pulse.peak_velocity, pulse.speed
+    assert numbers == pytest.approx((1.1605, 2.829, 0.8028, 1.2358), rel=1e-4)
     weaker = sp.friction("rate_weakening", slope=1.5, limit=0.3)
     assert theory.rate_pulse(0.5, GAMMA, 0.0, weaker).slip == pytest.approx(2.3984, abs=5e-5)
 

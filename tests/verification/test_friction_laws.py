@@ -85,6 +85,7 @@ def test_lattices_tend_to_the_steady_pulse_of_a_bounded_law_of_slip_rate(law, ra
     # Fronts of this scheme lock to a whole number of steps a block.
     if ratio:
         assert measured[2]["front_speed_right"] == pytest.approx(exact.speed, rel=0.01)
+        assert measured[2]["pulse_peak_velocity"] == pytest.approx(exact.peak_velocity, rel=0.01)
         assert measured[2]["pulse_width"] == pytest.approx(exact.width, rel=0.02)
 
 

@@ -11,6 +11,7 @@ _HOMES = {
     "FrontEnd": ".rupture",
     "Fronts": ".fronts",
     "Limit": ".rupture",
+    "RatePulse": ".rate_dependent",
     "Rupture": ".rupture",
     "SteadyFront": ".front_motion",
     "SteadyPulse": ".closed_pulse",

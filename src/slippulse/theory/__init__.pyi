@@ -22,6 +22,7 @@ from .front_speeds import prestress_for_speed as prestress_for_speed
 from .fronts import Fronts as Fronts
 from .fronts import slip_velocity as slip_velocity
 from .pulse import steady_pulse as steady_pulse
+from .rate_dependent import RatePulse as RatePulse
 from .rate_dependent import rate_pulse as rate_pulse
 from .rupture import FrontEnd as FrontEnd
 from .rupture import Limit as Limit

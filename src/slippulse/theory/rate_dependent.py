@@ -6,6 +6,7 @@ Such a law is 0 at rest, so a front does not feel it. Behind a front of speed v,
 """
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,9 +24,14 @@ RELATIVE, ABSOLUTE = 1e-10, 1e-12
 STEPS = 100
 
 
-def rate_pulse(
-    tau0: float, gamma: float, damping_ratio: float, friction: Friction
-) -> SteadyRupture:
+@dataclass(frozen=True)
+class RatePulse(SteadyRupture):
+    """Steady rupture under friction that depends on slip rate: its largest slip velocity, too."""
+
+    peak_velocity: float
+
+
+def rate_pulse(tau0: float, gamma: float, damping_ratio: float, friction: Friction) -> RatePulse:
     """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
 
     Source: derived in the supplement, section on friction that depends on slip rate.
@@ -38,7 +44,7 @@ def rate_pulse(
 
     Returns
     -------
-    RatePulse
+    RatePulse : of infinite width and slip tau_0/gamma where slip creeps on
 
     Examples
     --------
@@ -66,10 +72,14 @@ def rate_pulse(
     def strain(distance: float, state: np.ndarray) -> float:
         return state[1]
 
+    def curvature(distance: float, state: np.ndarray) -> float:
+        return slopes(distance, state)[1]
+
     strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
     accuracy = {"rtol": RELATIVE, "atol": ABSOLUTE, "max_step": half_period / STEPS}
     span = (0.0, FARTHEST * half_period)
-    path = solve_ivp(slopes, span, [0.0, 0.0], events=strain, **accuracy)
+    path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
+    peak = v * max(float(state[1]) for state in path.y_events[1])
     if path.status != 1:
-        return SteadyRupture(v, math.inf, tau0 / gamma)
-    return SteadyRupture(v, float(path.t[-1]), float(path.y[0, -1]))
+        return RatePulse(v, math.inf, tau0 / gamma, peak)
+    return RatePulse(v, float(path.t[-1]), float(path.y[0, -1]), peak)

@@ -123,8 +123,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
 
     Returns
     -------
-    WeakeningPulse
-        The slowest steady rupture; roots of the conditions need not be unique.
+    SteadyRupture : the slowest one, for roots of the conditions need not be unique
 
     Examples
     --------
