@@ -96,7 +96,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Numbers of the section on the premise: ends of ratios, of changes and of other columns."""
-    runs = last_station(evidence)
+    runs, study = last_station(evidence), evidence.tables["layer"]
     pulses, barriers = finest(runs, "pulse").reset_index(), finest(runs, "barrier")
     work = 2.0 * pulses["tau0"] * pulses["pulse_slip"]
     kept = pulses["gamma"] * pulses["pulse_slip"] ** 2 + pulses["weakening"]
@@ -121,6 +121,9 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     for quantity in QUANTITIES:
         out[f"{quantity}_change"] = float(change(runs, "pulse", quantity).max())
         out[f"{quantity}_fine"] = float(change(runs, "fine", quantity).max())
+    free = finest(study, "free").sort_values("station").iloc[-2:]
+    out |= {"free_speed": float(free["speed"].iloc[1])}
+    out["free_before"], out["free_slip"] = free["pulse_slip"].tolist()
     for step, name in ((0, "cells"), (1, "coarse_cells")):
         out[name] = float(finest(runs, "pulse", step).reset_index()["cells"].max())
     return out | coupled(evidence)
