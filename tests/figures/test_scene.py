@@ -212,13 +212,6 @@ def test_fronts_trailing_edge_and_slip_are_drawn(samples):
     assert figure._repr_png_().startswith(b"\x89PNG")
 
 
-def test_what_is_no_run_is_refused():
-    for given in ({}, sp.run_sweep([PLAIN])):
-        said = rf"^run: {type(given).__name__}; allowed: a Dataset that simulate returned$"
-        with pytest.raises(TypeError, match=said):
-            sp.plot(given)
-
-
 @pytest.mark.parametrize("boundary", ["displacement", "stress"])
 @pytest.mark.parametrize("scheme", ["localised", "continuum"])
 @pytest.mark.parametrize(("peak", "times", "positions"), [(1.0, 0, 0), (0.9, 1, 9), (1.0, 5, 1)])

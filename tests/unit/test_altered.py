@@ -47,8 +47,7 @@ def test_simulations_that_do_not_take_a_default_are_named():
 
 def test_an_unchanged_configuration_has_no_note():
     altered = alterations({})
-    assert not altered.untaken()
-    assert not any(altered.simulations.values())
+    assert not altered.untaken() and not any(altered.simulations.values())
 
 
 def test_a_note_makes_a_figure_higher_and_covers_nothing(tmp_path):

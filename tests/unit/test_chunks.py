@@ -14,41 +14,21 @@ from slippulse.steps import join, measure, simulate, study_grid
 
 # The digest of a configuration, which each file notes.
 CONFIGURATION = "0123456789abcdef"
-EVEN = {"left": 0.3, "right": 0.3}
 COARSE = {"dx": 0.2, "max_step": 0.5, "order": 4}
 # Levels of both signs, so that some runs have a transition and others none, in chunks of either
 # kind alone too. A level of 0, so that integers in one chunk are fractions in the next.
-SWEEPS = {
-    "displacement": {
-        "boundary": "displacement",
-        "left": [-0.2, 0.0, 0.5],
-        "right": [0.0, 0.5],
-        "gamma": [0.65, 1.0],
-        "duration": {"time": 5.0},
-        "record": ["fronts", "fields", "samples"],
-        "samples": {"times": 3, "positions": 11, "extent": 5.0},
-        "resolved_blocks": 1,
-    },
-    "stress": {
-        "boundary": "stress",
-        "left": [-0.5, 0.0, 0.3],
-        "right": [0.0, -0.4],
-        "width": [0.5, 1.0],
-        "duration": {"time": 5.0},
-        "release": ["total", "elastic"],
-        "record": ["fronts"],
-    },
-    "profiles": {
-        "boundary": "displacement",
-        "gamma": [0.65],
-        "duration": {"time": 4.0},
-        "record": ["fronts", "samples"],
-        # A symmetric profile and an oblique one.
-        "profiles": [EVEN, {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]}],
-        "samples": {"times": 4, "positions": 1, "extent": 0.0},
-        "resolved_blocks": 1,
-    },
-}
+PLANE = {"boundary": "displacement", "left": [-0.2, 0.0, 0.5], "right": [0.0, 0.5]}
+PLANE |= {"gamma": [0.65, 1.0], "duration": {"time": 5.0}, "resolved_blocks": 1}
+PLANE |= {"record": ["fronts", "fields", "samples"]}
+PLANE |= {"samples": {"times": 3, "positions": 11, "extent": 5.0}}
+LOADED = {"boundary": "stress", "left": [-0.5, 0.0, 0.3], "right": [0.0, -0.4]}
+LOADED |= {"width": [0.5, 1.0], "duration": {"time": 5.0}, "release": ["total", "elastic"]}
+# A symmetric profile and an oblique one.
+PROFILES = [{"left": 0.3, "right": 0.3}, {"left": 0.5, "right": 0.3, "steps": [[2.0, 0.1]]}]
+LISTED = {"boundary": "displacement", "gamma": [0.65], "profiles": PROFILES, "resolved_blocks": 1}
+LISTED |= {"duration": {"time": 4.0}, "record": ["fronts", "samples"]}
+LISTED |= {"samples": {"times": 4, "positions": 1, "extent": 0.0}}
+SWEEPS = {"displacement": PLANE, "stress": LOADED | {"record": ["fronts"]}, "profiles": LISTED}
 
 
 @pytest.mark.parametrize(("chunks", "runs"), [(1, 5), (2, 2), (2, 7), (7, 7), (8, 81), (100, 1234)])
@@ -82,35 +62,32 @@ def made(shipped, tmp_path_factory):
     folder = tmp_path_factory.mktemp("chunks")
 
     def make(name: str, chunk: list[int] | None = None) -> list:
-        part = {"chunk": chunk} if chunk else {}
-        plain = SWEEPS[name], shipped["model"], COARSE
-        whole = resolve(*plain) | part
+        whole = resolve(SWEEPS[name], shipped["model"], COARSE)
+        whole |= {"chunk": chunk} if chunk else {}
         blocks = {factor: whole | {"coarser": factor} for factor in (1.0, 1.5, 2.0)}
         endings = (".nc", ".csv", "_study.csv", "_coarser.csv")
         files = [folder / f"{name}{chunk or ''}{ending}" for ending in endings]
         if not files[0].exists():
-            data, measured, study, coarser = files
+            kinds = ("data", "measured", "uncertainties", "coarser")
+            outputs = dict(zip(kinds, files, strict=True))
             settings = {"simulation": name, "measure": shipped["measure"], "threads": 1}
             settings["solver"] = simulate.SOLVERS[blocks[1.0]["scheme"]]
             with pytest.MonkeyPatch.context() as patch:
                 patch.setenv(VARIABLE, CONFIGURATION)
-                simulate.run({}, {"data": data}, settings | {"sweep": blocks.pop(1.0)})
-            measure.run({"data": data}, {"measured": measured}, settings)
-            outputs = {"uncertainties": study, "coarser": coarser}
-            study_grid.run({"finest": measured}, outputs, settings | {"sweeps": blocks})
+                simulate.run({}, outputs, settings | {"sweep": blocks.pop(1.0)})
+            measure.run(outputs, outputs, settings)
+            study_grid.run({"finest": files[1]}, outputs, settings | {"sweeps": blocks})
         return files
 
     return make
 
 
 KINDS = ("data", "measurements", "uncertainties", "uncertainties/coarser")
-SLOW = [("stress", 5), ("displacement", 5), ("profiles", 2)]
+JOINED = [("displacement", 2), ("stress", 5), ("displacement", 5), ("profiles", 2)]
+JOINED[1:] = [pytest.param(*case, marks=pytest.mark.slow) for case in JOINED[1:]]
 
 
-@pytest.mark.parametrize(
-    ("name", "chunks"),
-    [("displacement", 2), *(pytest.param(*case, marks=pytest.mark.slow) for case in SLOW)],
-)
+@pytest.mark.parametrize(("name", "chunks"), JOINED)
 def test_joined_chunks_have_the_bytes_of_the_whole(made, tmp_path, name, chunks, monkeypatch):
     sweep = made(name)
     files_of_chunks = [made(name, [number, chunks]) for number in range(1, chunks + 1)]

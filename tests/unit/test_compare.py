@@ -15,8 +15,6 @@ RUN |= {"damping_ratio": 0.1, "duration": 10.0, "release": "total"}
 OWN = "measurements/own.csv"
 TABLE, STUDY = "measurements/sweep.csv", "uncertainties/sweep.csv"
 CONFIG = {"preset": "paper", "model": {"release": "total"}}
-
-
 PLAIN = {"run": {}, "speed": 1.0, "uncertainty": 0.01, "verdict": "reproduced", "config": CONFIG}
 
 
@@ -85,8 +83,7 @@ def test_what_is_missing_in_one_tree_is_said(tmp_path, capsys, change, said):
 
 def test_a_number_without_uncertainty_is_unknown_on_another_lattice(tmp_path):
     here = tree(tmp_path / "here", uncertainty=NAN)
-    other = tree(tmp_path / "other", speed=2.0, uncertainty=NAN, dx=0.02)
-    result = compare(here, other)
+    result = compare(here, tree(tmp_path / "other", speed=2.0, uncertainty=NAN, dx=0.02))
     assert (result.compared, result.agree, result.unknown, result.apart) == (1, 0, 1, [])
 
 

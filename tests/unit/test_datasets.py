@@ -12,21 +12,19 @@ import xarray as xr
 
 import slippulse as sp
 from slippulse.data.files import write_whole
-from slippulse.data.points import point
 from slippulse.data.store import load_dataset, save_dataset
 from slippulse.data.sweeps import FIELDS, FRONTS
 from slippulse.data.tables import load_table, save_table
 from slippulse.data.variables import VARIABLES
-from slippulse.simulation.simulate import run_sweep
 
 RECORDS = ("fronts", "fields", "samples")
-PULSES = ((0.3, 2.0, 0.05), (0.5, 6.0, 0.02), (0.7, 1.0, 0.1), (-0.2, 4.0, 0.05))
 SCENES = [
-    sp.Scene("displacement", sp.Prestress(tau, 0.5), duration, dx, gamma=0.65, beta=0.1 * dx)
-    for tau, duration, dx in PULSES
+    sp.Scene("displacement", sp.Prestress(0.3, 0.5), 2.0, 0.05, gamma=0.65, beta=0.005),
+    sp.Scene("displacement", sp.Prestress(0.5, 0.5), 6.0, 0.02, gamma=0.65, beta=0.002),
+    sp.Scene("displacement", sp.Prestress(-0.2, 0.5), 4.0, 0.05, gamma=0.65, beta=0.005),
+    sp.Scene("stress", sp.Prestress(-0.5, 0.0), 4.0, 0.05),
+    sp.Scene("stress", sp.Prestress(0.5, 0.5, peak=0.9), 4.0, 0.05),
 ]
-SCENES.append(sp.Scene("stress", sp.Prestress(-0.5, 0.0), 4.0, 0.05))
-SCENES.append(sp.Scene("stress", sp.Prestress(0.5, 0.5, peak=0.9), 4.0, 0.05))
 SAMPLES = [
     sp.Samples(np.linspace(0.0, scene.duration, 7), np.linspace(-1.0, 1.0, 5)) for scene in SCENES
 ]
@@ -34,7 +32,7 @@ SAMPLES = [
 
 @cache
 def sweep(threads: int = 1, record=RECORDS) -> xr.Dataset:
-    return run_sweep(SCENES, SAMPLES, record, threads)
+    return sp.run_sweep(SCENES, SAMPLES, record, threads)
 
 
 def test_equal_data_give_equal_bytes_whatever_the_number_of_threads_and_others_do_not(tmp_path):
@@ -49,7 +47,7 @@ def test_equal_data_give_equal_bytes_whatever_the_number_of_threads_and_others_d
 def test_a_point_is_what_the_scene_alone_gives():
     together = sweep(2)
     for index, (scene, samples) in enumerate(zip(SCENES, SAMPLES, strict=True)):
-        alone, again = sp.simulate(scene, samples), point(together, index)
+        alone, again = sp.simulate(scene, samples), sp.point(together, index)
         assert again.equals(alone)
         np.testing.assert_equal(again.attrs, alone.attrs)
         for name, value in alone.attrs.items():
@@ -61,20 +59,20 @@ def test_only_what_is_asked_for_is_kept():
     sampled = {"sample_time", "sample_position", "sample_slip", "sample_velocity"}
     kept = (fields | {*FRONTS}, fields | {*FIELDS}, sampled)
     for record, names in zip(RECORDS, kept, strict=True):
-        run = point(sweep(record=(record,)), 1)
+        run = sp.point(sweep(record=(record,)), 1)
         assert set(run.variables) == names
         assert all(run[name].variable.equals(full[name].variable) for name in names), record
 
 
 def test_progress_counts_every_scene_and_one_that_fails_ends_the_sweep_with_its_reason():
     seen = []
-    run_sweep(SCENES, None, ("fronts",), 2, lambda *done: seen.append(done))
+    sp.run_sweep(SCENES, None, ("fronts",), 2, lambda *done: seen.append(done))
     assert seen == [(done, len(SCENES)) for done in range(1, len(SCENES) + 1)]
     values = {"beta": 0.1, "scheme": "fixed_step", "max_step": 0.01}
     broken = sp.Scene("stress", sp.Prestress(0.2, 0.3), 200.0, 0.1, **values)
     object.__setattr__(broken, "max_step", 3.0)
     with pytest.raises(sp.UnstableRun, match="unstable"):
-        run_sweep([*SCENES, broken], None, ("fronts",), 2)
+        sp.run_sweep([*SCENES, broken], None, ("fronts",), 2)
 
 
 STEP = {"gamma": 0.65, "beta": 0.005, "max_step": 0.4}

@@ -49,8 +49,7 @@ def test_an_edited_helper_is_not_met_by_the_machine_code_of_its_callers_old_self
     shutil.copy2(jit.__file__, package / "jit.py")
     (package / "__init__.py").write_text("")
     imports = "from .helper import helper\nfrom .jit import entry\n"
-    caller = "@entry\ndef caller(x): return 10 * helper(x)\n"
-    (package / "caller.py").write_text(imports + caller)
+    (package / "caller.py").write_text(imports + "@entry\ndef caller(x): return 10 * helper(x)\n")
     program = "from edited.caller import caller; print(caller(1))"
     for added, result in ((1, "20"), (2, "30")):
         helper = f"from .jit import inner\n@inner()\ndef helper(x): return x + {added}\n"
@@ -80,9 +79,7 @@ def test_kernels_that_are_compiled_are_not_compiled_again(untouched_kernels, tmp
     folder = tmp_path / "kernels"
     shutil.copytree(untouched_kernels, folder)
 
-    def times() -> dict[str, int]:
-        return {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
-
+    times = lambda: {path.name: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")}
     before = times()
     run_with(folder, COMPILE_ALL)
     assert times() == before

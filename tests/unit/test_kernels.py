@@ -82,8 +82,7 @@ def test_a_stick_at_the_end_of_the_step_is_found_there():
     """The two evaluations of the velocity may differ in the sign of a rounding error."""
     random = np.random.default_rng(0)
     for _ in range(2000):
-        start = [random.uniform(0.1, 1), random.uniform(-3, -1)]
-        coefficients = np.array([*start, *random.uniform(-1, 1, 3)])
+        coefficients = random.uniform([0.1, -3, -1, -1, -1], [1, -1, 1, 1, 1])
         if from_python(foresight.polynomial)(coefficients, 4, 1.0) < 0.0:
             root = from_python(foresight.crossing)(coefficients, 4, 0.0, 1.0)
             for h in (np.nextafter(root, 0.0), root, np.nextafter(root, 2.0)):

@@ -49,10 +49,8 @@ def test_numbers_as_they_are_written(write, texts):
 
 def test_prose_says_what_is_missing_and_refuses_what_is_unknown():
     names = {"pulse": None, "speed": 1.25, "estimate": None}
-    text = (
-        "{{ pulse.width | number(4) }}, {{ estimate[0] | percent }}, {{ speed }} of $\\frac{1}{2}$"
-    )
-    assert fill(text, names) == "not measured, not measured, 1.25 of $\\frac{1}{2}$"
+    text = "{{ pulse.width | number(4) }}, {{ estimate[0] | percent }}, {{ speed }} of $\\frac12$"
+    assert fill(text, names) == "not measured, not measured, 1.25 of $\\frac12$"
     with pytest.raises(ValueError, match=r"^It is \{\{ speeed \}\}\.: UndefinedError: 'speeed'"):
         fill("First.\nIt is {{ speeed }}.", names)
 

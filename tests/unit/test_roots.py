@@ -24,10 +24,7 @@ def test_bisection_ends_at_neighbouring_floats():
 
 def test_roots_of_many_functions_between_ends():
     lower, upper = np.zeros(4), np.full(4, 10.0)
-
-    def cubic(x, which):
-        return x**3 - VALUES[which]
-
+    cubic = lambda x, which: x**3 - VALUES[which]
     roots = roots_between(cubic, lower, upper, -VALUES, 1000.0 - VALUES, 1e-12)
     assert roots == pytest.approx(np.cbrt(VALUES), abs=2e-12)
     with pytest.raises(ValueError, match="different signs"):
@@ -35,9 +32,7 @@ def test_roots_of_many_functions_between_ends():
 
 
 def test_roots_of_increasing_functions_by_secants():
-    def sinh(x, which):
-        return np.arcsinh(x) - np.arcsinh(VALUES[which])
-
+    sinh = lambda x, which: np.arcsinh(x) - np.arcsinh(VALUES[which])
     roots = increasing_roots(sinh, np.ones(4), np.zeros(4), np.full(4, 1e3))
     assert roots == pytest.approx(VALUES, rel=1e-13)
     with pytest.raises(ArithmeticError, match="no root"):

@@ -1,6 +1,7 @@
 """The pre-stress: values, symmetry, steps, bumps, integral; and derived parameters of a scene."""
 
 import dataclasses
+from itertools import product
 
 import numpy as np
 import pytest
@@ -8,7 +9,6 @@ import tolerances as tol
 from scipy.integrate import quad
 
 import slippulse as sp
-from slippulse.data.points import point
 from slippulse.data.store import load_dataset, save_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.predict.comparison import measured_table
@@ -42,7 +42,7 @@ def test_a_scene_comes_back_from_its_attributes_its_data_and_its_measured_row(
     assert sp.Scene.from_attributes(scene.attributes()) == scene
     save_dataset(sp.run_sweep([scene], record=("fronts",)), tmp_path / "data.nc")
     data = load_dataset(tmp_path / "data.nc")
-    assert sp.Scene.from_attributes(point(data, 0).attrs) == scene
+    assert sp.Scene.from_attributes(sp.point(data, 0).attrs) == scene
     save_table(measured_table(data, config["measure"]), tmp_path / "measured.csv")
     (row,) = load_table(tmp_path / "measured.csv").to_dict("records")
     assert sp.Scene.from_attributes(row) == scene
@@ -56,8 +56,7 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
     strengthened = sp.Scene.from_attributes(attributes | {"rate_strengthening": 0.4})
     assert strengthened.friction == sp.friction("linear_rate", alpha=0.4)
     del attributes["steps_and_bumps"]
-    refusal = "steps_and_bumps: missing; allowed: every attribute of a run"
-    with pytest.raises(ValueError, match=refusal):
+    with pytest.raises(ValueError, match="steps_and_bumps: missing; allowed: every attribute of"):
         sp.Scene.from_attributes(attributes)
 
 
@@ -65,8 +64,7 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
 def test_parameters_are_computed_with_in_double_precision(kind):
     """A spacing squared in single precision would change the seventh digit of a result."""
     values = {"duration": kind(7), "dx": kind(1), "gamma": kind(1), "beta": kind(0)}
-    prestress = sp.Prestress(kind(0), kind(0), kind(2), kind(1))
-    scene = sp.Scene("displacement", prestress, **values)
+    scene = sp.Scene("displacement", sp.Prestress(kind(0), kind(0), kind(2), kind(1)), **values)
     of_scene = [getattr(scene, name) for name in (*values, "max_step", "friction_ratio")]
     profile = [getattr(scene.prestress, name) for name in ("left", "right", "width", "peak")]
     assert {type(value) for value in of_scene + profile} == {float}
@@ -109,19 +107,14 @@ def test_a_step_replaces_the_level_beyond_its_position_on_its_side(steps):
     assert np.array_equal(profile(x), PROFILES["steps"](x))
 
 
+SYMMETRIC = [{}, {"left": 0.0, "right": -0.0}, {"steps": ((5.0, 0.1), (-5.0, 0.1))}]
+SYMMETRIC += [{"bumps": ((-4.0, 0.1, 1.0), (4.0, 0.1, 1.0), (0.0, 0.1, 1.0))}]
+ASYMMETRIC = [{"right": 0.300001}, {"steps": ((5.0, 0.1), (-5.0, 0.2))}, {"steps": ((5.0, 0.1),)}]
+ASYMMETRIC += [{"bumps": ((4.0, 0.1, 1.0),)}, {"bumps": ((4.0, 0.1, 1.0), (-4.0, 0.1, 2.0))}]
+
+
 @pytest.mark.parametrize(
-    ("symmetric", "values"),
-    [
-        (True, {}),
-        (False, {"right": 0.300001}),
-        (True, {"left": 0.0, "right": -0.0}),
-        (True, {"steps": ((5.0, 0.1), (-5.0, 0.1))}),
-        (False, {"steps": ((5.0, 0.1), (-5.0, 0.2))}),
-        (False, {"steps": ((5.0, 0.1),)}),
-        (True, {"bumps": ((-4.0, 0.1, 1.0), (4.0, 0.1, 1.0), (0.0, 0.1, 1.0))}),
-        (False, {"bumps": ((4.0, 0.1, 1.0),)}),
-        (False, {"bumps": ((4.0, 0.1, 1.0), (-4.0, 0.1, 2.0))}),
-    ],
+    ("symmetric", "values"), [*product([True], SYMMETRIC), *product([False], ASYMMETRIC)]
 )
 def test_symmetry_is_what_the_values_say(symmetric, values):
     profile, x = sp.Prestress(**{"left": 0.3, "right": 0.3} | values), np.linspace(0.0, 20.0, 2001)
@@ -134,10 +127,9 @@ def test_symmetry_is_what_the_values_say(symmetric, values):
 def test_the_integral_is_that_of_the_profile(name, ends):
     profile = PROFILES[name]
     marks = [0.0, *(p for p, _ in profile.steps), *(c for c, _, _ in profile.bumps)]
-    low, high = ends
     inside = [mark for mark in marks if min(ends) < mark < max(ends)] or None
     accuracy = {"points": inside, "epsabs": 1e-13, "epsrel": 1e-12, "limit": 400}
-    expected, _ = quad(lambda x: float(profile(x)), low, high, **accuracy)
+    expected, _ = quad(lambda x: float(profile(x)), *ends, **accuracy)
     assert profile.integral(*ends) == pytest.approx(expected, abs=tol.QUADRATURE)
 
 

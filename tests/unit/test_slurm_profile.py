@@ -5,6 +5,7 @@ import tomllib
 
 import pytest
 import yaml
+from rules_by_imports import DRAWN
 
 RULE = re.compile(r"^rule (\w+):$(.*?)(?=^\S|\Z)", re.M | re.S)
 
@@ -23,11 +24,9 @@ def profile(project) -> dict:
 
 
 @pytest.fixture(scope="module")
-def names(project, rules) -> set[str]:
+def names(rules) -> set[str]:
     """Names of all rules, with those that are made in a loop: one a figure."""
-    figures = project / "src/slippulse/figures"
-    drawn = [path.stem for path in [*figures.glob("fig*.py"), *figures.glob("study_*.py")]]
-    return {*rules, *drawn}
+    return {*rules, *DRAWN}
 
 
 def test_it_names_rules_that_exist(profile, names):
@@ -56,12 +55,8 @@ def test_a_sweep_or_chunk_is_one_job_the_joining_another_and_costs_are_asked_for
 
 
 def test_the_plugin_is_in_its_own_lock_alone(project):
-    def text(name: str) -> str:
-        return (project / name).read_text(encoding="utf-8")
-
-    def packages(name: str) -> set[str]:
-        return set(re.findall(r"^([\w.-]+)==", text(name), re.M))
-
+    text = lambda name: (project / name).read_text(encoding="utf-8")
+    packages = lambda name: {*re.findall(r"^([\w.-]+)==", text(name), re.M)}
     cluster = packages("requirements-slurm.lock")
     assert {*tomllib.loads(text("pyproject.toml"))["dependency-groups"]["slurm"]} <= cluster
     assert not cluster & packages("requirements.lock")
