@@ -15,9 +15,8 @@ from ..model.prestress import Prestress
 from ..model.samples import Samples
 from ..model.scene import Scene
 from ..simulation.sweep import simulate_on_lattice
-from ..theory.closed_pulse import critical_rate_strengthening
 from ..theory.front_speeds import front_speed
-from ..theory.pulse import steady_pulse
+from ..theory.pulse import critical_rate_strengthening, steady_pulse
 from ..theory.rupture import Rupture
 from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 

@@ -19,7 +19,7 @@ _HOMES = {
     "barrier_depth": ".barrier",
     "barrier_depth_estimate": ".barrier",
     "continuum_front_speed": ".front_speeds",
-    "critical_rate_strengthening": ".closed_pulse",
+    "critical_rate_strengthening": ".pulse",
     "damage_zone_stress_drop": ".dimensional",
     "exact_transition_displacement": ".exact_transition",
     "front_speed": ".front_speeds",

@@ -4,7 +4,6 @@ from .arrest import ArrestingCrack as ArrestingCrack
 from .barrier import barrier_depth as barrier_depth
 from .barrier import barrier_depth_estimate as barrier_depth_estimate
 from .closed_pulse import SteadyPulse as SteadyPulse
-from .closed_pulse import critical_rate_strengthening as critical_rate_strengthening
 from .closed_pulse import paper_pulse as paper_pulse
 from .closed_pulse import paper_transition_displacement as paper_transition_displacement
 from .closed_pulse import paper_transition_stress as paper_transition_stress
@@ -21,6 +20,7 @@ from .front_speeds import lattice_front_speed as lattice_front_speed
 from .front_speeds import prestress_for_speed as prestress_for_speed
 from .fronts import Fronts as Fronts
 from .fronts import slip_velocity as slip_velocity
+from .pulse import critical_rate_strengthening as critical_rate_strengthening
 from .pulse import steady_pulse as steady_pulse
 from .rate_dependent import RatePulse as RatePulse
 from .rate_dependent import rate_pulse as rate_pulse

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..model.checks import check_number
 from ..model.prestress import Prestress
-from .curve import Curve, Panel
+from .curve import Curve
 from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
@@ -51,9 +51,6 @@ def barrier_depth(
     -------
     float, distance from the edge of the barrier (units of H), proportional to 1/sqrt(gamma)
 
-    Raises ValueError: outside the domain.
-    Source: the free boundary (`slow_front`) behind a front at constant speed, as dx -> 0.
-
     Examples
     --------
     >>> round(barrier_depth(0.5, -0.5, 0.65), 3)
@@ -66,9 +63,12 @@ def barrier_depth(
     check_number(
         f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST
     )
-    panels = _steady_front(tau0, speed)
+    # The depth is found at gamma = 1, behind a front as far back as its pulse remembers.
+    memory = MEMORY * steady_pulse(tau0, 1.0, speed=speed).width / (speed - 1.0) * speed
+    proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
+    panels = straight_panels(edges, -1.0 / speed, tau0)
     level = Prestress(left=tau_barrier, right=tau_barrier, peak=tau_barrier)
-    # The depth is found at gamma = 1.
     stop = None
     while stop is None:
         front = SlowFront(Curve(panels), level, tau_barrier, gamma=1.0)
@@ -83,14 +83,6 @@ def barrier_depth(
     return panels[-1].end.x / math.sqrt(gamma)
 
 
-def _steady_front(tau0: float, speed: float) -> list[Panel]:
-    """Panels of a front that comes to x = 0 at gamma = 1, as far back as its pulse remembers."""
-    memory = MEMORY * steady_pulse(tau0, 1.0, speed=speed).width / (speed - 1.0) * speed
-    proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
-    edges = np.linspace(-memory, 0.0, max(4, math.ceil(memory * proper / LONGEST)) + 1)
-    return straight_panels(edges, -1.0 / speed, tau0)
-
-
 def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> float:
     """Estimate of the depth (units of H): (2/gamma) ln((tau_barrier - tau_0)/tau_barrier).
 
@@ -103,8 +95,6 @@ def barrier_depth_estimate(tau0: float, tau_barrier: float, gamma: float) -> flo
     Returns
     -------
     float, distance (units of H)
-
-    Raises ValueError: outside the domain. Source: the authors' public code of later work.
 
     Examples
     --------

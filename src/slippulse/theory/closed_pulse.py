@@ -8,7 +8,6 @@ import numpy as np
 from ..model.balance import prestress_balance_position
 from ..model.checks import as_numbers, check_number
 from ..model.prestress import Prestress
-from .domains import check_domains
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class SteadyPulse:
         return -float(np.arctan2(self.wavenumber, self.growth)) / self.wavenumber
 
     def profile(self, xi) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Arrays of slip, slip velocity and slip acceleration, at rest outside of the pulse.
+        """Slip, slip velocity and slip acceleration, at rest outside of the pulse.
 
         Parameters
         ----------
@@ -70,83 +69,48 @@ class SteadyPulse:
         return slip, velocity, acceleration
 
 
+class NoPulse(ValueError):
+    """Arguments that have no steady pulse in floating point."""
+
+
+@np.errstate(over="raise", invalid="raise", divide="raise")
 def pulse_at_speed(
     tau0: float, gamma: float, beta: float, speed: float, rate_strengthening: float = 0.0
 ) -> SteadyPulse:
     """Steady pulse behind a front of a given speed; arguments and errors as of `steady_pulse`."""
-    check_domains(tau0=tau0, gamma=gamma)
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_number("gamma", gamma, above=0.0)
     check_number("beta", beta, at_least=0.0)
     check_number("speed", speed, above=1.0)
     check_number("rate_strengthening", rate_strengthening)
-    given = float(tau0), float(gamma), float(beta), float(speed), float(rate_strengthening)
+    tau0, gamma, beta = (float(number) for number in (tau0, gamma, beta))
+    v, alpha = float(speed), float(rate_strengthening)
+    inertia = (v - 1.0) * (v + 1.0)
     try:
-        return _solution(*given)
+        if beta == 0.0:
+            p = 0.5 * alpha * v / inertia
+            q = float(np.sqrt(gamma / inertia - p**2))
+        else:
+            roots = np.roots([beta * v, inertia, -alpha * v, gamma])
+            pair = roots[np.argmax(roots.imag)]
+            p, q = float(pair.real), float(pair.imag)
+        width = np.pi / q
+        slip = tau0 / gamma * (1.0 + np.exp(-p * width))
+        amplitude = v * tau0 * np.hypot(p, q) / gamma
+        peak = amplitude * np.exp(-p / q * np.arctan2(q, p))
+        sizes = float(width), float(slip), float(peak)
+        # Floats of Python overflow without an error.
+        if not all(0.0 < size < math.inf for size in sizes):
+            raise OverflowError
     except (ArithmeticError, ValueError):
-        raise _no_pulse(*given) from None
-
-
-def _no_pulse(tau0: float, gamma: float, beta: float, speed: float, alpha: float) -> ValueError:
-    """The refusal of arguments that have no steady pulse in floating point."""
-    critical = critical_rate_strengthening(gamma, speed) if alpha else 0.0
-    if abs(alpha) > 0.5 * critical:
-        return ValueError(
-            f"rate_strengthening: {alpha!r}; allowed: less than {critical:.6g} in size at"
-            f" gamma = {gamma:.4g}, speed = {speed:.6g} without beta, or no pulse is steady"
-        )
-    point = f"speed: {speed:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
-    return ValueError(f"{point}; allowed: numbers whose pulse can be computed")
-
-
-@np.errstate(over="raise", invalid="raise", divide="raise")
-def _solution(tau0: float, gamma: float, beta: float, speed: float, alpha: float) -> SteadyPulse:
-    inertia = (speed - 1.0) * (speed + 1.0)
-    if beta == 0.0:
-        p = 0.5 * alpha * speed / inertia
-        q = float(np.sqrt(gamma / inertia - p**2))
-    else:
-        roots = np.roots([beta * speed, inertia, -alpha * speed, gamma])
-        pair = roots[np.argmax(roots.imag)]
-        p, q = float(pair.real), float(pair.imag)
-    width = np.pi / q
-    slip = tau0 / gamma * (1.0 + np.exp(-p * width))
-    modulus = np.hypot(p, q)
-    peak = speed * tau0 * modulus / gamma * np.exp(-p / q * np.arctan2(q, p))
-    sizes = float(width), float(slip), float(peak), float(gamma * slip)
-    # Floats of Python overflow without an error.
-    if not all(0.0 < size < math.inf for size in sizes[:3]):
-        raise OverflowError
-    return SteadyPulse(tau0, gamma, beta, speed, *sizes, p, q, alpha)
-
-
-def critical_rate_strengthening(gamma: float, speed: float) -> float:
-    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): no pulse is steady beyond +- alpha_c.
-
-    Source: the wavenumber q of the steady pulse is 0 there (beta -> 0). Without damping of the
-    front alpha_c is 2 tau_0 sqrt(gamma).
-    Raises ValueError: outside the domain.
-
-    Parameters
-    ----------
-    gamma, speed : floats, elasticity ratio, > 0, and front speed v (wave speeds), > 1
-
-    Returns
-    -------
-    float : alpha_c
-
-    Examples
-    --------
-    >>> critical_rate_strengthening(0.25, 1.25)
-    0.6
-    """
-    check_domains(gamma=gamma)
-    check_number("speed", speed, above=1.0)
-    return 2.0 * math.sqrt(gamma) * math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
+        point = f"speed: {v:.4g}, at gamma = {gamma:.4g}, beta = {beta:.4g}"
+        raise NoPulse(f"{point}; allowed: numbers whose pulse can be computed") from None
+    return SteadyPulse(tau0, gamma, beta, v, *sizes, float(gamma * slip), p, q, alpha)
 
 
 def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
-    """The paper's undamped pulse, of peak velocity 1/sqrt(gamma).
+    """The paper's undamped pulse, section III A and appendix C.
 
-    Source: section III A and appendix C of the paper.
     Raises ValueError: outside the domain.
 
     Parameters
@@ -162,15 +126,14 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     >>> round(paper_pulse(0.6, 0.25).peak_velocity, 6)
     2.0
     """
-    check_domains(tau0=tau0)
+    check_number("tau0", tau0, above=0.0, below=1.0)
     return pulse_at_speed(tau0, gamma, 0.0, 1.0 / math.sqrt(1.0 - tau0 * tau0))
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
-    """The paper's estimate of the transition under a displacement boundary (section III B).
+    """The paper's estimate of the transition under a displacement boundary, section III B.
 
-    T_trans = pi/sqrt(gamma) and L_trans = 2 T_trans/sqrt(1 - tau_0^2) neglect the elastic coupling
-    and the Gaussian at nucleation.
+    It neglects the elastic coupling and the Gaussian at nucleation.
     Raises ValueError: outside the domain.
 
     Parameters
@@ -186,16 +149,16 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
     >>> [round(number, 4) for number in paper_transition_displacement(0.6, 0.25)]
     [6.2832, 15.708]
     """
-    check_domains(tau0=tau0, gamma=gamma)
+    check_number("tau0", tau0, above=0.0, below=1.0)
+    check_number("gamma", gamma, above=0.0)
     time = np.pi / np.sqrt(float(gamma))
     return float(time), float(2.0 * time / np.sqrt(1.0 - tau0**2))
 
 
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
-    """The paper's estimate of the transition under a stress boundary (section III C).
+    """The paper's estimate of the transition under a stress boundary, section III C.
 
-    T_trans = |x_minus| and L_trans = 2 |x_minus| take front speeds as 1. The pre-stress is one that
-    `prestress_balance_position` takes.
+    It takes front speeds as 1. Raises as `prestress_balance_position`.
 
     Parameters
     ----------

@@ -44,11 +44,6 @@ def exact_transition_displacement(
     -------
     ExactTransition
 
-    Raises ValueError: outside these ranges; if the profile nucleates elsewhere too; or if a front
-    needs more than 20000 panels: gamma times the square of the width from 1e-17 to 1e6 is safe.
-    Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
-    `Rupture.transition` looks at all positions.
-
     Examples
     --------
     >>> round(exact_transition_displacement(Prestress(0.5, 0.5), 0.65).time, 2)
@@ -89,11 +84,6 @@ def uniform_transition_time(
     Returns
     -------
     float, proportional to 1/sqrt(gamma)
-
-    Raises ValueError: outside the domain.
-    Source: the first zero of du/dt at x = 0 behind the fronts T(x) = |x|/v. With w = 1/v and
-    q = sqrt(gamma) t/(1 + w) it is that of Int_0^q J0( sqrt((w q + q - w s)^2 - s^2) ) ds, which
-    depends on v alone.
 
     Examples
     --------

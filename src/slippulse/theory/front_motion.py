@@ -36,15 +36,10 @@ class SteadyFront:
     ahead: np.ndarray
 
     @property
-    def first_rest(self) -> float:
-        """Distance in blocks behind the front where the velocity first returns to 0, or inf."""
-        rest = np.flatnonzero(self.velocity[1:] <= 0.0)
-        return float(self.distance[rest[0] + 1]) if rest.size else np.inf
-
-    @property
     def admissible(self) -> bool:
         """True if stress ahead is below 1 until the release, when the last block still slides."""
-        return bool(np.all(self.ahead[:-1] < 1.0) and self.first_rest > 1.0)
+        last_block = self.velocity[1:][self.distance[1:] <= 1.0]
+        return bool(np.all(self.ahead[:-1] < 1.0) and np.all(last_block > 0.0))
 
 
 def steady_front(

@@ -187,7 +187,10 @@ def lattice_front_speed(
     if nearly_one and damping_ratio > 0.0 and springs <= LARGEST_SPRINGS:
         speed = front_speed(tau0, damping_ratio, release)
         if springs * (1.0 + damping_ratio) < 1e-5 * speed**2 and abs(drag) < 1e-5 * speed:
-            return _slowed_by_weak_springs(speed, float(damping_ratio), lattice)
+            # The factor of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
+            strength = damping_ratio * speed if release == "total" else 0.0
+            slowed = springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0)
+            return speed * (1.0 - slowed)
     slowest, least = _least_prestress(tau0, lattice)
     if tau0 <= least:
         rate = f", rate_strengthening = {rate_strengthening:g}" if drag else ""
@@ -234,47 +237,33 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + springs)))
 
 
-def _slowed_by_weak_springs(speed: float, ratio: float, lattice: Lattice) -> float:
-    """Speed with leaf springs g to first order in g/v^2, from the speed without.
-
-    The factor of g/v^2 is 1/24 without damping and, by quadrature, 1/6 for b v >> 1.
-    """
-    strength = ratio * speed if lattice.release == "total" else 0.0
-    return speed * (
-        1.0 - lattice.springs / speed**2 * (strength / 6.0 + 1.0 / 24.0) / (strength + 1.0)
-    )
-
-
 def _least_prestress(tau0: float, lattice: Lattice) -> tuple[float, float]:
     """ln(v - 1) of a front, and the least pre-stress of fronts, which that front has."""
-    if lattice.springs > LARGEST_SPRINGS:
+    springs, ratio = lattice.springs, lattice.ratio
+    if springs > LARGEST_SPRINGS:
         return 0.0, 1.0
-    slow = max(1.0, np.sqrt(4.0 + lattice.springs) / np.pi)
+    slow = max(1.0, np.sqrt(4.0 + springs) / np.pi)
     if lattice.drag < 0.0:
         # Behind a slower front slip runs away.
         margin = 1.0 + SLOWEST_MARGIN
-        slow = max(slow, margin / np.sqrt(1.0 - 0.25 * lattice.drag**2 / lattice.springs))
+        slow = max(slow, margin / np.sqrt(1.0 - 0.25 * lattice.drag**2 / springs))
     first = float(np.log(slow - 1.0)) if slow > 1.0 else SLOWEST
-    least = float(np.exp(lattice.log_prestress(np.array([first]), lattice.ratio)[0]))
+    least = float(np.exp(lattice.log_prestress(np.array([first]), ratio)[0]))
     # The slowest front mostly has the least pre-stress; above it there is one speed.
-    return (first, least) if tau0 > least else _fold(first, lattice)
-
-
-def _fold(first: float, lattice: Lattice) -> tuple[float, float]:
-    """ln(v - 1) and tau_0 where the pre-stress of fronts from the first one on is least."""
-    ratio = lattice.ratio[0]
+    if tau0 > least:
+        return first, least
     slowest = 1.0 + np.exp(first)
-    last = np.log(slowest * (1.0 + ratio) * (1.0 + lattice.springs)) + 5.0
+    last = np.log(slowest * (1.0 + ratio[0]) * (1.0 + springs)) + 5.0
     inner = np.log(slowest - 1.0 + np.geomspace(1e-6, np.exp(last), SCAN - 1))
     x = np.concatenate([[first], inner])
     for _ in range(NARROWINGS + 1):
-        log_tau = lattice.log_prestress(x, np.full(x.size, ratio))
+        log_tau = lattice.log_prestress(x, np.full(x.size, ratio[0]))
         lowest = int(np.argmin(log_tau))
-        fold = float(x[lowest]), float(np.exp(log_tau[lowest]))
-        if x[lowest] == first:
+        slow, least = float(x[lowest]), float(np.exp(log_tau[lowest]))
+        if slow == first:
             break
         x = np.linspace(x[max(lowest - 1, 0)], x[min(lowest + 1, x.size - 1)], NARROWER_SCAN)
-    return fold
+    return slow, least
 
 
 def slowness_nearly_one(tau: np.ndarray, ratio: np.ndarray | float, release: str) -> np.ndarray:

@@ -100,9 +100,6 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     Returns
     -------
     float or array, 0 where no front has been
-
-    Raises ValueError: outside these ranges, or if the past of a point leaves the part that outruns
-    the waves. Source: Riemann's solution (`riemann`).
     """
     check_kind("fronts", fronts, Fronts)
     stiffness, y, time = broadcast_numbers(

@@ -1,6 +1,10 @@
 """The steady slip pulse, with damping."""
 
-from .closed_pulse import SteadyPulse, pulse_at_speed
+import math
+
+from ..model.checks import check_number
+from .closed_pulse import NoPulse, SteadyPulse, pulse_at_speed
+from .domains import check_domains
 from .front_speeds import front_speed
 
 
@@ -43,4 +47,37 @@ def steady_pulse(
         raise ValueError(f"speed, damping_ratio: {speed}, {damping_ratio}; allowed: one of the two")
     if speed is None:
         speed = float(front_speed(tau0, damping_ratio, release))
-    return pulse_at_speed(tau0, gamma, beta, speed, rate_strengthening)
+    try:
+        return pulse_at_speed(tau0, gamma, beta, speed, rate_strengthening)
+    except NoPulse:
+        critical = critical_rate_strengthening(gamma, speed)
+        if abs(rate_strengthening) <= 0.5 * critical:
+            raise
+    raise ValueError(
+        f"rate_strengthening: {rate_strengthening!r}; allowed: less than {critical:.6g} in size at"
+        f" gamma = {gamma:.4g}, speed = {speed:.6g} without beta, or no pulse is steady"
+    )
+
+
+def critical_rate_strengthening(gamma: float, speed: float) -> float:
+    """alpha_c = 2 sqrt(gamma) sqrt(1 - 1/v^2): no pulse is steady beyond +- alpha_c.
+
+    Source: the wavenumber q of the steady pulse is 0 there (beta -> 0). Without damping of the
+    front alpha_c is 2 tau_0 sqrt(gamma). Raises ValueError: outside the domain.
+
+    Parameters
+    ----------
+    gamma, speed : floats, elasticity ratio, > 0, and front speed v (wave speeds), > 1
+
+    Returns
+    -------
+    float : alpha_c
+
+    Examples
+    --------
+    >>> critical_rate_strengthening(0.25, 1.25)
+    0.6
+    """
+    check_domains(gamma=gamma)
+    check_number("speed", speed, above=1.0)
+    return 2.0 * math.sqrt(gamma) * math.sqrt((speed - 1.0) * (speed + 1.0)) / speed

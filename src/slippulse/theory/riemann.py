@@ -26,17 +26,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.special import i0, i1, j0, j1
 
-from .curve import (
-    COUNT,
-    CUMULATIVE,
-    PARTIAL,
-    SLOPE,
-    TO_POWERS,
-    WEIGHTS,
-    Crossing,
-    Curve,
-    value_and_slope,
-)
+from .curve import COUNT, CUMULATIVE, PARTIAL, SLOPE, TO_POWERS, WEIGHTS, Curve, value_and_slope
 
 # Number of points whose integrals are computed together: their arrays stay in the cache.
 CHUNK = 96
@@ -108,9 +98,6 @@ class Sources(NamedTuple):
     panels: slice
 
 
-Integrand = Callable[[Sources], np.ndarray]
-
-
 class Past:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
@@ -137,9 +124,15 @@ class Past:
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of du/dt by t - y and by t + y, from its ends and its kernel."""
-        decay_left, decay_right = self._decay_at_ends()
-        left = self._source_per("early", self.left, decay_left)
-        right = self._source_per("late", self.right, decay_right)
+        # E tau dx by dg and by dh where the characteristics meet the curve.
+        per_slope = []
+        ends = zip(("early", "late"), (self.left, self.right), self._decay_at_ends(), strict=True)
+        for name, end, decayed in ends:
+            slope = self.curve.evaluate(name, end.panel, end.s, order=1)
+            # Where the slope is 0 so is tau, and the end contributes nothing.
+            slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
+            per_slope.append(decayed * self.curve.evaluate("source", end.panel, end.s) / slope)
+        left, right = per_slope
         # E falls with both alike.
         lag = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
@@ -152,13 +145,6 @@ class Past:
 
         by_xi, by_eta = self._along(integrand, (2,))
         return 0.5 * (k * by_xi - left) - lag, 0.5 * (k * by_eta + right) - lag
-
-    def _source_per(self, name: str, end: Crossing, decayed: np.ndarray | float) -> np.ndarray:
-        """E tau dx by dg (early) or dh (late) where the characteristics meet the curve."""
-        slope = self.curve.evaluate(name, end.panel, end.s, order=1)
-        # Where the slope is 0 so is tau, and the end contributes nothing.
-        slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-        return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
 
     def slip(self, rest: Rest) -> np.ndarray:
         """u."""
@@ -214,45 +200,41 @@ class Past:
         d_xi = self.xi - self.curve.evaluate("early", self.right.panel, self.right.s)
         return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
 
-    def _along(self, integrand: Integrand, components: tuple[int, ...] = ()) -> np.ndarray:
+    def _along(
+        self, integrand: Callable[[Sources], np.ndarray], components: tuple[int, ...] = ()
+    ) -> np.ndarray:
         """Integrals over each domain of an integrand, per unit of the parameter of the panels."""
-        out = np.empty((*components, self.xi.size))
+        curve, out = self.curve, np.empty((*components, self.xi.size))
         # Points of about the same panels are computed together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, order.size, CHUNK):
             points = order[start : start + CHUNK]
-            out[..., points] = self._integrals(integrand, components, points)
+            high = self.right.panel[points]
+            low = np.minimum(self.left.panel[points], high)
+            first, last = int(low.min()), int(high.max()) + 1
+            panels = slice(first, last)
+            low, high = low - first, high - first
+            ends = np.arange(low.size), np.array([high, low])
+            d_xi = self.xi[points, None] - curve.early[panels].ravel()
+            d_eta = self.eta[points, None] - curve.late[panels].ravel()
+            stiffness = np.broadcast_to(self.stiffness, self.xi.shape)[points, None]
+            z = stiffness * d_xi
+            z *= d_eta
+            # It is the sign of k that counts here: gamma may vary for alpha = 0 only.
+            kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
+            values = integrand(Sources(d_xi, d_eta, kernel, panels))
+            if self.alpha:
+                values = values * decay(self.alpha, d_xi, d_eta)
+            boxes = values.reshape(*components, low.size, -1, COUNT)
+            # The panels between both ends, and those that are cut there.
+            here = np.arange(last - first)
+            inside = (here >= low[:, None]) & (here < high[:, None])
+            total = np.add.reduce((boxes @ WEIGHTS) * inside, axis=-1)
+            weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
+            cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, COUNT), axis=-1)
+            out[..., points] = total + cut[..., 0, :] - cut[..., 1, :]
         # The domain of a point on the curve, at the end of a panel, is empty.
         return np.where(self.left.panel > self.right.panel, 0.0, out)
-
-    def _integrals(
-        self, integrand: Integrand, components: tuple[int, ...], points: np.ndarray
-    ) -> np.ndarray:
-        """Integrals for some of the points: the panels between both ends, and those cut there."""
-        curve = self.curve
-        high = self.right.panel[points]
-        low = np.minimum(self.left.panel[points], high)
-        first, last = int(low.min()), int(high.max()) + 1
-        panels = slice(first, last)
-        low, high = low - first, high - first
-        ends = np.arange(low.size), np.array([high, low])
-        d_xi = self.xi[points, None] - curve.early[panels].ravel()
-        d_eta = self.eta[points, None] - curve.late[panels].ravel()
-        stiffness = np.broadcast_to(self.stiffness, self.xi.shape)[points, None]
-        z = stiffness * d_xi
-        z *= d_eta
-        # It is the sign of k that counts here: gamma may vary for alpha = 0 only.
-        kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
-        values = integrand(Sources(d_xi, d_eta, kernel, panels))
-        if self.alpha:
-            values = values * decay(self.alpha, d_xi, d_eta)
-        boxes = values.reshape(*components, low.size, -1, COUNT)
-        here = np.arange(last - first)
-        inside = (here >= low[:, None]) & (here < high[:, None])
-        total = np.add.reduce((boxes @ WEIGHTS) * inside, axis=-1)
-        weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
-        cut = np.add.reduce(boxes[..., *ends, :] * weights.reshape(2, -1, COUNT), axis=-1)
-        return total + cut[..., 0, :] - cut[..., 1, :]
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:

@@ -10,7 +10,6 @@ with E and k = gamma - alpha^2/4 as in `riemann`. X is found as a function of e,
 smooth where the front stops: there dX/de = 0.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -70,23 +69,19 @@ class Chunk(NamedTuple):
         return self._replace(stop=0.5 * (self.start + self.stop))
 
 
-class Solution(NamedTuple):
-    """Positions of a front at the nodes of a chunk, and their derivative by its parameter."""
+def _first_event(x: np.ndarray, mark: float, limit: float) -> tuple[float, str | None]:
+    """The first parameter, up to a limit, where a front stops or meets the mark, or inf."""
+    events: list[tuple[float, str | None]] = [(s, None) for s in _roots_on(SLOPE @ x, limit)]
+    if np.isfinite(mark):
+        events += [(s, "mark") for s in _roots_on(x - mark, limit)]
+    return min(events, key=lambda event: event[0], default=(np.inf, None))
 
-    x: np.ndarray
-    slope: np.ndarray
 
-    def first_event(self, mark: float, limit: float) -> tuple[float, str | None]:
-        """The first parameter, up to a limit, where the front stops or meets the mark, or inf."""
-        events: list[tuple[float, str | None]] = [(s, None) for s in _roots_on(self.slope, limit)]
-        if np.isfinite(mark):
-            events += [(s, "mark") for s in _roots_on(self.x - mark, limit)]
-        return min(events, key=lambda event: event[0], default=(np.inf, None))
-
-    def goes_back(self) -> bool:
-        """Tell whether the front would go back from the start of the chunk on."""
-        first = min(_roots_on(self.slope, 1.0), default=1.0)
-        return bool(legendre.legval(0.5 * (first - 1.0), TO_SERIES @ self.slope) < 0.0)
+def _goes_back(x: np.ndarray) -> bool:
+    """Tell whether a front would go back from the start of the chunk on."""
+    slope = SLOPE @ x
+    first = min(_roots_on(slope, 1.0), default=1.0)
+    return bool(legendre.legval(0.5 * (first - 1.0), TO_SERIES @ slope) < 0.0)
 
 
 def _roots_on(values: np.ndarray, limit: float) -> list[float]:
@@ -100,7 +95,6 @@ def _roots_on(values: np.ndarray, limit: float) -> list[float]:
     return real[(real > -1.0 + AT_START) & (real <= limit)].tolist()
 
 
-@dataclass
 class FreeBoundary:
     """The equation of the free boundary on one chunk, as a function of the positions of the front.
 
@@ -108,34 +102,34 @@ class FreeBoundary:
     in a row (its weight includes tau), and then the nodes of the chunk.
     """
 
-    stiffness: float
-    alpha: float
-    early: np.ndarray
-    late: np.ndarray
-    weight: np.ndarray
-    d_xi: np.ndarray
+    def __init__(self, front: "SlowFront", chunk: Chunk) -> None:
+        curve, panel, s = front.curve, chunk.panel, chunk.parameters()
+        self.front = front
+        self.early = curve.evaluate("early", np.full(COUNT, panel), s)
+        self.late = curve.late[panel:].ravel()
+        cut = (WEIGHTS - partial_weights(s)) * curve.source[panel]
+        later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
+        self.weight = np.concatenate([cut, later], axis=1)
+        self.d_xi = self.early[:, None] - np.append(curve.early[panel:], self.early)
 
-    def kernels(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The kernel of each row, and its derivative by the position of the row."""
+    def newton_step(self, x: np.ndarray) -> np.ndarray | None:
+        """The step to subtract from positions; None where the front would not be stable."""
+        k, alpha = self.front.stiffness, self.front.alpha
         eta = self.early + 2.0 * x
         d_eta = eta[:, None] - np.append(self.late, eta)
-        z = self.stiffness * self.d_xi * d_eta
-        kernel = kernel_of(self.stiffness, z, z)
-        lasting = decay(self.alpha, self.d_xi, d_eta) if self.alpha else 1.0
+        z = k * self.d_xi * d_eta
+        kernel = kernel_of(k, z, z)
+        lasting = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
+        # The kernel of each row, and its derivative by the position of the row.
         value = lasting * kernel(0)
-        slope = 2.0 * self.stiffness * lasting * kernel(1) * self.d_xi - 0.5 * self.alpha * value
-        return value, slope
-
-    def newton_step(self, x: np.ndarray, x0: float, tau_at: Callable) -> np.ndarray | None:
-        """The step to subtract from positions; None where the front would not be stable."""
-        value, slope = self.kernels(x)
+        slope = 2.0 * k * lasting * kernel(1) * self.d_xi - 0.5 * alpha * value
         crossed = self.late.size
         entered = (self.weight * value[:, :crossed]).sum(axis=1)
         growth = (self.weight * slope[:, :crossed]).sum(axis=1)
         # From x0 to each position: with a kernel of 1 exactly, and what the kernel adds to 1 at the
         # nodes.
-        half = 0.5 * (x - x0)
-        tau = tau_at(x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
+        half = 0.5 * (x - self.front.x0)
+        tau = self.front.tau(self.front.x0 + half[:, None] * np.append(1.0 + NODES, 2.0))
         area, tau = half * (tau[:, :-1] @ WEIGHTS), tau[:, -1]
         fall = tau + growth
         if not np.all(fall < 0.0):
@@ -179,23 +173,21 @@ class SlowFront:
         for _ in range(MOST_CHUNKS):
             if chunk.start - chunk.stop < SHORTEST:
                 return self.straight(mark)
-            solution = self.solve(chunk)
-            returns = solution is not None and solution.goes_back()
+            x = self.solve(chunk)
+            returns = x is not None and _goes_back(x)
             # This close to a mark rounding may send a front back.
-            if solution is None or (returns and mark - self.x0 < NEAR_MARK * self.size):
+            if x is None or (returns and mark - self.x0 < NEAR_MARK * self.size):
                 chunk, corrections = chunk.half(), 0
                 continue
             if returns:
                 return Advance(None, "dead")
-            s, stop = solution.first_event(mark, BEYOND if corrections else 1.0)
+            s, stop = _first_event(x, mark, BEYOND if corrections else 1.0)
             near = AT_END if corrections <= MANY else NEAR_END
             if s < np.inf and (corrections == 0 or abs(s - 1.0) >= near):
                 # Beyond an event the solution may mean nothing: it is solved again to end there.
-                chunk, corrections = (
-                    chunk._replace(stop=float(chunk.parameters(np.array(s)))),
-                    corrections + 1,
-                )
-            elif np.any(np.diff(solution.x, prepend=self.x0) <= 0.0):
+                chunk = chunk._replace(stop=float(chunk.parameters(np.array(s))))
+                corrections += 1
+            elif np.any(np.diff(x, prepend=self.x0) <= 0.0):
                 # Where the equation hardly depends on the front rounding may put it behind its
                 # start.
                 chunk, corrections = chunk.half(), 0
@@ -203,7 +195,7 @@ class SlowFront:
                 to_the_end = s < np.inf or chunk.stop == -1.0
                 length = WHOLE if to_the_end else GROWTH * (chunk.start - chunk.stop)
                 end = mark if stop == "mark" else None
-                return Advance(self.panel(chunk, solution, end), stop, length)
+                return Advance(self.panel(chunk, x, end), stop, length)
         return Advance(None, "unresolved")
 
     def tau(self, x: np.ndarray) -> np.ndarray:
@@ -228,23 +220,12 @@ class SlowFront:
         # A remainder near rounding cannot be resolved: the next panel takes it over.
         return (panel - 1, 1.0) if s + 1.0 < REMAINDER and panel > 0 else (panel, s)
 
-    def equation(self, chunk: Chunk) -> FreeBoundary:
-        """The equation that the positions of the front solve."""
-        curve, panel, s = self.curve, chunk.panel, chunk.parameters()
-        early = curve.evaluate("early", np.full(COUNT, panel), s)
-        cut = (WEIGHTS - partial_weights(s)) * curve.source[panel]
-        later = np.tile((curve.source[panel + 1 :] * WEIGHTS).ravel(), (COUNT, 1))
-        weight = np.concatenate([cut, later], axis=1)
-        d_xi = early[:, None] - np.append(curve.early[panel:], early)
-        late = curve.late[panel:].ravel()
-        return FreeBoundary(self.stiffness, self.alpha, early, late, weight, d_xi)
-
-    def solve(self, chunk: Chunk) -> Solution | None:
+    def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Positions of the front by Newton's method; None where the chunk is too long."""
-        equation = self.equation(chunk)
+        equation = FreeBoundary(self, chunk)
         x, change = self.guess(chunk), np.inf
         for _ in range(MOST_NEWTON_STEPS):
-            step = equation.newton_step(x, self.x0, self.tau)
+            step = equation.newton_step(x)
             if step is None:
                 return None
             x = x - step
@@ -254,7 +235,7 @@ class SlowFront:
             if not change <= 1e3 or (tail > 2.0 * RESOLVED and change < 0.1 * tail):
                 return None
             if change < 1e-13 or (change < 1e-11 and change >= 0.5 * previous):
-                return Solution(x, SLOPE @ x) if tail <= RESOLVED else None
+                return x if tail <= RESOLVED else None
         return None
 
     def guess(self, chunk: Chunk) -> np.ndarray:
@@ -267,14 +248,13 @@ class SlowFront:
         pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
         return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
 
-    def panel(self, chunk: Chunk, solution: Solution, end: float | None = None) -> Panel:
+    def panel(self, chunk: Chunk, x: np.ndarray, end: float | None) -> Panel:
         """The new panel of the curve; its end may be known to be a mark."""
         s = np.append(chunk.parameters(), chunk.stop)
         *early, last_early = self.curve.evaluate("early", np.full(COUNT + 1, chunk.panel), s)
-        last = float(AT_ENDS[1] @ solution.x) if end is None else end
-        time = np.array(early) + solution.x
+        last = float(AT_ENDS[1] @ x) if end is None else end
         x_ends, time_ends = (self.x0, last), (self.t0, float(last_early) + last)
-        return Panel(solution.x, time, self.tau(solution.x) * solution.slope, x_ends, time_ends)
+        return Panel(x, np.array(early) + x, self.tau(x) * (SLOPE @ x), x_ends, time_ends)
 
     def straight(self, mark: float) -> Advance:
         """The last step to a mark where tau rises to 0, too short to be resolved, at wave speed."""

@@ -70,19 +70,24 @@ class _Exponentials:
         nearest, farthest = NEAREST / rates.max(), FARTHEST / rates.min()
         return -nearest * FACTOR ** np.arange(math.log(farthest / nearest) / math.log(FACTOR))
 
+    def first_turn(self) -> tuple[np.ndarray, bool]:
+        """Samples around where slip velocity turns behind its peak; True if it stops before."""
+        xi = self.samples()
+        falls = self.at(xi, 2) < 0.0
+        turns = np.flatnonzero(falls[:-1] & (self.at(xi, 2) >= 0.0)[1:])
+        turn = turns[0] if turns.size else xi.size
+        return xi[turn : turn + 2], bool((self.at(xi, 1) >= 0.0)[: turn + 1].any())
 
-@dataclass(frozen=True)
-class _Tail:
-    """U behind the weakening zone, which ends at ``start``; ``turn`` is where U'' returns to 0."""
-
-    exponentials: _Exponentials
-    start: float
-    turn: float
-    stops: bool  # the slip velocity returns to 0 before the turn
+    def creeps(self) -> bool:
+        """Tell if slip goes on for ever: no growing exponential, oscillation or overshoot."""
+        growing = abs(self.sizes[0]) > ABSENT * np.abs(self.sizes[1:]).max()
+        return bool(self.sizes[1].real < 0.0 and not growing and not self.exponents[1:].imag.any())
 
 
-def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) -> _Tail | None:
-    """Tail behind the weakening zone at a trial speed; None where the slip stops in that zone."""
+def _tail(
+    v: float, tau0: float, gamma: float, beta: float, weakening: float
+) -> tuple[float, _Exponentials] | None:
+    """End of the weakening zone, and U from there; None where the slip stops in that zone."""
     b, inertia = beta * v, (v - 1.0) * (v + 1.0)
     zone = _Exponentials(b, inertia, gamma - 1.0 / weakening, tau0 - 1.0, np.zeros(3))
     xi = zone.samples()
@@ -93,25 +98,12 @@ def _tail(v: float, tau0: float, gamma: float, beta: float, weakening: float) ->
     before = 0.0 if first == 0 else float(xi[first - 1])
     end = root_between(lambda x: float(zone.at(x)) - weakening, float(xi[first]), before)
     start = np.array([float(zone.at(end, n)) for n in range(3)])
-    tail = _Exponentials(b, inertia, gamma, tau0, start)
-    xi = tail.samples()
-    velocity, curvature = -tail.at(xi, 1), tail.at(xi, 2)
-    stopped = velocity <= 0.0
-    # The velocity falls behind its peak where U'' < 0, and turns where that ends.
-    turned = (curvature[1:] >= 0.0) & (curvature[:-1] < 0.0)
-    first_stop = int(np.argmax(stopped)) if stopped.any() else xi.size
-    first_turn = int(np.argmax(turned)) if turned.any() else xi.size
-    turn = -math.inf
-    if first_turn < xi.size:
-        ends = float(xi[first_turn + 1]), float(xi[first_turn])
-        turn = root_between(lambda x: float(tail.at(x, 2)), *ends)
-    return _Tail(tail, end, turn, bool(stopped.any()) and first_stop <= first_turn)
+    return end, _Exponentials(b, inertia, gamma, tau0, start)
 
 
 def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) -> SteadyRupture:
-    """The slowest steady rupture in uniform pre-stress under slip weakening.
+    """The slowest steady rupture in uniform pre-stress under slip weakening and damping.
 
-    Slip weakening and damping select its speed.
     Source: derived in the supplement, section on friction laws.
     Raises ValueError: outside the domain, or where no steady rupture has a speed of 0.05 to 50.
 
@@ -135,8 +127,8 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     check_number("weakening", weakening, above=0.0, below=1.0 / gamma)
 
     def too_fast(v: float) -> float:
-        tail = _tail(v, tau0, gamma, beta, weakening)
-        return -1.0 if tail is None or tail.stops else 1.0
+        solution = _tail(v, tau0, gamma, beta, weakening)
+        return -1.0 if solution is None or solution[1].first_turn()[1] else 1.0
 
     upper = SLOWEST
     while too_fast(upper) < 0.0:
@@ -149,17 +141,14 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     if upper == SLOWEST:
         raise ValueError(f"weakening: {weakening:.4g}; allowed: less, for a speed above {SLOWEST}")
     speed = root_to_last_bit(too_fast, upper / FASTER, upper)
-    tail = _tail(speed, tau0, gamma, beta, weakening)
-    assert tail is not None
-    if _decays(tail.exponentials):
+    solution = _tail(speed, tau0, gamma, beta, weakening)
+    assert solution is not None
+    zone_end, tail = solution
+    turn, _ = tail.first_turn()
+    if tail.creeps() or not turn.size:
         return SteadyRupture(speed, math.inf, tau0 / gamma)
-    return SteadyRupture(speed, -(tail.start + tail.turn), float(tail.exponentials.at(tail.turn)))
-
-
-def _decays(tail: _Exponentials) -> bool:
-    """True for a tail that creeps for ever: no growing exponential, oscillation or overshoot."""
-    growing = abs(tail.sizes[0]) > ABSENT * np.abs(tail.sizes[1:]).max()
-    return bool(not tail.exponents[1:].imag.any() and not growing and tail.sizes[1].real < 0.0)
+    stick = root_between(lambda x: float(tail.at(x, 2)), float(turn[1]), float(turn[0]))
+    return SteadyRupture(speed, -(zone_end + stick), float(tail.at(stick)))
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
@@ -174,8 +163,7 @@ def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> floa
 
     Returns
     -------
-    float
-        Slip in units of U.
+    float, slip (U)
 
     Examples
     --------

@@ -122,7 +122,11 @@ def log_factor(
         lag = -excess * z[:last] + size * shift / r[part]
         if springs > 0.0:
             lag = lag + (springs + drag * iw[part]) / (-1j * iw[part] + size)
-        exponent = np.where(close[part], 1j * lag - 2.0 * _artanh_beyond(h), 0.0)
+        # artanh h - h without cancellation.
+        square, large = h * h, np.abs(h) >= SMALL_ARTANH
+        curved = h * square * _ARTANH(square)
+        curved[large] = np.arctanh(h[large]) - h[large]
+        exponent = np.where(close[part], 1j * lag - 2.0 * curved, 0.0)
         factor[part] = np.where(close[part], -np.expm1(exponent), factor[part])
     if springs > 0.0:
         return log(factor)
@@ -177,15 +181,6 @@ def _panels(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 # artanh h - h = h^3 P(h^2) for small h, and e^x - 1 - x = x^2 P(x) for small x.
 _ARTANH = np.polynomial.Polynomial([1.0 / (2 * n + 3) for n in range(8)])
 _EXP = np.polynomial.Polynomial(1.0 / np.cumprod(np.arange(1.0, 17.0))[1:])
-
-
-def _artanh_beyond(h: np.ndarray) -> np.ndarray:
-    """artanh h - h without cancellation."""
-    square = h * h
-    out = h * square * _ARTANH(square)
-    large = np.abs(h) >= SMALL_ARTANH
-    out[large] = np.arctanh(h[large]) - h[large]
-    return out
 
 
 def _exp_beyond(x: np.ndarray) -> np.ndarray:
