@@ -74,7 +74,7 @@ def answer() -> str:
     called = json.loads(CALL.read_text(encoding="utf-8"))
     text = ""
     if called["judged"]:
-        from slippulse.claims.reading import Ledger
+        from slippulse.claims.ledger import Ledger
 
         ledger = Ledger(json.loads(Path("results/claims.json").read_text(encoding="utf-8")))
         text = f"{ledger.summary()}\n{changed_verdicts(ledger) if called['altered'] else ''}"

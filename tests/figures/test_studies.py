@@ -7,7 +7,7 @@ import pytest
 import tolerances as tol
 from matplotlib.lines import Line2D
 
-from slippulse.claims.inference import inference, likely
+from slippulse.measurement.inference import inference, likely
 from slippulse.model.prestress import Prestress
 from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
 from slippulse.theory.rupture import Rupture
@@ -237,9 +237,10 @@ def test_numbers_are_those_of_the_figures_own_table_and_regions_are_around_the_b
             patches = {patch.get_gid(): patch for patch in panel.collections}
             outer = patches[f"{release} 0.95"].get_paths()[0].vertices
             inner = patches[f"{release} 0.68"].get_paths()[0].vertices
-            low, high = fit["regions"][0.95][name]
             # A joint region of two parameters is wider than that of one.
-            assert outer[:, 1].min() < low and outer[:, 1].max() > high
+            low, high = fit["regions"][0.95]
+            assert outer[:, 0].min() < low and outer[:, 0].max() > high
+            assert outer[:, 1].min() < fit[name] < outer[:, 1].max()
             assert np.ptp(inner[:, 0]) < np.ptp(outer[:, 0])
             assert inner[:, 0].min() < fit["damping_ratio"] < inner[:, 0].max()
     highest = max(line.get_ydata().max() for line in axes[0].lines if line.get_gid())

@@ -6,14 +6,13 @@ import re
 from base64 import b64decode
 from dataclasses import replace
 from io import BytesIO
-from types import SimpleNamespace
 
 import pytest
 import yaml
 from PIL import Image
 from report.conftest import DIGEST
 
-from slippulse.claims.reading import measured_text
+from slippulse.claims.ledger import with_texts
 from slippulse.data.numerals import with_uncertainty
 from slippulse.figures.style import FAMILY
 from slippulse.report.manuscript import DOCUMENTS, execute, names_for
@@ -98,7 +97,7 @@ def test_both_have_the_numbers_of_the_ledger(report):
     for text in (report.pages[1], " ".join(page.extract_text() for page in report.pdfs[1].pages)):
         flat = re.sub(r"\s+", " ", text)
         assert with_uncertainty(claim["measured"], claim["uncertainty"]) in flat
-        assert measured_text(SimpleNamespace(**report.claims["grows_above_zero"])) in flat
+        assert with_texts(report.claims["grows_above_zero"]).measured_text() in flat
         for id in report.claims:
             assert id in flat or id.replace("_", "_ ") in flat
     for html in report.pages:

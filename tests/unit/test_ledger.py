@@ -2,17 +2,17 @@
 
 import json
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from slippulse.claims import reading, rules
+from slippulse.claims import rules
 from slippulse.claims.choices import LAST, Combination, over_choices
 from slippulse.claims.evidence import Evidence, agreeing, exponent
 from slippulse.claims.findings import findings
 from slippulse.claims.kinds import Approximate, Qualitative, Scaling
+from slippulse.claims.ledger import Ledger, with_texts
 from slippulse.claims.paper import SIMULATIONS, all_claims, written
 from slippulse.claims.reading import read_entries, read_text
 from slippulse.claims.rules import VERDICTS, WORST_FIRST
@@ -290,7 +290,7 @@ READING |= {"tolerance": 0.05}
 OPEN_RUNS = {"predicted": 8.0, "held": 5, "failed": 1, "undecided": 2, "tolerance": 0.0}
 
 
-claim = lambda fields: SimpleNamespace(**CLAIM | fields)
+claim = lambda fields: with_texts(CLAIM | fields)
 # Fields of a claim, and the sentence that says why.
 WHY = {
     "reproduced": ({"verdict": "reproduced"}, ""),
@@ -316,31 +316,31 @@ NUMBERS = {
 
 @pytest.mark.parametrize(("fields", "sentence"), WHY.values(), ids=WHY)
 def test_one_sentence_says_why(fields, sentence):
-    assert reading.why_text(claim(fields)) == sentence
+    assert claim(fields).why_text() == sentence
 
 
 @pytest.mark.parametrize(("fields", "texts"), NUMBERS.values(), ids=NUMBERS)
 def test_numbers_are_written_in_the_form_of_their_kind(fields, texts):
-    write = (reading.predicted_text, reading.measured_text, reading.compared_text)
-    assert tuple(text(claim(fields)) for text in write) == texts
+    judged = claim(fields)
+    assert texts == (judged.predicted_text(), judged.measured_text(), judged.compared_text())
 
 
 def test_a_verdict_that_hangs_on_the_tolerance_says_so():
     sides = {"below": "inconclusive", "above": "reproduced"}
     flips = [sides | {"tolerance": tolerance} for tolerance in (0.1, 0.15, 0.29)]
     text = "with a tolerance below 0.150: inconclusive; with a tolerance above 0.290: reproduced"
-    assert reading.evidence_text(claim(ALWAYS | {"flips_at": flips})) == text
+    assert claim(ALWAYS | {"flips_at": flips}).evidence_text() == text
 
 
 def test_what_follows_is_not_counted_again_and_findings_and_further_numbers_are_asked_for_by_name():
     others = [{"id": "a", "verdict": "reproduced"}, {"id": "c"}]
     others.append(others[0] | {"id": "b", "counted": False, "follows_from": ["a"]})
-    ledger = reading.Ledger([CLAIM | fields for fields in others])
+    ledger = Ledger([CLAIM | fields for fields in others])
     assert ledger.count() == 2 and ledger.count("reproduced") == 1
     assert ledger.summary() == "2 claims: 1 reproduced, 1 not reproduced."
     numbers = [{"id": "ours", "numbers": {"gap": 0.5}}, {"id": "no", "numbers": {}}]
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
-    ledger = reading.Ledger([CLAIM | {"further": further}], numbers)
+    ledger = Ledger([CLAIM | {"further": further}], numbers)
     assert ledger.further("one", "else") == 1.0 and ledger.further("one", "no") is None
     assert ledger.listed("one", "apart") == "3 arrested; 2 growing"
     assert ledger.found("ours").gap == 0.5 and ledger.found("no") is None

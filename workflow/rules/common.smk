@@ -86,7 +86,10 @@ TOPICS = declared("steps.predict", "TOPICS")
 SWEEPS = {
     f"sweep_{name}": {"measured": [name], "predicted": {name: TOPICS}} for name in OWN_SIMULATIONS
 }
-CLAIM_PREDICTED = declared("claims.paper", "PREDICTED")
+CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
+CLAIM_PREDICTED = {name: topics for name, topics in CLAIM_SIMULATIONS.items() if topics}
+# The front speeds are those of one level, without a grid study.
+CLAIM_PREDICTED["front_speed"] = ["front"]
 REPORT_NEEDS = declared("steps.write_report", "NEEDS")
 # Predictions that are read: topics by simulation.
 READ = [CLAIM_PREDICTED, *(needs.get("predicted", {}) for needs in (REPORT_NEEDS, *NEEDS.values()))]

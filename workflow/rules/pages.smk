@@ -3,7 +3,6 @@
 from slippulse.data.alterations import changes
 from slippulse.data.provenance import source_files
 
-CLAIM_SIMULATIONS = declared("claims.paper", "SIMULATIONS")
 CLAIM_STUDIES = (
     "derivations friction_laws layer open_choices published_figure published_scheme rate_dependence"
 ).split()
@@ -34,7 +33,6 @@ TEXTS = ("captions", "claims", "errata", "metadata", "shipped_verdicts", "statem
 rule write_claims:
     input:
         environment,
-        # The front speeds are those of one level, without a grid study.
         measured=made("measured", [*CLAIM_SIMULATIONS, "front_speed"]),
         coarser=made("coarser", CLAIM_SIMULATIONS),
         uncertainties=made("uncertainties", CLAIM_SIMULATIONS),

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..data.numerals import number, percent, setting
@@ -45,11 +46,8 @@ class Change(NamedTuple):
     name: str
     before: Combination
     after: Combination
+    exact: bool
     size: float
-
-    def weight(self) -> tuple[bool, float]:
-        """A sort key: changes of the exact solution are above those of lattices, then by size."""
-        return self.before.choice.get("solution") == "exact", self.size
 
 
 def changes(combinations: Iterable[Combination]) -> list[Change]:
@@ -57,18 +55,15 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 
     The last release is that of a lattice, so that what it changes with is no choice of the paper.
     """
-    measured = [
-        one
-        for one in combinations
-        if one.result["deviation"] is not None and one.choice.get("fraction") != LAST
-    ]
+    choices = [one for one in combinations if one.choice.get("fraction") != LAST]
     out = []
-    for before, after in permutations(measured, 2):
+    for before, after in permutations(choices, 2):
         names = before.choice | after.choice
         changed = [name for name in names if before.choice.get(name) != after.choice.get(name)]
-        if len(changed) == 1 and changed[0] in NAMES:
-            size = abs(before.result["deviation"] - after.result["deviation"])
-            out.append(Change(changed[0], before, after, size))
+        first, second = before.result["deviation"], after.result["deviation"]
+        if len(changed) == 1 and changed[0] in NAMES and None not in (first, second):
+            exact = before.choice.get("solution") == "exact"
+            out.append(Change(changed[0], before, after, exact, abs(first - second)))
     return out
 
 
@@ -77,16 +72,17 @@ def decisive(combinations: Iterable[Combination]) -> dict[str, Change | None]:
 
     The choice that moves the deviation most comes first; it is alone, with None, if none decides.
     """
-    largest: dict[str, tuple[bool, float]] = {}
-    smallest: dict[str, Change | None] = {}
-    for change in sorted(changes(combinations), key=Change.weight):
-        largest[change.name] = change.weight()
-    for change in sorted(changes(combinations), key=lambda change: change.size):
+    deciding: dict[str, Change] = {}
+    changed = changes(combinations)
+    for change in sorted(changed, key=attrgetter("size")):
         if change.before.result["holds"] and change.after.result["holds"] is False:
-            smallest.setdefault(change.name, change)
-    names = sorted(largest, key=largest.__getitem__)[::-1]
-    deciding = {name: smallest[name] for name in names if name in smallest}
-    return deciding or dict.fromkeys(names[:1])
+            deciding.setdefault(change.name, change)
+    # Changes of the exact solution are above those of lattices.
+    weight = attrgetter("exact", "size")
+    largest = {change.name: weight(change) for change in sorted(changed, key=weight)}
+    ranked = sorted(largest, key=largest.__getitem__)[::-1]
+    out: dict[str, Change | None] = {name: deciding[name] for name in ranked if name in deciding}
+    return out or dict.fromkeys(ranked[:1])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,25 +102,24 @@ class OverChoices(ByNumber):
     def fields(self) -> dict[str, Any]:
         """The numbers shown, a row for each combination, and the choice that moves most."""
         rows = [one.choice | one.result for one in self.combinations]
+        holding = [row["deviation"] for row in rows if row["holds"]]
         decided = decisive(self.combinations)
-        out: dict[str, Any] = {"verdict": self.verdict(), "choices": rows}
-        out["why"] = self.shown.why
-        out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
-        out["holds_at"] = sum(row["holds"] is True for row in rows)
-        if out["verdict"] == rules.DEPENDS:
-            holding = [row["deviation"] for row in rows if row["holds"]]
-            failing = [row["deviation"] for row in rows if row["holds"] is False]
-            causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
-            depends = f" It depends on {causes}." if causes else ""
-            why = (
-                f"{self.shown.why} It holds at {out['holds_at']} of {len(rows)} combinations, with "
+        verdict, why = self.verdict(), self.shown.why
+        if verdict == rules.CAVEAT:
+            why = self.doubt()
+        elif verdict == rules.DEPENDS:
+            most = self.size(max(holding))
+            least = self.size(min(row["deviation"] for row in rows if row["holds"] is False))
+            why += (
+                f" It holds at {len(holding)} of {len(rows)} combinations, with deviations up to "
             )
-            most, least = self.size(max(holding)), self.size(min(failing))
-            why += f"deviations up to {most}, and fails with {least} or more."
-            out["why"] = f"{why}{depends}{self.at_last_release()}".strip()
-        elif out["verdict"] == rules.CAVEAT:
-            out["why"] = self.doubt()
-        return self.shown.fields() | out
+            why += f"{most}, and fails with {least} or more."
+            causes = "; on ".join(self.cause(name, change) for name, change in decided.items())
+            why += f" It depends on {causes}." if causes else ""
+            why = f"{why}{self.at_last_release()}".strip()
+        out: dict[str, Any] = {"verdict": verdict, "choices": rows, "why": why}
+        out |= {"choice": next(iter(decided), ""), "combinations": len(rows)}
+        return self.shown.fields() | out | {"holds_at": len(holding)}
 
     def doubt(self) -> str:
         """Why the first combination with a caveat has it."""
@@ -139,9 +134,8 @@ class OverChoices(ByNumber):
 
     def size(self, deviation: float, digits: int = 2) -> str:
         """A deviation in the unit of the kind: of an exponent, or relative."""
-        if isinstance(self.shown, Scaling):
-            return number(deviation, 2)
-        return percent(deviation, digits)
+        scaling = isinstance(self.shown, Scaling)
+        return number(deviation, 2) if scaling else percent(deviation, digits)
 
     def at_last_release(self) -> str:
         """How far the last release is off, in a sentence; empty if it is no choice."""
@@ -150,10 +144,8 @@ class OverChoices(ByNumber):
         if not sizes:
             return ""
         ends = f"{self.size(min(sizes))} to {self.size(max(sizes))}"
-        text = (
-            f" With the last release, {len(sizes)} of the combinations, it is off by {ends}: that "
-        )
-        return f"{text}is the lattice's, by its spacing and damping."
+        text = f" With the last release, {len(sizes)} of the combinations, it is off by {ends}: "
+        return f"{text}that is the lattice's, by its spacing and damping."
 
     def cause(self, name: str, change: Change | None) -> str:
         """A choice on which the claim depends, with what holds on either side of a change."""

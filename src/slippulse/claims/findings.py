@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 
 from ..data.prose import fill
+from ..measurement.inference import inference
 from . import layer, transition
 from .evidence import Evidence, evaluated, value_of
-from .inference import inference
 
 
 class NoRuns(Exception):
@@ -68,7 +68,7 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """The parameters of the published figure: best fit, confidence region, the other rule."""
     fits = inference(evidence.tables["published_figure"])
     best = fits["best"]
-    low, high = best["regions"][0.95]["damping_ratio"]
+    low, high = best["regions"][0.95]
     out = {"release": best["release"], "chi_square": best["chi2"], "degrees": float(best["dof"])}
     out |= {"ratio": best["damping_ratio"], "low": low, "high": high}
     return out | {"difference": fits["difference"]}
@@ -76,13 +76,12 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
 
 def never_arrives(evidence: Evidence) -> dict[str, float]:
     """Median ratio of the exact time at each fraction of the way to the predicted one."""
-    out = {}
-    for choice, tables in transition.ours(transition.arrests(evidence)):
-        if choice["solution"] == "exact":
-            ratio = tables[0]["time"] / tables[0]["time_estimate"]
-            percentage = 100.0 * float(choice["fraction"])
-            out[f"median_{percentage:.0f}"] = float(ratio.median())
-    return out
+    combinations, *_ = transition.estimated(evidence, "T_trans_stress", "stress", "time")
+    medians = transition.medians(combinations).items()
+    # The last release, a text, is of a lattice.
+    return {
+        f"median_{100.0 * part:.0f}": median for part, median in medians if isinstance(part, float)
+    }
 
 
 def backward_threshold(evidence: Evidence) -> dict[str, float]:

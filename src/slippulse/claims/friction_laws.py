@@ -12,6 +12,7 @@ from .pulses import TWO_WAY
 ABOUT_ONE = 1.0
 # The strongest rate dependences that still have pulses, over the critical one.
 STRONGEST = (-0.9, 0.9)
+SIZES = ("width", "slip")
 
 
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
@@ -24,10 +25,8 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     cases = {"with": (len(two_way), len(chain)), "without": (len(one_way), len(spike))}
     wide = len(two_way) > 0 and fewest > ABOUT_ONE
     shown = " and ".join(f"{count} of {runs} runs {name}" for name, (count, runs) in cases.items())
-    why = f"There are pulses in {shown} leaf springs, the others arrest; they are "
-    why += (
-        f"{number(fewest)} to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
-    )
+    why = f"There are pulses in {shown} leaf springs, the others arrest; they are {number(fewest)} "
+    why += f"to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
     decided = [bool(count) or None for count, _ in cases.values()]
     why = why if wide else ""
@@ -59,34 +58,29 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     falls = late.groupby(["rate_strengthening", "dx"])["largest_velocity"].agg(["first", "last"])
     decays = (falls["last"] < (1.0 - evidence.tolerance(id)) * falls["first"]).unstack()
     laws = decays[decays.index > 0.0]
-    further = {
-        "laws, by their strengthening, that leave a steady pulse": float((~laws).sum().max())
-    }
+    words = "laws, by their strengthening, that leave a steady pulse"
     why = "Tested is one family of laws, friction that strengthens linearly with slip rate."
     answers = agreeing(laws.iloc[:, 0], laws.iloc[:, -1])
+    further = {words: float((~laws).sum().max())}
     return Qualitative.counted(answers, condition=True, further=further, why=why)
 
 
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Width and slip at the strongest dependences with pulses differ from those without one."""
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
-    runs = runs.set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
+    runs = runs.set_index(["level", "over_critical"])[[f"pulse_{size}" for size in SIZES]]
     independent = runs.xs(0.0, level=1)
     changes = [(runs.xs(factor, level=1) / independent - 1.0).abs() for factor in STRONGEST]
     change = pd.concat(changes)
     held = (change > evidence.tolerance(id)).to_numpy().ravel()
-    further = {
-        f"smallest change of the {name.removeprefix('pulse_')}": float(least)
-        for name, least in change.min().items()
-    }
+    least = change.min()
+    further = {f"smallest change of the {size}": float(least[f"pulse_{size}"]) for size in SIZES}
     laws = evidence.tables["friction_laws"].query("law == 'slip_weakening' and level == 0.5")
     speeds = laws["exact_speed"].dropna()
     undamped = 1.0 / np.sqrt(1.0 - 0.5**2)
     why = "The runs are of friction linear in slip rate, which leaves the front speed as it is."
     if len(speeds):
-        why += (
-            rf" Slip weakening changes it too: at $\tau_0$ = 0.5 it is {number(speeds.min())} to "
-        )
-        why += f"{number(speeds.max())}, where the formula has {number(undamped, 4)} "
+        why += rf" Slip weakening changes it too: at $\tau_0$ = 0.5 it is {number(speeds.min())} "
+        why += f"to {number(speeds.max())}, where the formula has {number(undamped, 4)} "
         why += "(figure study_friction_laws)."
     return Qualitative.counted(held, condition=True, further=further, why=why)

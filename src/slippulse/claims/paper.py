@@ -3,56 +3,39 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from types import SimpleNamespace
 from typing import Any
 
 from . import friction_laws, layer, pulses, space_time_figure, transition
 from .evidence import Evidence
 from .kinds import ByNumber, Claim
-from .reading import places_of, why_text
+from .ledger import with_texts
+from .reading import places_of
 
-# The simulations with measured numbers, grid studies and coarser tables behind the claims.
-SIMULATIONS = [
-    "any_prestress",
-    "arrest_profiles",
-    "burridge_knopoff_chain",
-    "burridge_knopoff_speed",
-    "burridge_knopoff_stress",
-    "damping_displacement",
-    "damping_stress",
-    "front_speed_undamped",
-    "nucleation_widths",
-    "pulses_across_a_step",
-    "pulses_across_wide_steps",
-    "pulses_perturbed_elsewhere",
-    "regimes_beyond",
-    "regimes_displacement",
-    "regimes_displacement_asymmetric",
-    "regimes_stress",
-    "scaling_displacement",
-    "scaling_stress",
-    "space_time_displacement",
-    "space_time_stress",
-    "speed_against_gamma",
-    "steady_displacement",
-    "steady_elsewhere",
-    "stress_pulses",
-    "undamped_pulses",
-]
-# The predictions that these, and front speeds at one level, are compared with, by topic.
-PREDICTED = {
+# The simulations behind the claims, with topics of the predictions that each is compared with.
+SIMULATIONS = {
     "any_prestress": ["pulse"],
+    "arrest_profiles": [],
+    "burridge_knopoff_chain": [],
     "burridge_knopoff_speed": ["front"],
-    "front_speed": ["front"],
+    "burridge_knopoff_stress": [],
+    "damping_displacement": [],
+    "damping_stress": [],
     "front_speed_undamped": ["front"],
+    "nucleation_widths": [],
+    "pulses_across_a_step": [],
+    "pulses_across_wide_steps": [],
+    "pulses_perturbed_elsewhere": [],
+    "regimes_beyond": [],
     "regimes_displacement": ["final_regime"],
     "regimes_displacement_asymmetric": ["final_regime"],
     "regimes_stress": ["final_regime", "transition"],
     "scaling_displacement": ["transition"],
     "scaling_stress": ["transition"],
     "space_time_displacement": ["pulse"],
+    "space_time_stress": [],
     "speed_against_gamma": ["front"],
     "steady_displacement": ["front", "pulse"],
+    "steady_elsewhere": [],
     "stress_pulses": ["transition"],
     "undamped_pulses": ["pulse"],
 }
@@ -95,17 +78,13 @@ EMPTY |= {"why": "", "caveat": "", "choices": [], "choice": "", "combinations": 
 EMPTY |= {"beyond": False, "flips_at": [], "at_earlier": "", "asked": ""} | dict.fromkeys(
     ("predicted", "measured", "uncertainty", "deviation")
 )
-# Fields of an approximate claim: the spread of its runs, and the exact theory.
-ESTIMATE = ("ninety", "largest", "exact_median", "exact_largest")
 
 
 def all_claims(evidence: Evidence, sentences: Sequence[Mapping]) -> list[dict]:
     """The ledger as in claims.json; a ValueError names claims in the texts or in the code alone."""
-    odd = sorted({*evidence.entries} ^ {*CLAIMS})
+    odd = ", ".join(sorted({*evidence.entries} ^ {*CLAIMS}))
     if odd:
-        raise ValueError(
-            f"claims: {', '.join(odd)}; allowed: the same in the texts and in the code"
-        )
+        raise ValueError(f"claims: {odd}; allowed: the same in the texts and in the code")
     evidence.assign("regimes_beyond", pulses.meet)
     where = places_of(evidence.entries, sentences)
     return [
@@ -118,14 +97,15 @@ def written(id: str, claim: Claim, entry: Mapping, where: str) -> dict:
     """One claim with its text, as JSON has it."""
     out = EMPTY | {name: value for name, value in entry.items() if name != "sentences"}
     if entry["kind"] == "approximate":
-        out |= dict.fromkeys(ESTIMATE)
+        # The spread of its runs, and the exact theory.
+        out |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
     out |= {"id": id} | claim.written()
     counted = not out["follows_from"] and not out["beyond"]
     out |= {"figure_or_section": where or "beyond the paper", "counted": counted}
     if "earlier_tolerance" in entry and isinstance(claim, ByNumber) and not out["at_earlier"]:
         out["at_earlier"] = claim.verdict_at(float(entry["earlier_tolerance"]))
     out = finite(out)
-    return out | {"why": why_text(SimpleNamespace(**out))}
+    return out | {"why": with_texts(out).why_text()}
 
 
 def finite(value):

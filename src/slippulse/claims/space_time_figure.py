@@ -5,8 +5,8 @@ from typing import Any
 from scipy.special import chdtrc
 
 from ..data.numerals import number, percent, rounded, setting
+from ..measurement.inference import inference
 from .evidence import Evidence
-from .inference import inference
 from .kinds import NAN, Reading
 
 # The fitted parameters of the left panel.
@@ -43,10 +43,8 @@ def arrows(evidence: Evidence, id: str) -> Reading:
     drawn = {name: entry["value"] for name, entry in evidence.readings.items()}
     apart = 2.0 * (drawn["intercept"] + drawn["front_speed"] * drawn["arrow_time"])
     why += f"it is {setting(drawn['arrow_length'])} long, and the drawn fronts are then "
-    why += (
-        f"{number(apart)} apart. The caption calls the arrows definitions; no number of the paper "
-    )
-    why += "rests on them, and the verdict is on the drawing alone."
+    why += f"{number(apart)} apart. The caption calls the arrows definitions; no number of the "
+    why += "paper rests on them, and the verdict is on the drawing alone."
     rise, degrees = (fits["with"][name] - fits["without"][name] for name in ("chi2", "dof"))
     return reading(evidence, id, rise, degrees, further=further, why=why)
 

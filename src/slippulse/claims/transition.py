@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -54,9 +54,6 @@ class Runs(NamedTuple):
     tables: list[pd.DataFrame]
 
 
-AtChoice = TypeVar("AtChoice", Runs, Combination)
-
-
 def shared(table: pd.DataFrame) -> Chosen:
     """The release rule and the damping ratio that runs have in common."""
     return {name: table[name].iloc[0] for name in ("release", "damping_ratio")}
@@ -86,11 +83,8 @@ def solved(evidence: Evidence, boundary: str) -> list[Runs]:
         choice: Chosen = dict(zip(names, values, strict=True))
         combinations.append(Runs(choice | {"solution": "exact"}, [rows]))
     ours = shared(evidence.tables[f"scaling_{boundary}"]) | {"fraction": SHOWN}
-
-    def differs(runs: Runs) -> bool:
-        return any(runs.choice.get(name, value) != value for name, value in ours.items())
-
-    return sorted(combinations, key=differs)
+    ours = {name: value for name, value in ours.items() if name in names}
+    return sorted(combinations, key=lambda runs: not ours.items() <= runs.choice.items())
 
 
 @cache
@@ -115,10 +109,9 @@ def arrests(evidence: Evidence) -> list[Runs]:
     nucleation is the only length, so that one run for each level is independent of the others.
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
-    out = []
-    for choice, tables in solved(evidence, "stress"):
-        out.append(Runs(choice, [widest(tables[0], CRITERIA[STICK])]))
-    for choice, tables in simulated(evidence, "stress", INSIDE):
+    exact, lattices = solved(evidence, "stress"), simulated(evidence, "stress", INSIDE)
+    out = [Runs(choice, [widest(rows, CRITERIA[STICK])]) for choice, (rows,) in exact]
+    for choice, tables in lattices:
         out.append(Runs(choice | last, [widest(table, LAST_RELEASE) for table in tables]))
     return out
 
@@ -138,11 +131,21 @@ def widest(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
     )
 
 
-def ours(combinations: Sequence[AtChoice]) -> list[AtChoice]:
-    """The combinations with the release rule, damping and nucleation of the first."""
+def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
+    """The median ratio by fraction of the way, the other choices being those of the first."""
     first = combinations[0].choice
     choice = {name: first[name] for name in ("release", "damping_ratio", "nucleation")}
-    return [one for one in combinations if choice.items() <= one.choice.items()]
+    return {
+        one.choice["fraction"]: one.claim.fields().get("measured", NAN)
+        for one in combinations
+        if choice.items() <= one.choice.items()
+    }
+
+
+def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
+    """The median ratio at each fraction of the way, as further numbers of a claim."""
+    numbers = medians(combinations).items()
+    return dict(sorted((f"median ratio: at {named(part)}", median) for part, median in numbers))
 
 
 def judged(runs: Iterable[Runs], judge: Callable[[list[pd.DataFrame]], Claim]) -> list[Combination]:
@@ -180,15 +183,11 @@ def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices
     why = undamped_and_damped(combinations)
     if quantity == "time":
         literal = slips["slip_time_nucleation"].count()
-        why = (
-            "Section III B has both readings, so that neither is an error: it defines the time by "
-        )
-        why += r"the slip $2\tau/\gamma$ at the nucleation point, and takes it from a reduced "
+        why = "Section III B has both readings, so that neither is an error: it defines the time "
+        why += r"by the slip $2\tau/\gamma$ at the nucleation point, and takes it from a reduced "
         why += "equation in which that is the first stick. In the full equation they differ: "
-        why += (
-            rf"{literal} of {len(ratio)} runs reach the slip with the $\tau=1$ that stands at that "
-        )
-        why += rf"point, and {ratio.count()} with $\tau_0$, by which it is judged. "
+        why += rf"{literal} of {len(ratio)} runs reach the slip with the $\tau=1$ that stands at "
+        why += rf"that point, and {ratio.count()} with $\tau_0$, by which it is judged. "
         why += arrow_and_stick(evidence)
     return over_choices(combinations, from_exact=exact, further=further, why=why)
 
@@ -208,15 +207,6 @@ def undamped_and_damped(combinations: Iterable[Combination]) -> str:
     why += "which the paper derives it. With damping, which makes fronts faster, it is off by "
     why += f"{ranges['elastic']} under the printed release rule and by {ranges['total']} under "
     return why + "that of the authors' code."
-
-
-def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
-    """The median ratio at each fraction of the way, the other choices being ours."""
-    numbers = {}
-    for combination in ours(combinations):
-        words = f"median ratio: at {named(combination.choice['fraction'])}"
-        numbers[words] = combination.claim.fields().get("measured", NAN)
-    return dict(sorted(numbers.items()))
 
 
 def held_stress(evidence: Evidence, id: str, quantity: str) -> OverChoices:
@@ -325,10 +315,9 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
         of_levels = [divergence(rows) for _, rows in sequences]
         answers.append([diverges for diverges, _ in of_levels])
         exponents.append([pair for _, pair in of_levels])
-    further = {
-        rf"mean exponent of $\gamma$ in ${symbol}_\mathrm{{trans}}$": float(mean)
-        for symbol, mean in zip("TL", np.mean(exponents[0], axis=0), strict=True)
-    }
+    words = r"mean exponent of $\gamma$ in ${}_\mathrm{{trans}}$".format
+    means = np.mean(exponents[0], axis=0)
+    further = {words(symbol): float(mean) for symbol, mean in zip("TL", means, strict=True)}
     return Qualitative.counted(agreeing(*answers), further=further)
 
 

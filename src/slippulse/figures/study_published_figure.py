@@ -5,7 +5,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..claims.inference import curve, likely
+from ..measurement.inference import curve, likely
 from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_mosaic
 
 NEEDS = {

@@ -5,10 +5,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from types import SimpleNamespace
 
-from ..claims import reading
-from ..claims.reading import Ledger
+from ..claims.ledger import Entry, Ledger
 from ..claims.rules import VERDICTS, WORST_FIRST
 from ..data.numerals import rounded
 from .html import markup_of, page
@@ -41,7 +39,7 @@ def claims_page(
     )
 
 
-def counted(claims: Iterable[SimpleNamespace]) -> int:
+def counted(claims: Iterable[Entry]) -> int:
     """Number of claims that count, which do not follow from others."""
     return sum(claim.counted for claim in claims)
 
@@ -49,9 +47,9 @@ def counted(claims: Iterable[SimpleNamespace]) -> int:
 def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
     """Names for templates that show claims; `html` has the HTML of their texts and of `texts`."""
     texts = [*texts]
-    groups: dict[str, list[SimpleNamespace]] = {}
+    groups: dict[str, list[Entry]] = {}
     for claim in sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict)):
-        texts += [claim.statement, claim.why, reading.evidence_text(claim)]
+        texts += [claim.statement, claim.why, claim.evidence_text()]
         groups.setdefault(claim.verdict, []).append(claim)
     return {
         "html": markup_of(texts),
@@ -59,7 +57,6 @@ def shown(ledger: Ledger, texts: Iterable[str]) -> dict[str, object]:
         "following": len(ledger.claims) - ledger.count(),
         "groups": groups,
         "signs": SIGNS,
-        "reading": reading,
         "bar": bar,
         "figure_title": figure_title,
     }
@@ -86,7 +83,7 @@ def command(files: Mapping[str, Mapping[str, str]]) -> str:
     return f'make replicate TARGET="{targets}"' if targets else "make test"
 
 
-def bar(claim: SimpleNamespace) -> tuple[str, float] | None:
+def bar(claim: Entry) -> tuple[str, float] | None:
     """Deviation over tolerance in words and as a bar in percent; None where a kind has no bar."""
     if claim.kind not in ("exact", "approximate") or claim.deviation is None or not claim.tolerance:
         return None

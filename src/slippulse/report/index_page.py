@@ -9,7 +9,8 @@ from typing import Any
 
 from PIL import Image
 
-from ..claims.reading import Ledger, read_text
+from ..claims.ledger import Ledger
+from ..claims.reading import read_text
 from ..data.prose import fill
 from .claims_page import shown
 from .html import page

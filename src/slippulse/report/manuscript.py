@@ -11,7 +11,8 @@ import jupytext
 import pandas as pd
 from PIL import Image
 
-from ..claims.reading import Ledger, coverage, read_text
+from ..claims.ledger import Ledger
+from ..claims.reading import coverage, read_text
 from ..data.alterations import changes
 from ..data.numerals import FILTERS, percent
 from ..data.prose import fill

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from ..claims import reading
-from ..claims.reading import Ledger, claims_of, coverage, places_of
+from ..claims.ledger import Ledger
+from ..claims.reading import claims_of, coverage, places_of
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import number, percent, setting, short, with_uncertainty
 from .texts import ERRATUM, Line
@@ -100,8 +100,8 @@ def whole_ledger(ledger: Ledger) -> str:
     rows = []
     for claim in ledger:
         name = f"{claim.statement} ({claim.figure_or_section}) `{claim.id}`"
-        numbers = reading.predicted_text(claim), reading.measured_text(claim)
-        evidence = reading.compared_text(claim), claim.verdict, reading.evidence_text(claim)
+        numbers = claim.predicted_text(), claim.measured_text()
+        evidence = claim.compared_text(), claim.verdict, claim.evidence_text()
         rows.append((name, *numbers, *evidence))
     head = "claim (section) `id` l32 | predicted r8 | measured r12 | deviation, tolerance l14"
     return table(f"{head} | verdict l9 | rests on l29", rows)

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
-from types import SimpleNamespace
 from typing import NamedTuple
 
-from ..claims.reading import Ledger, read_text
+from ..claims.ledger import Entry, Ledger
+from ..claims.reading import read_text
 from ..claims.rules import WORST_FIRST
 from ..data.numerals import setting
 
@@ -132,8 +132,8 @@ class Line(NamedTuple):
     named: str
     said: str
     text: str
-    claim: SimpleNamespace
-    verdicts: Sequence[tuple[SimpleNamespace, str]]
+    claim: Entry
+    verdicts: Sequence[tuple[Entry, str]]
 
 
 def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
@@ -148,7 +148,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     return lines
 
 
-def told_verdicts(names: Mapping[str, str], ledger: Ledger) -> list[tuple[SimpleNamespace, str]]:
+def told_verdicts(names: Mapping[str, str], ledger: Ledger) -> list[tuple[Entry, str]]:
     """The first claim of each verdict, and in brackets what has it if there are several."""
     groups: dict[str, list[str]] = {}
     for id in names:
