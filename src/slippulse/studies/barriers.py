@@ -59,15 +59,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def depths(tau0: float, barrier: float, gamma: float, ratio: float) -> dict[str, Any]:
     """A row of the map, or the beginning of another."""
-    return {
-        "part": "map",
-        "tau0": tau0,
-        "barrier": barrier,
-        "gamma": gamma,
-        "damping_ratio": ratio,
-        "exact": barrier_depth(tau0, barrier, gamma, ratio),
-        "paper": barrier_depth_estimate(tau0, barrier, gamma),
-    }
+    row = {"part": "map", "tau0": tau0, "barrier": barrier, "gamma": gamma, "damping_ratio": ratio}
+    exact = barrier_depth(tau0, barrier, gamma, ratio)
+    return row | {"exact": exact, "paper": barrier_depth_estimate(tau0, barrier, gamma)}
 
 
 def depth_on_lattice(

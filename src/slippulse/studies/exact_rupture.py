@@ -36,11 +36,18 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
         rupture = exact_rupture(scene_of(runs[0]))
         shown = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN)))
         rows = [pd.DataFrame([shown.attrs])[PARAMETERS].assign(role="scene")]
+        left, right = rupture.front_ends[0][0], rupture.front_ends[-1][1]
         if name != NEEDS["data"][-1]:
-            rows += _edges(shown, rupture)
+            # Edges and slip: curves, and marks of the lattice.
+            x = np.linspace(left.x, right.x, CURVE_POINTS)[1:-1]
+            rows.append(pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)))
+            released = np.flatnonzero(np.isfinite(shown["release_time"].values))
+            kept = shown.isel(x=released[:: max(1, released.size // MARKS)])
+            marks = {column: kept[variable].values for column, variable in COLUMNS.items()}
+            marks = {"position": kept["x"].values} | marks
+            rows.append(pd.DataFrame(marks).assign(role="lattice"))
         if name == NEEDS["data"][0]:
             rows += _map(shown, rupture)
-        left, right = rupture.front_ends[0][0], rupture.front_ends[-1][1]
         stops = left.reason == "stops" or rupture.gamma == 0.0
         fraction = STOPPING if stops else RUNNING
         x = np.linspace(left.x * fraction, right.x * RUNNING, POSITIONS)
@@ -54,19 +61,6 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
 def _exact(rupture: Rupture, x: np.ndarray) -> dict[str, np.ndarray]:
     edges = {"release": rupture.release_time(x), "stick": rupture.stick_time(x)}
     return edges | {"slip": rupture.slip(x, rupture.duration)}
-
-
-def _edges(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
-    """Exact edges and slip as curves, and those of a lattice as marks."""
-    left, right = rupture.front_ends[0][0].x, rupture.front_ends[-1][1].x
-    x = np.linspace(left, right, CURVE_POINTS)[1:-1]
-    released = np.flatnonzero(np.isfinite(run["release_time"].values))
-    kept = run.isel(x=released[:: max(1, released.size // MARKS)])
-    marks = {name: kept[variable].values for name, variable in COLUMNS.items()}
-    return [
-        pd.DataFrame({"role": "exact", "position": x} | _exact(rupture, x)),
-        pd.DataFrame({"position": kept["x"].values} | marks).assign(role="lattice"),
-    ]
 
 
 def _map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:

@@ -1,6 +1,5 @@
 """Other laws of friction: which make pulses that stick or creep, and what selects front speeds."""
 
-from collections.abc import Iterator
 from functools import cache
 from itertools import product
 from typing import Any
@@ -17,7 +16,8 @@ from ..model.friction_laws.rate_weakening import RateWeakening
 from ..model.friction_laws.slip_weakening import SlipWeakening
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..simulation.simulate import simulate
+from ..simulation.sweep import recorded
+from ..solver.fixed_step import solve_by_scheme
 from ..theory.rate_dependent import rate_pulse
 from ..theory.weakening import SteadyRupture, weakening_pulse
 from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
@@ -59,33 +59,28 @@ CASES: tuple[tuple[float, Friction, float], ...] = (
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Roles plane, selection (with d_c and exact_speed), case and theory."""
     still = settings["measure"]["still"]
-    plane = [_run(level, law, STEP, DX, still) for level, law in _plane()]
-    scenes = product(SELECTED, SPACINGS, RESOLUTIONS)
-    selection = [_selected(*scene, still) for scene in scenes]
-    cases = [_run(*case, dx, still) for case, dx in product(CASES, SPACINGS)]
-    parts = {
-        "plane": pd.DataFrame(plane),
-        "selection": pd.DataFrame(selection),
-        "case": pd.DataFrame(cases),
-        "theory": pd.DataFrame([_theory(level, law) for level, law, _ in CASES]),
-    }
-    rows = [rows.assign(role=role) for role, rows in parts.items()]
-    return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA)
-
-
-def _plane() -> Iterator[tuple[float, Friction]]:
-    """Level and law of each run of the planes."""
+    plane, selection = [], []
     for level in LEVELS:
+        laws: list[Friction] = []
         for limit in LIMITS:
-            yield level, BoundedRate(limit * level, V_0)
-            yield level, RateWeakening(SLOPE, limit * level)
-        for distance, law in product(DISTANCES, (SlipWeakening, ExponentialWeakening)):
-            yield level, law(distance * level**2 / GAMMA, NUCLEATION)
-
-
-def _damping(law: Friction, dx: float) -> float:
-    """Damping: under slip weakening beta is fixed, else beta/dx, for either has a limit dx -> 0."""
-    return BETA if isinstance(law, SlipWeakening) else RATIO * dx
+            laws += [BoundedRate(limit * level, V_0), RateWeakening(SLOPE, limit * level)]
+        for distance, weakening in product(DISTANCES, (SlipWeakening, ExponentialWeakening)):
+            laws.append(weakening(distance * level**2 / GAMMA, NUCLEATION))
+        plane += [_run(level, law, STEP, DX, still) for law in laws]
+    for level, dx, resolution in product(SELECTED, SPACINGS, RESOLUTIONS):
+        law = SlipWeakening(resolution * dx, NUCLEATION)
+        # Beyond a strength of 1 there is no rupture.
+        speed = _weakening(level, law.d_c).speed if _strength(level, law) < 1.0 else np.nan
+        known = {"d_c": law.d_c, "exact_speed": speed}
+        selection.append(_run(level, law, STEP, dx, still) | known)
+    parts = {
+        "plane": plane,
+        "selection": selection,
+        "case": [_run(*case, dx, still) for case, dx in product(CASES, SPACINGS)],
+        "theory": [_theory(level, law) for level, law, _ in CASES],
+    }
+    rows = [pd.DataFrame(rows).assign(role=role) for role, rows in parts.items()]
+    return pd.concat(rows, ignore_index=True).assign(gamma=GAMMA)
 
 
 def _strength(level: float, law: Friction) -> float:
@@ -102,17 +97,22 @@ def _run(level: float, law: Friction, step: float, dx: float, still: float) -> d
     Strength is F/tau_0 (< 0: weakening), or d_c gamma/tau_0^2.
     """
     step = min(step, 0.9 * law.traits.longest_step / dx)
-    beta = _damping(law, dx)
+    # Under slip weakening beta is fixed, else beta/dx, for either has a limit dx -> 0.
+    beta = BETA if isinstance(law, SlipWeakening) else RATIO * dx
     profile = Prestress(level, level)
     values: dict[str, Any] = {"scheme": "fixed_step", "max_step": step, "friction": law}
     scene = Scene("displacement", profile, DURATION, dx, GAMMA, beta, **values)
-    run = simulate(scene)
+    run = recorded(scene, None, solve_by_scheme(scene)).dataset()
     right = right_of_centre(run)
+    # The speed of the front is that of the last third of the run.
+    time, x = right["release_time"].values, right["x"].values
+    late = time > 2.0 / 3.0 * DURATION
+    speed = float(np.polyfit(time[late], x[late], 1)[0]) if late.sum() > 2 else np.nan
     regime = _regime(right, level / GAMMA, still)
     width, slip = pulse_at(right, DURATION) if regime == STICKING else (np.nan, np.nan)
     strength = _strength(level, law)
     row = {"law": law.law, "level": level, "strength": strength, "dx": dx, "beta": beta}
-    row |= {"regime": regime, "speed": _speed(right), "pulse_width": width, "pulse_slip": slip}
+    row |= {"regime": regime, "speed": speed, "pulse_width": width, "pulse_slip": slip}
     return row | {name: run.attrs[name] for name in ("energy_residual", "run_flags")}
 
 
@@ -127,13 +127,6 @@ def _regime(right: xr.Dataset, rest: float, still: float) -> str:
     return CREEPING if is_pulse(float(velocity[0]), velocity.max(), still) else CRACK
 
 
-def _speed(right: xr.Dataset) -> float:
-    """Speed of the front over the last third of a run."""
-    time, x = right["release_time"].values, right["x"].values
-    late = time > 2.0 / 3.0 * DURATION
-    return float(np.polyfit(time[late], x[late], 1)[0]) if late.sum() > 2 else np.nan
-
-
 def _theory(level: float, law: Friction) -> dict:
     """Exact numbers of a case."""
     if isinstance(law, SlipWeakening):
@@ -143,14 +136,6 @@ def _theory(level: float, law: Friction) -> dict:
     row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
     sizes = {"pulse_width": pulse.width, "pulse_slip": pulse.slip} if pulse.sticks else {}
     return row | sizes
-
-
-def _selected(level: float, dx: float, resolution: float, still: float) -> dict:
-    """One run with d_c in units of the spacing, and the exact speed where there is a rupture."""
-    d_c = resolution * dx
-    law = SlipWeakening(d_c, NUCLEATION)
-    exact = _weakening(level, d_c).speed if _strength(level, law) < 1.0 else np.nan
-    return _run(level, law, STEP, dx, still) | {"d_c": d_c, "exact_speed": exact}
 
 
 @cache

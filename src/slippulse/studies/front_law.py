@@ -38,29 +38,17 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     swept, springs, fixed_ratio, *fixed_beta = parameters
     held = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
     held += [scenes.assign(held="beta", fixed=scenes["beta"]) for scenes in fixed_beta]
-    lines = [over_prestress(swept), over_springs(springs), over_spacing(pd.concat(held))]
-    return pd.concat(lines, ignore_index=True)
-
-
-def over_prestress(scenes: pd.DataFrame) -> pd.DataFrame:
-    """Lines over the level, one for each rule and damping ratio."""
     parts = []
-    for release, ratio in scenes[["release", "damping_ratio"]].drop_duplicates().values:
+    for release, ratio in swept[["release", "damping_ratio"]].drop_duplicates().values:
         line = {"left": prestress_for_speed(SPEEDS, ratio, release), "speed": SPEEDS}
         line |= {"panel": "prestress", "release": release, "damping_ratio": ratio}
         parts.append(pd.DataFrame(line))
-    return pd.concat(parts)
-
-
-def over_springs(scenes: pd.DataFrame) -> pd.DataFrame:
-    """Lines over gamma dx^2, one for each level and damping ratio."""
-    parts = []
-    for left, ratio in scenes[["left", "damping_ratio"]].drop_duplicates().values:
+    for left, ratio in springs[["left", "damping_ratio"]].drop_duplicates().values:
         line = {"panel": "springs", "release": "total", "left": left}
         line |= {"damping_ratio": ratio, "springs": SPRINGS}
         line["speed"] = [_speed(left, spring, 1.0, ratio, "total") for spring in SPRINGS]
         parts.append(pd.DataFrame(line))
-    return pd.concat(parts)
+    return pd.concat([*parts, over_spacing(pd.concat(held))], ignore_index=True)
 
 
 def over_spacing(scenes: pd.DataFrame) -> pd.DataFrame:

@@ -89,16 +89,10 @@ def on_grids(
     rows = []
     for cells in grids:
         run = simulate_layer(replace(scene, cells=cells))
-        known = {
-            "part": part,
-            "gamma": scene.gamma,
-            "tau0": scene.prestress.right,
-            "weakening": scene.weakening,
-            "coupling": scene.coupling,
-            "cells": cells,
-            "first_stick": first_stick(run, scene.nucleation),
-            "energy_residual": run.energy_residual,
-        }
+        known: dict[str, Any] = {"part": part, "gamma": scene.gamma, "tau0": scene.prestress.right}
+        known |= {"weakening": scene.weakening, "coupling": scene.coupling, "cells": cells}
+        known["first_stick"] = first_stick(run, scene.nucleation)
+        known["energy_residual"] = run.energy_residual
         half = scene.nucleation * HALF / NUCLEATION
         for side in sides:
             end = float((side * run.x[np.isfinite(run.release_time)]).max())

@@ -78,20 +78,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     readings = readings_of(settings["published"], "space_time_stress").drop(columns="arrow")
     readings = readings[readings["quantity"] == "largest_velocity"]
     for release, ratio in product(RELEASES, RIGHT_RATIOS):
-        parts.append(right_panel(readings, ratio, release))
+        # The exact value of the largest velocity does not depend on the damping.
+        crack, dx = ArrestingCrack(RIGHT_PANEL, ratio, release), BETA / ratio
+        scene = lattice_of("stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release)
+        velocity = float(sampled(scene, crack.balance_position)["sample_velocity"].max())
+        rows = readings.assign(part="stress", release=release, damping_ratio=ratio, dx=dx)
+        rows = rows.assign(left=RIGHT_PANEL.left, width=RIGHT_PANEL.width)
+        rows = rows.assign(exact=crack.peak_velocity, correction=velocity - crack.peak_velocity)
+        rows["pull"] = (velocity - rows["drawn"]) / rows["reading_error"]
+        parts.append(rows.assign(weight=1.0))
     return pd.concat(parts, ignore_index=True)
-
-
-def right_panel(readings: pd.DataFrame, ratio: float, release: str) -> pd.DataFrame:
-    """The largest velocity of the right panel; its exact value does not depend on the damping."""
-    crack, dx = ArrestingCrack(RIGHT_PANEL, ratio, release), BETA / ratio
-    scene = lattice_of("stress", RIGHT_PANEL, RIGHT_DURATION, dx, 0.0, BETA, release)
-    velocity = float(sampled(scene, crack.balance_position)["sample_velocity"].max())
-    rows = readings.assign(part="stress", release=release, damping_ratio=ratio, dx=dx)
-    rows = rows.assign(left=RIGHT_PANEL.left, width=RIGHT_PANEL.width, exact=crack.peak_velocity)
-    rows["correction"] = velocity - rows["exact"]
-    rows["pull"] = (velocity - rows["drawn"]) / rows["reading_error"]
-    return rows.assign(weight=1.0)
 
 
 def readings_of(published: dict, simulation: str) -> pd.DataFrame:

@@ -6,7 +6,7 @@ import pandas as pd
 from ..measurement.fronts import straight_line
 from ..model.prestress import Prestress
 from ..model.scene import Scene
-from ..simulation.sweep import simulate_on_lattice
+from ..solver.solution import solve_on_lattice
 from ..theory.exact_transition import exact_transition_displacement
 from ..theory.pulse import steady_pulse
 
@@ -23,8 +23,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Quantity, published, localised (on the same lattice) and exact."""
     pulse = steady_pulse(PROFILE.left, GAMMA, BETA, damping_ratio=BETA / SPACING)
     first_stick = exact_transition_displacement(PROFILE, GAMMA, BETA / SPACING).time
-    run = simulate_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
-    localised = run[["release_time", "stick_time", "slip"]].to_dataframe().reset_index()
+    run = solve_on_lattice(Scene("displacement", PROFILE, DURATION, SPACING, GAMMA, BETA))
+    columns = ("x", "release_time", "stick_time", "slip")
+    localised = pd.DataFrame({name: getattr(run, name) for name in columns})
     window = settings["measure"]["front_window"]
     return pd.DataFrame(
         {
