@@ -65,11 +65,14 @@ def _slope(logs: np.ndarray) -> float:
 
 
 def exponent(tables: Lattices, measured: str, predicted: str, columns: Iterable[str]) -> Uncertain:
-    """The exponent of one column over another, with its uncertainty.
+    """The exponent of one expression over another, with its uncertainty.
 
     That is at least the largest change when all runs with one value of ``columns`` are left out.
     """
-    logs = [np.log(table[[predicted, measured]].to_numpy(float).T) for table in tables]
+    logs = []
+    for table in tables:
+        pair = evaluated(table, predicted), evaluated(table, measured)
+        logs.append(np.log(np.array(pair, dtype=float)))
     value, uncertainty = studied(tables, [_slope(pair) for pair in logs])
     for name in columns:
         column = tables[0][name].to_numpy()

@@ -189,9 +189,6 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     return Qualitative.counted(thin, premise=True, further=further, why=why)
 
 
-# With the displacement held
-
-
 def within(
     deviation: np.ndarray, uncertainty: np.ndarray, allowed: float, sure: bool = False
 ) -> bool | None:
@@ -240,9 +237,6 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
         words: float(np.nanmax(deviations[0][slip], initial=0.0)) for words, slip in slips.items()
     }
     return Qualitative.counted(agreeing(*settled), further=further)
-
-
-# With the stress held
 
 
 def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:

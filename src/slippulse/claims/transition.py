@@ -23,18 +23,19 @@ INSIDE = "left > -1"
 GAP = 1.0
 # Fraction of the way whose numbers stand with a claim.
 SHOWN = 0.95
-# Quantities of the transition, with their symbols. The estimates are TIME_estimate and so on.
+# Quantities of the transition, with their symbols.
 SYMBOLS = {"time": "T", "length": "L"}
+# The paper's estimates, as expressions; under held stress of the part of the way that is covered.
+ESTIMATES = {
+    "displacement": {"time": "paper_transition_time", "length": "paper_transition_length"},
+    "stress": {"time": "covered", "length": "2 * covered"},
+}
 # The two readings of T_trans under a displacement boundary, and the columns that have them. At the
 # nucleation point the printed slip 2 tau/gamma is taken with the level tau_0.
 STICK, SLIP = "first stick", r"slip $2\tau_0/\gamma$"
 CRITERIA = {
     STICK: {"transition_time": "time", "transition_length": "length"},
     SLIP: {"slip_time_background": "time", "slip_length_background": "length"},
-}
-ESTIMATES = {
-    "paper_transition_time": "time_estimate",
-    "paper_transition_length": "length_estimate",
 }
 # Columns under held stress: a solution is at a fraction of the way, a lattice at the last release.
 LAST_RELEASE = {"last_release_distance": "covered", "last_release_time": "time"}
@@ -94,9 +95,8 @@ def transitions(evidence: Evidence) -> list[Runs]:
     runs = {STICK: lattices + solved(evidence, "displacement"), SLIP: lattices}
     out = []
     for criterion, of_criterion in runs.items():
-        names = CRITERIA[criterion] | ESTIMATES
         for choice, tables in of_criterion:
-            renamed = [table.rename(columns=names) for table in tables]
+            renamed = [table.rename(columns=CRITERIA[criterion]) for table in tables]
             out.append(Runs(choice | {"criterion": criterion}, renamed))
     return out
 
@@ -105,8 +105,8 @@ def transitions(evidence: Evidence) -> list[Runs]:
 def arrests(evidence: Evidence) -> list[Runs]:
     """Runs of the left front under held stress, with the same columns for theory and lattices.
 
-    Times, lengths and estimates are for the part of |x_minus| that is covered. The width of the
-    nucleation is the only length, so that one run for each level is independent of the others.
+    Times and lengths are for the part of |x_minus| that is covered. The width of the nucleation is
+    the only length, so that one run for each level is independent of the others.
     """
     last: Chosen = {"nucleation": "Gaussian", "fraction": LAST}
     exact, lattices = solved(evidence, "stress"), simulated(evidence, "stress", INSIDE)
@@ -117,18 +117,12 @@ def arrests(evidence: Evidence) -> list[Runs]:
 
 
 def widest(table: pd.DataFrame, names: Mapping[str, str]) -> pd.DataFrame:
-    """The run of each level with the widest nucleation, with estimates, and speeds of fronts."""
+    """The run of each level with the widest nucleation."""
     table = table.sort_values("width").drop_duplicates("left", keep="last").rename(columns=names)
-    if "covered" not in table:
-        # The paper's estimate of the time is the whole way, at speed 1.
-        table = table.assign(covered=table["fraction"] * table["paper_transition_time"])
-    return table.assign(
-        time_estimate=table["covered"],
-        length_estimate=2.0 * table["covered"],
-        left_speed=table["covered"] / table["time"],
-        right_speed=(table["length"] - table["covered"]) / table["time"],
-        speed_estimate=1.0,
-    )
+    if "covered" in table:
+        return table
+    # The paper's estimate of the time is the whole way, at speed 1.
+    return table.assign(covered=table["fraction"] * table["paper_transition_time"])
 
 
 def medians(combinations: Sequence[Combination]) -> dict[float | str, float]:
@@ -158,25 +152,24 @@ def estimated(
 ) -> tuple[list[Combination], Uncertain | None, dict[str, float]]:
     """An estimate at each combination, the exact theory beside, and the arrow drawn of it."""
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
-    combinations = judged(
-        runs, lambda tables: evidence.approximate(id, tables, quantity, f"{quantity}_estimate")
-    )
+    estimate = ESTIMATES[boundary][quantity]
+    combinations = judged(runs, lambda tables: evidence.approximate(id, tables, quantity, estimate))
     exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
     drawn = {}
     read = evidence.readings.get(ARROWS.get((boundary, quantity), ""))
     if read:
         scene = evidence.tables[f"space_time_{boundary}"].iloc[0]
-        estimate = float(scene[f"paper_transition_{quantity}"])
-        drawn["arrow of figure 4 over the estimate"] = read["value"] / estimate
-        drawn["its reading error"] = read["reading_error"] / estimate
+        predicted = float(scene[f"paper_transition_{quantity}"])
+        drawn["arrow of figure 4 over the estimate"] = read["value"] / predicted
+        drawn["its reading error"] = read["reading_error"] / predicted
     return combinations, exact, drawn
 
 
 def held_displacement(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """An estimate under a displacement boundary, by the first stick and by the slip."""
     combinations, exact, drawn = estimated(evidence, id, "displacement", quantity)
-    slips = evidence.finest("scaling_displacement").rename(columns=CRITERIA[SLIP] | ESTIMATES)
-    ratio = ratios(slips, quantity, f"{quantity}_estimate")
+    slips = evidence.finest("scaling_displacement").rename(columns=CRITERIA[SLIP])
+    ratio = ratios(slips, quantity, ESTIMATES["displacement"][quantity])
     near = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {f"runs that reach the {SLIP}": float(ratio.count()), "in all": float(len(ratio))}
     further |= {"of these within the tolerance": float(near.sum())} | drawn
@@ -202,7 +195,7 @@ def undamped_and_damped(combinations: Iterable[Combination]) -> str:
             sizes[part].append(deviation)
     if not all(sizes.values()):
         return ""
-    ranges = {part: f"{percent(min(some))} to {percent(max(some))}" for part, some in sizes.items()}
+    ranges = {part: f"{percent(min(span))} to {percent(max(span))}" for part, span in sizes.items()}
     why = f"By the first stick it is off by {ranges['undamped']} without damping, the limit in "
     why += "which the paper derives it. With damping, which makes fronts faster, it is off by "
     why += f"{ranges['elastic']} under the printed release rule and by {ranges['total']} under "
@@ -229,7 +222,7 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
 
     def judge(tables: list[pd.DataFrame]) -> Scaling:
         exponents = {
-            symbol: exponent(tables, quantity, f"{quantity}_estimate", columns)
+            symbol: exponent(tables, quantity, ESTIMATES[boundary][quantity], columns)
             for quantity, symbol in SYMBOLS.items()
         }
         symbol = max(exponents, key=lambda name: abs(exponents[name][0] - 1.0))
@@ -246,8 +239,8 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     """Mean speeds of both fronts; the front with the larger deviation counts."""
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        left = evidence.approximate(id, tables, "left_speed", "speed_estimate")
-        right = evidence.approximate(id, tables, "right_speed", "speed_estimate")
+        left = evidence.approximate(id, tables, "covered / time", "1")
+        right = evidence.approximate(id, tables, "(length - covered) / time", "1")
         side, front = ("right", right) if right.median[0] > left.median[0] else ("left", left)
         return replace(front, note=f"mean speed of the {side} front, which is the farther off")
 

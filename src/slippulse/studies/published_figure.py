@@ -6,7 +6,7 @@ largest velocity needs that most: it is the largest value over all blocks, still
 figure ends, and falls with the spacing.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from itertools import product
 
@@ -49,6 +49,9 @@ WINDOW = 0.3
 # Positions of the exact trailing edge.
 EDGE = 241
 TRAILING = "trailing_edge_"
+# The quantities that a trial has beside it.
+KNOWN = ["front_speed_right", "front_intercept_right", "first_stick_time"]
+KNOWN += ["transition_length", "largest_velocity"]
 # Fractions of tau_0 and gamma over which a slope is taken; steps from a guess that is not near.
 DIFFERENCE, FIRST = 0.01, 2
 
@@ -122,13 +125,8 @@ class LeftPanel:
         x = np.linspace(0.0, end.x, EDGE)
         stick = rupture.stick_time(x)
         edge = stick[np.isfinite(stick)], x[np.isfinite(stick)]
-        known = {
-            "front_speed_right": speed,
-            "front_intercept_right": end.x - speed * end.time,
-            "first_stick_time": rupture.transition.time,
-            "transition_length": rupture.transition.length,
-            "largest_velocity": rupture.largest_velocity,
-        }
+        intercept, largest = end.x - speed * end.time, rupture.largest_velocity
+        known = (speed, intercept, rupture.transition.time, rupture.transition.length, largest)
         return self._chosen(known, lambda time: np.interp(time, *edge))
 
     def lattice(self, trial: np.ndarray, ratio: float, release: str, dx: float) -> np.ndarray:
@@ -137,19 +135,13 @@ class LeftPanel:
         profile = Prestress(tau0, tau0)
         run = sampled(lattice_of("displacement", profile, END, dx, gamma, ratio * dx, release), 0.0)
         speed, intercept, _ = fit_front(run, WINDOW)
-        first = run.attrs["first_stick_time"]
-        known = {
-            "front_speed_right": speed,
-            "front_intercept_right": intercept,
-            "first_stick_time": first,
-            "transition_length": between_fronts(run, first),
-            "largest_velocity": float(run["sample_velocity"].max()),
-        }
+        first, largest = run.attrs["first_stick_time"], float(run["sample_velocity"].max())
+        known = (speed, intercept, first, between_fronts(run, first), largest)
         return self._chosen(known, lambda time: position_at(run, time, edge="stick_time"))
 
-    def _chosen(self, known: dict[str, float], trailing_edge: Callable) -> np.ndarray:
-        """The readings, from known numbers and the trailing edge over time."""
-        numbers = []
+    def _chosen(self, values: Iterable[float], trailing_edge: Callable) -> np.ndarray:
+        """The readings, from the values of `KNOWN` and the trailing edge over time."""
+        known, numbers = dict(zip(KNOWN, values, strict=True)), []
         for name in self.readings["quantity"]:
             if name.startswith(TRAILING):
                 numbers.append(trailing_edge(float(name.removeprefix(TRAILING))))

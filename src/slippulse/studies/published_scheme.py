@@ -27,14 +27,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     columns = ("x", "release_time", "stick_time", "slip")
     localised = pd.DataFrame({name: getattr(run, name) for name in columns})
     window = settings["measure"]["front_window"]
-    return pd.DataFrame(
-        {
-            "quantity": ["front_speed", "first_stick_time", "pulse_slip"],
-            "published": numbers(published_run(), window),
-            "localised": numbers(localised, window),
-            "exact": [pulse.speed, first_stick, pulse.slip],
-        }
-    )
+    rows = pd.DataFrame({"quantity": ["front_speed", "first_stick_time", "pulse_slip"]})
+    published, ours = numbers(published_run(), window), numbers(localised, window)
+    exact = [pulse.speed, first_stick, pulse.slip]
+    return rows.assign(published=published, localised=ours, exact=exact)
 
 
 def published_run() -> pd.DataFrame:

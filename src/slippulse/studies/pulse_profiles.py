@@ -42,9 +42,8 @@ def profile(scene: Scene) -> pd.DataFrame:
 
 def far_profile(scene: Scene) -> pd.DataFrame:
     """The pulse far from its nucleation under a stress boundary, its integral and derivative."""
-    pulse = np.array(
-        ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release).far_pulse()
-    )
+    crack = ArrestingCrack(scene.prestress, scene.damping_ratio, scene.release)
+    pulse = np.array(crack.far_pulse())
     delay, velocity = pulse[:, np.argsort(pulse[0], kind="stable")]
     start = max(0, int(np.argmax(velocity > TAIL * velocity.max())) - 1)
     x, v = delay[start:] - delay[np.argmax(velocity)], velocity[start:]

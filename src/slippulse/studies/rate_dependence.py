@@ -98,13 +98,8 @@ def _lattice(level: float, fraction: float, still: float) -> dict[str, Any]:
         centre = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
         regime = CREEPING if is_pulse(centre, velocity.max(), still) else CRACK
         width = slip = np.nan
-    row: dict[str, Any] = {
-        "level": level,
-        "rate_strengthening": alpha,
-        "over_critical": fraction,
-        "dx": dx,
-    }
-    row |= {"regime": regime, "run_flags": run.attrs["run_flags"]}
+    row: dict[str, Any] = {"level": level, "rate_strengthening": alpha, "over_critical": fraction}
+    row |= {"dx": dx, "regime": regime, "run_flags": run.attrs["run_flags"]}
     return row | {"pulse_width": width, "pulse_slip": slip}
 
 

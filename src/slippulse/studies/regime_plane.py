@@ -1,8 +1,6 @@
 """Planes of both levels of the pre-stress, cut into the regimes of ruptures by exact theory."""
 
-from collections.abc import Iterator
 from itertools import product
-from typing import TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -27,10 +25,6 @@ PROFILES = [
 TIME, POINTS = 12.0, 241
 
 
-# Role, boundary, corners in order and a pair of levels inside of an area or a line of a plane.
-Outline: TypeAlias = tuple[str, str, np.ndarray, np.ndarray]
-
-
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Regimes by role: area (corners in order), line (ends of a line on which one level is 0 and
     the other negative), and profile (slip velocity over x at W = 1).
@@ -45,7 +39,22 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         regime = final_regime(left, right, GAMMAS[boundary], *rules, still)
         return {"role": role, "boundary": boundary, "series": len(parts), "regime": regime}
 
-    for role, boundary, corners, (left, right) in outlines(border):
+    # Role, boundary, corners, and a pair of levels inside: quadrants, the areas of cracks along a
+    # border, and lines on the axes.
+    outlines: list[tuple[str, str, np.ndarray, np.ndarray]] = []
+    line = np.array([(-1.0, 0.0), (0.0, 0.0)])
+    for boundary, gamma in GAMMAS.items():
+        for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
+            # The corners of the quadrant of these signs.
+            corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
+            outlines.append(("area", boundary, corners, 0.5 * levels))
+        # Each is on the right as on the left: sides (1, 0) mirrors it.
+        for sides in ([0, 1], [1, 0]):
+            if gamma == 0.0:
+                inside = np.array([-0.9, 1e-3])[sides]
+                outlines.append(("area", boundary, border[:, sides], inside))
+            outlines.append(("line", boundary, line[:, sides], 0.5 * line[0, sides]))
+    for role, boundary, corners, (left, right) in outlines:
         rows = pd.DataFrame(corners, columns=["left", "right"])
         parts.append(rows.assign(**labels(role, boundary, left, right)))
     for boundary, left, right in PROFILES:
@@ -55,18 +64,3 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         rows = rows.assign(time=TIME, left=left, right=right)
         parts.append(rows.assign(**labels("profile", boundary, left, right)))
     return pd.concat(parts, ignore_index=True)
-
-
-def outlines(border: np.ndarray) -> Iterator[Outline]:
-    """Quadrants of both planes, the areas of cracks along a border, and lines on the axes."""
-    line = np.array([(-1.0, 0.0), (0.0, 0.0)])
-    for boundary, gamma in GAMMAS.items():
-        for levels in np.array([*product((-1.0, 1.0), repeat=2)]):
-            # The corners of the quadrant of these signs.
-            corners = np.where([(0, 0), (1, 0), (1, 1), (0, 1)], levels, 0.0)
-            yield "area", boundary, corners, 0.5 * levels
-        # Each is on the right as on the left: sides (1, 0) mirrors it.
-        for sides in ([0, 1], [1, 0]):
-            if gamma == 0.0:
-                yield "area", boundary, border[:, sides], np.array([-0.9, 1e-3])[sides]
-            yield "line", boundary, line[:, sides], 0.5 * line[0, sides]
