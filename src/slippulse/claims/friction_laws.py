@@ -22,28 +22,26 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     two_way = chain[chain["regime"] == TWO_WAY]["sliding_at_once"]
     one_way = spike[spike["regime"].str.startswith("pulse, one-way")]["sliding_at_once"]
     fewest, most = two_way.min(), two_way.max()
-    cases = {"with": (len(two_way), len(chain)), "without": (len(one_way), len(spike))}
     wide = len(two_way) > 0 and fewest > ABOUT_ONE
-    shown = " and ".join(f"{count} of {runs} runs {name}" for name, (count, runs) in cases.items())
-    why = f"There are pulses in {shown} leaf springs, the others arrest; they are {number(fewest)} "
+    why = f"There are pulses in {len(two_way)} of {len(chain)} runs with and {len(one_way)} of "
+    why += f"{len(spike)} runs without leaf springs, the others arrest; they are {number(fewest)} "
     why += f"to {number(most)} blocks wide; the paper's figure, a sketch, shows one."
     further = {"fewest blocks at once": fewest, "most": most, "without leaf springs": one_way.max()}
-    decided = [bool(count) or None for count, _ in cases.values()]
-    why = why if wide else ""
-    return Qualitative.counted(decided, condition=wide, further=further, why=why)
+    decided = [len(runs) > 0 or None for runs in (two_way, one_way)]
+    return Qualitative.counted(decided, condition=wide, further=further, why=why if wide else "")
 
 
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     """A rupture is a pulse under each other law, unless blocks would slide back."""
     linear = evidence.tables["rate_dependence"].query("role == 'lattice' and over_critical != 0")
     bounded = evidence.tables["friction_laws"].query("role == 'plane'")
-    runs = pd.concat([linear, bounded[bounded["regime"] != "no rupture"]], ignore_index=True)
+    ruptures = bounded[bounded["regime"] != "no rupture"]
+    runs = pd.concat([linear, ruptures], ignore_index=True)
     outside = runs["run_flags"].astype(str).str.contains("reverse_sliding")
     kinds = runs["regime"][~outside]
     further = {f"ruptures: {kind}": float(count) for kind, count in kinds.value_counts().items()}
     further["left out, since blocks would slide back"] = float(outside.sum())
-    stopped = (bounded["regime"] == "no rupture").sum()
-    further["left out, since fracture energy stops them"] = float(stopped)
+    further["left out, since fracture energy stops them"] = float(len(bounded) - len(ruptures))
     why = "Tested are friction linear in slip rate, bounded laws of it, and slip weakening."
     return Qualitative.counted(kinds != "crack", condition=True, further=further, why=why)
 

@@ -13,10 +13,10 @@ QUANTITIES = ("speed", "pulse_width", "pulse_slip")
 CROSSINGS = np.pi / np.sqrt(8.0)
 
 
-def last_station(evidence: Evidence) -> pd.DataFrame:
-    """Rows of the study, of all grids, at the station nearest to the front."""
+def station(evidence: Evidence, back: int = 0) -> pd.DataFrame:
+    """Rows of the study, of all grids, at the station nearest to the front, or some before it."""
     runs = evidence.tables["layer"].query("part != 'field'")
-    return runs[runs["station"] == runs["station"].max()]
+    return runs[runs["station"] == np.sort(runs["station"].unique())[-1 - back]]
 
 
 def finest(runs: pd.DataFrame, part: str, step: int = 0) -> pd.DataFrame:
@@ -33,11 +33,9 @@ def change(runs: pd.DataFrame, part: str, quantity: str) -> pd.Series:
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     """Pulses that settle, a crack where the stress is held, and one side stopped by a barrier."""
-    runs, study = last_station(evidence), evidence.tables["layer"]
-    before = study[study["station"] == np.sort(study["station"].dropna().unique())[-2]]
-    pulses = finest(runs, "pulse")
-    moving = ["speed", "pulse_slip"]
-    drift = pulses[moving] / finest(before, "pulse")[moving] - 1.0
+    runs, moving = station(evidence), ["speed", "pulse_slip"]
+    pulses, before = finest(runs, "pulse"), finest(station(evidence, back=1), "pulse")
+    drift = pulses[moving] / before[moving] - 1.0
     settled = (drift.abs() < evidence.tolerance(id)).all(axis=1) & (pulses["pulse_width"] > 0.0)
     cracks = ~np.isfinite(finest(runs, "crack")["first_stick"])
     barriers = finest(runs, "barrier")
@@ -54,7 +52,7 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
     """The paper's width against that of pulses in the plane."""
-    runs = last_station(evidence)
+    runs = station(evidence)
     pulses = finest(runs, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
@@ -69,16 +67,12 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     why += f"weakening and the paper's damping has {number(damped.min(), 2)} to "
     why += f"{number(damped.max(), 2)}: friction and plane are not separated. By algebra a "
     why += rf"point of the steady pulse slides for {number(CROSSINGS)} $\tau_0$ times as long as a "
-    why += (
-        r"shear wave goes to the top and back, whatever $\gamma$: at a point the height is not "
-        r"quasi-static, though the rupture lasts longer than the $2H/c_s$ of section IV C 2."
-    )
-    further = {
-        f"median of plane over formula, {quantity.replace('_', ' ')}": float(
-            (pulses[quantity] / pulses[f"paper_{quantity}"]).median()
-        )
-        for quantity in ("speed", "pulse_slip", "first_stick")
-    }
+    why += r"shear wave goes to the top and back, whatever $\gamma$: at a point the height is not "
+    why += r"quasi-static, though the rupture lasts longer than the $2H/c_s$ of section IV C 2."
+    further = {}
+    for quantity in ("speed", "pulse_slip", "first_stick"):
+        words = f"median of plane over formula, {quantity.replace('_', ' ')}"
+        further[words] = float((pulses[quantity] / pulses[f"paper_{quantity}"]).median())
     for name, widths in (("in the plane", ratio), ("in one dimension, as weakened", damped)):
         further |= {f"narrowest {name}, over the formula": float(widths.min())}
         further |= {f"widest {name}": float(widths.max())}
@@ -96,14 +90,12 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Numbers of the section on the premise: ends of ratios, of changes and of other columns."""
-    runs, study = last_station(evidence), evidence.tables["layer"]
+    runs, study = station(evidence), evidence.tables["layer"]
     pulses, barriers = finest(runs, "pulse").reset_index(), finest(runs, "barrier")
     work = 2.0 * pulses["tau0"] * pulses["pulse_slip"]
     kept = pulses["gamma"] * pulses["pulse_slip"] ** 2 + pulses["weakening"]
-    ranges = {
-        "gamma": pulses["gamma"],
-        "tau0": pulses["tau0"],
-        "speed": pulses["speed"],
+    ranges = {name: pulses[name] for name in ("gamma", "tau0", "speed")}
+    ranges |= {
         "first_stick": pulses["paper_first_stick"] / pulses["first_stick"],
         "strip": pulses["strip_first_stick"] / pulses["first_stick"],
         "waves": 1.0 - kept / work,
@@ -122,7 +114,7 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         out[f"{quantity}_change"] = float(change(runs, "pulse", quantity).max())
         out[f"{quantity}_fine"] = float(change(runs, "fine", quantity).max())
     free = finest(study, "free").sort_values("station").iloc[-2:]
-    out |= {"free_speed": float(free["speed"].iloc[1])}
+    out["free_speed"] = float(free["speed"].iloc[1])
     out["free_before"], out["free_slip"] = free["pulse_slip"].tolist()
     for step, name in ((0, "cells"), (1, "coarse_cells")):
         out[name] = float(finest(runs, "pulse", step).reset_index()["cells"].max())
