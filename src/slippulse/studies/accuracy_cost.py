@@ -76,9 +76,7 @@ class Setting(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows of parts trade (work and errors of each setting; preset: its name) and locking (front
-    speed by the step). Exact is the continuum limit at fixed beta/dx.
-    """
+    """Parts trade (work and errors of each setting) and locking (front speed by the step)."""
     window = settings["measure"]["front_window"]
     return pd.concat([trade(settings["presets"], window), locking(window)], ignore_index=True)
 

@@ -35,9 +35,7 @@ CROSSINGS = 4.0
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Rows by part: map (depths at gamma = 1), depth (on lattices), passing (whether the front went
-    past a barrier of a length, in units of the exact depth).
-    """
+    """Parts map (depths at gamma = 1), depth (on lattices), and passing (fronts past barriers)."""
     rows, passing = [], []
     for ratio, tau0, barrier in product(DAMPING_RATIOS, MAP_LEVELS, MAP_BARRIERS):
         rows.append(depths(tau0, barrier, 1.0, ratio))

@@ -14,9 +14,7 @@ STIFFNESS_RATIO = 0.2  # G/G_r
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Role curve: thickness_ratio (H_r/H), stiffness_ratio (G/G_r), stress_drop (over G delta/H);
-    roles before and after (slip): y, displacement. Source: section IV C 2 of the paper.
-    """
+    """Roles curve (stress drop), before and after (slip). Source: section IV C 2."""
     figure = settings["figures"]["fig07_damage_zone"]
     steps = figure["stiffness_ratios"]
     ratios = np.geomspace(steps["from"], steps["to"], steps["count"])

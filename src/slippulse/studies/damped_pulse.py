@@ -17,9 +17,7 @@ DAMPING = np.linspace(0.0, 1.0, 61) ** 2
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Left (the level), damping_ratio, quantity and value. Role curve is in units of the paper's
-    formulas; role limit (dx -> 0 at fixed beta/dx, so beta -> 0) has the front speed as well.
-    """
+    """Roles curve (over the paper's formulas), and limit (dx -> 0 at fixed beta/dx: beta -> 0)."""
     swept, (refined, *_) = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
     left, ratio = refined.prestress.left, refined.damping_ratio
     pulse = steady_pulse(left, refined.gamma, damping_ratio=ratio, release=refined.release)

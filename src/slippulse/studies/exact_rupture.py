@@ -26,10 +26,7 @@ PARAMETERS = ["boundary", "left", "right", "gamma", "damping_ratio", "dx"]
 
 
 def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataFrame:
-    """Scene and role: scene (PARAMETERS), exact and lattice (position, release, stick, slip),
-    map_exact and map_lattice (time, position, slip_velocity > 0), difference (quantity, dx,
-    difference in the mean over the mean, places: how many it is over).
-    """
+    """Roles scene, exact and lattice (edges), map_exact and map_lattice, and difference."""
     parts = []
     for name in NEEDS["data"]:
         runs = [point(data[name], index) for index in range(data[name].sizes["point"])]

@@ -16,9 +16,7 @@ LARGEST_RATIO, RATIOS = 5.0, 33
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a point of the grid: release, damping_ratio, ratio_arsinh (asinh(b/SCALE)),
-    excess_log (ln(v - 1)), logit (ln(tau/(1 - tau)) of the pre-stress, to 6 decimals).
-    """
+    """One row a point of the grid, with the logit of the pre-stress, ln(tau/(1 - tau))."""
     arsinhs = np.linspace(0.0, np.arcsinh(LARGEST_RATIO / SCALE), RATIOS)
     arsinh, excess = (grid.ravel() for grid in np.meshgrid(arsinhs, EXCESS, indexing="ij"))
     ratio = SCALE * np.sinh(arsinh)

@@ -47,9 +47,7 @@ class Outcome(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a case: family, value, quantity, should, tolerance, expected, measured, error,
-    verdict, message (flags or the refusal), block_updates.
-    """
+    """One row a case, with the verdict, and flags or the refusal as the message."""
     window = settings["measure"]["front_window"]
     return pd.DataFrame([judged(case, window) for case in CASES])
 

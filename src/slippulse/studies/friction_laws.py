@@ -19,7 +19,7 @@ from ..model.scene import Scene
 from ..simulation.sweep import recorded
 from ..solver.fixed_step import solve_by_scheme
 from ..theory.rate_dependent import rate_pulse
-from ..theory.weakening import SteadyRupture, weakening_pulse
+from ..theory.weakening import weakening_pulse
 from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 
 NEEDS = {"settings": ["measure"]}
@@ -54,6 +54,8 @@ CASES: tuple[tuple[float, Friction, float], ...] = (
     (0.5, SlipWeakening(0.2, NUCLEATION), STEP),
     (0.5, SlipWeakening(0.3, NUCLEATION), STEP),
 )
+# Lattices of several spacings have the same exact pulse.
+cached_pulse = cache(weakening_pulse)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
@@ -69,8 +71,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         plane += [_run(level, law, STEP, DX, still) for law in laws]
     for level, dx, resolution in product(SELECTED, SPACINGS, RESOLUTIONS):
         law = SlipWeakening(resolution * dx, NUCLEATION)
-        # Beyond a strength of 1 there is no rupture.
-        speed = _weakening(level, law.d_c).speed if _strength(level, law) < 1.0 else np.nan
+        ruptures = _strength(level, law) < 1.0
+        speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed if ruptures else np.nan
         known = {"d_c": law.d_c, "exact_speed": speed}
         selection.append(_run(level, law, STEP, dx, still) | known)
     parts = {
@@ -87,8 +89,8 @@ def _strength(level: float, law: Friction) -> float:
     parameters = law.mapping()
     if "d_c" in parameters:
         return parameters["d_c"] * GAMMA / level**2
-    sign = -1.0 if isinstance(law, RateWeakening) else 1.0
-    return sign * parameters["limit"] / level
+    limit = parameters["limit"] / level
+    return -limit if isinstance(law, RateWeakening) else limit
 
 
 def _run(level: float, law: Friction, step: float, dx: float, still: float) -> dict[str, Any]:
@@ -130,14 +132,9 @@ def _regime(right: xr.Dataset, rest: float, still: float) -> str:
 def _theory(level: float, law: Friction) -> dict:
     """Exact numbers of a case."""
     if isinstance(law, SlipWeakening):
-        pulse = _weakening(level, law.d_c)
+        pulse = cached_pulse(level, GAMMA, BETA, law.d_c)
     else:
         pulse = rate_pulse(level, GAMMA, RATIO, law)
     row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
     sizes = {"pulse_width": pulse.width, "pulse_slip": pulse.slip} if pulse.sticks else {}
     return row | sizes
-
-
-@cache
-def _weakening(level: float, d_c: float) -> SteadyRupture:
-    return weakening_pulse(level, GAMMA, BETA, d_c)

@@ -30,9 +30,7 @@ LINE = ["release", "left", "gamma", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Speeds by panel: prestress (over left), springs (over gamma dx^2), refined (over dx, at a
-    held b or beta) and limit (dx -> 0 under the elastic rule at fixed beta).
-    """
+    """Panels prestress, springs (over gamma dx^2), refined (over dx), and limit (dx -> 0)."""
     sweeps = (expand(settings["sweeps"][name])[0] for name in NEEDS["sweeps"])
     parameters = (pd.DataFrame(map(Scene.attributes, scenes)) for scenes in sweeps)
     swept, springs, fixed_ratio, *fixed_beta = parameters

@@ -18,10 +18,7 @@ BEYOND = np.concatenate([np.linspace(0.0, 1.0, 120, endpoint=False), np.linspace
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Level (beyond the step), x (distance beyond it) and final slip, and once a level: before (the
-    level there), steady and steady_before (exact slip of both steady pulses), memory (the distance
-    W_p/(v - 1) beyond which the past of the trailing edge does not reach).
-    """
+    """Final slip over the distance beyond the step, with both steady pulses and the memory."""
     parts = []
     for scene in expand(settings["sweeps"]["pulses_across_a_step"])[0]:
         position, level = scene.prestress.steps[-1]

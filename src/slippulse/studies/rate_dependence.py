@@ -45,9 +45,7 @@ SPACINGS, TIMES = (0.05, 0.025), np.geomspace(2.0, 100.0, 21)
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Roles lattice (the end of a run), limit (the critical rate_strengthening), steady and map (at
-    LEVEL), arrest and asymptote (without leaf springs; gap: of the left front to the balance).
-    """
+    """Roles lattice, limit, steady and map (at LEVEL), arrest and asymptote (no leaf springs)."""
     lattices = []
     for level, fraction in product(LEVELS, FRACTIONS):
         # Slip runs away beyond this: the model refuses it.

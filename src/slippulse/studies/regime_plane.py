@@ -26,9 +26,7 @@ TIME, POINTS = 12.0, 241
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Regimes by role: area (corners in order), line (ends of a line on which one level is 0 and
-    the other negative), and profile (slip velocity over x at W = 1).
-    """
+    """Roles area, line (ends of a line on which one level is 0), and profile (at W = 1)."""
     still, model = settings["measure"]["still"], settings["model"]
     rules = model["damping_ratio"], model["release"]
     low = -BORDER / largest_pulse_ratio(BORDER, *rules, still)

@@ -33,9 +33,7 @@ PROFILES = {
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """One row a scheme, order and damping ratio: the bound and the largest step, in units of dx, at
-    which nothing sticks in a chain between walls, without events, and in a crack.
-    """
+    """The bound and the largest steps at which nothing sticks, in units of dx."""
     rows = []
     for scheme, order in [("fixed_step", 1), *(("localised", order) for order in ORDERS)]:
         for ratio in DAMPING_RATIOS:
