@@ -12,7 +12,7 @@ from pypdf import PdfReader
 
 from slippulse.claims.rules import within
 from slippulse.data.files import CONFIGURATION
-from slippulse.figures.style import new_figure
+from slippulse.figures.style import new_panels
 from slippulse.report.manuscript import DOCUMENTS, Inputs
 from slippulse.steps import write_report
 
@@ -142,8 +142,8 @@ def make_inputs(manuscript, shipped, tmp_path_factory):
     """A function that invents a run of a configuration: the inputs of its report."""
     folder = tmp_path_factory.mktemp("figures")
     figures = [name for name in read(manuscript / "captions.yaml") if name.startswith("fig")]
-    drawn = new_figure(3.4, 2.0)
-    drawn.subplots().plot(np.arange(3))
+    drawn, (axes,) = new_panels(3.4, 2.0, "a")
+    axes.plot(np.arange(3))
     for name in figures:
         for ending in ("png", "pdf"):
             drawn.savefig(folder / f"{name}.{ending}")

@@ -53,7 +53,7 @@ def test_an_unchanged_configuration_has_no_note():
 def test_a_note_makes_a_figure_higher_and_covers_nothing(tmp_path):
     heights = []
     for note in ("", "altered: b = 0.05", "altered: " + 40 * "b = 0.05, "):
-        figure, (axes,) = new_panels(3.4, 2.0, 1, 1)
+        figure, (axes,) = new_panels(3.4, 2.0, "a")
         axes.set_xlabel("position $x$")
         save_figure(figure, tmp_path / "one.png", tmp_path / "one.pdf", note)
         heights.append(matplotlib.image.imread(tmp_path / "one.png").shape[0])

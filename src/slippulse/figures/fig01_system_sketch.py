@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
@@ -42,17 +41,36 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw two panels, one a boundary condition."""
-    figure, panels = new_panels(COLUMN, 3.4, 2, 1)
+    """Draw two panels, one a boundary condition: layer, substrate, strip, friction, and axes."""
+    figure, panels = new_panels(COLUMN, 3.4, "a;b")
     # All lengths are drawn in thicknesses.
     table = table.assign(**(table[LENGTHS] / table["y"].max()))
+    strip = table["strip_width"].iloc[0]
+    box: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
+    cut: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
+    law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
     for axes, panel in zip(panels, TITLES, strict=True):
-        draw_layer(axes, table["strip_width"].iloc[0])
+        axes.add_patch(Rectangle((0.0, -RIGID), LENGTH, RIGID, **HATCHED))
+        axes.add_patch(Rectangle((0.0, 0.0), LENGTH, 1.0, **box))
+        axes.add_patch(Rectangle((STRIP - 0.5 * strip, 0.0), strip, 1.0, **cut))
+        label(axes, STRIP, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
+        label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
+        substrate = label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8)
+        substrate.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.3})
+        arrow(axes, (0.27 * LENGTH, 0.05), (0.13 * LENGTH, 0.05), BLACK, gid="friction")
+        label(axes, 0.7, 0.1, "$f_f$", va="bottom")
+        label(axes, 0.5 * LENGTH, -RIGID - 0.08, law, va="top")
+        arrow(axes, (LENGTH + 0.13, 0.0), (LENGTH + 0.13, 1.0), MUTED, BOTH)
+        for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
+            label(axes, LENGTH + 0.23, y, text, MUTED, ha="left")
+        arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED)
+        arrow(axes, (-0.42, 0.0), (-0.42, 0.35), MUTED)
+        label(axes, -0.24, -0.13, "$x$", MUTED)
+        label(axes, -0.55, 0.25, "$y$", MUTED)
         if panel == "stress":
             for x in np.linspace(0.03, 0.85, 6) * LENGTH:
                 arrow(axes, (x, 1.1), (x + 0.12 * LENGTH, 1.1), ORANGE, gid="imposed stress")
             label(axes, 0.5 * LENGTH, 1.19, r"$\tau$", ORANGE, va="bottom")
-            # The mean over the height stands for the interface.
             label(axes, REST + DISPLACEMENT + 0.06, 0.5, r"$\langle u_x\rangle_y$", BLUE, ha="left")
         else:
             axes.add_patch(Rectangle((0.0, 1.0), LENGTH, RIGID, gid="held top", **HATCHED))
@@ -67,27 +85,3 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set(xlim=(-0.65, LENGTH + 0.68), ylim=(-0.55, 1.46), aspect="equal")
         axes.set_axis_off()
     return figure
-
-
-def draw_layer(axes: Axes, strip: float) -> None:
-    """Draw what both conditions have: layer, substrate, strip, friction, thickness and axes."""
-    axes.add_patch(Rectangle((0.0, -RIGID), LENGTH, RIGID, **HATCHED))
-    look: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
-    axes.add_patch(Rectangle((0.0, 0.0), LENGTH, 1.0, **look))
-    look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4}
-    axes.add_patch(Rectangle((STRIP - 0.5 * strip, 0.0), strip, 1.0, gid="strip", **look))
-    label(axes, STRIP, 0.47, r"$\mathrm{d}x$", RED, va="bottom")
-    label(axes, 0.7, 0.68, r"$G,\ \lambda,\ \rho$", ha="center")
-    substrate = label(axes, 0.5 * LENGTH, -0.5 * RIGID, "rigid substrate", fontsize=8)
-    substrate.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.3})
-    arrow(axes, (0.27 * LENGTH, 0.05), (0.13 * LENGTH, 0.05), BLACK, gid="friction")
-    label(axes, 0.7, 0.1, "$f_f$", va="bottom")
-    law = r"$y = 0$:  $f_f \leq \mu_s\sigma_n$ at rest,  $f_f = \mu_k\sigma_n$ sliding"
-    label(axes, 0.5 * LENGTH, -RIGID - 0.08, law, va="top")
-    arrow(axes, (LENGTH + 0.13, 0.0), (LENGTH + 0.13, 1.0), MUTED, BOTH)
-    for y, text in ((0.0, "$y = 0$"), (0.5, "$H$"), (1.0, "$y = H$")):
-        label(axes, LENGTH + 0.23, y, text, MUTED, ha="left")
-    arrow(axes, (-0.42, 0.0), (-0.07, 0.0), MUTED)
-    arrow(axes, (-0.42, 0.0), (-0.42, 0.35), MUTED)
-    label(axes, -0.24, -0.13, "$x$", MUTED)
-    label(axes, -0.55, 0.25, "$y$", MUTED)

@@ -11,7 +11,7 @@ from ..data.numerals import setting
 from ..model.prestress import Prestress
 from . import style
 from .shared.selection import spread_values
-from .style import BLACK, GREY, PAGE, Look, entry, legend_below, new_figure, panel_letter
+from .style import BLACK, GREY, PAGE, Look, entry, legend_below, panel_letter
 
 NEEDS = {
     "measured": ["regimes_displacement", "regimes_displacement_asymmetric", "regimes_stress"],
@@ -59,17 +59,36 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the plane of tau_0 and gamma, one for each boundary, and numbered velocity profiles."""
-    figure = new_figure(PAGE, 5.0)
+    figure = Figure(figsize=(PAGE, 5.0), layout="constrained")
     left, strips = figure.subfigures(1, 2, squeeze=False, width_ratios=(2.0, 1.0)).flat
     above, below = left.subfigures(2, 1, squeeze=False, height_ratios=(1.0, 1.1)).flat
+    symmetric = above.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
     profiles = [rows for _, rows in table[table["role"] == "profile"].groupby("series")]
-    draw_symmetric(above, table)
-    for axes, letter, boundary in zip(below.subplots(1, 2), "bc", BOUNDARIES, strict=True):
+    texts: dict[str, dict[str, str]] = {boundary: {} for boundary in BOUNDARIES}
+    for number, rows in zip(NUMBERS, profiles, strict=False):
+        boundary, regime = rows[["boundary", "regime"]].iloc[0]
+        texts[boundary][regime] = f"{number} {LOOKS[regime][1]}"
+    panels = zip(symmetric, below.subplots(1, 2), "bc", BOUNDARIES.items(), strict=True)
+    for line, plane, letter, (boundary, title) in panels:
         rows = table[table["boundary"] == boundary]
-        draw_plane(axes, rows[rows["role"].isin(["area", "line"])], labels(profiles, boundary))
-        draw_runs(axes, rows[rows["role"] == "run"], "right")
-        axes.set_title(BOUNDARIES[boundary], fontsize=9)
-        panel_letter(axes, letter)
+        areas = rows[rows["role"] == "area"].groupby(["series", "regime"])[["left", "right"]].mean()
+        for level in (-0.5, 0.5):
+            # The regime of equal levels is that of the quadrant with this centre.
+            regime = areas[areas.eq(level).all(axis="columns")].index[0][1]
+            colour, text = LOOKS[regime]
+            line.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
+            look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
+            line.annotate(text.replace("\n", " "), (level, 1.02), fontsize=8.0, **look)
+        draw_runs(line, rows[rows["role"] == "symmetric"], "gamma")
+        draw_plane(plane, rows[rows["role"].isin(["area", "line"])], texts[boundary])
+        draw_runs(plane, rows[rows["role"] == "run"], "right")
+        plane.set_title(title, fontsize=9)
+        panel_letter(plane, letter)
+    symmetric[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
+    symmetric[1].set(ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$", xlim=(-1.0, 1.0))
+    ticks = (-1, -0.5, 0, 0.5, 1)
+    symmetric[1].set(xticks=ticks, xlabel=r"pre-stress on both sides $\tau_0$")
+    panel_letter(symmetric[0], "a")
     draw_profiles(strips, profiles)
     faces = {"simulation, in the colour of its regime": GREY, "not settled by its end": "white"}
     look = MARK | {"marker": "o"}
@@ -80,47 +99,16 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_symmetric(figure: SubFigure, table: pd.DataFrame) -> None:
-    """Draw the regimes of equal levels over tau_0 and gamma, and below without leaf springs."""
-    panels = figure.subplots(2, 1, sharex=True, height_ratios=(3.4, 1.0))
-    for axes, boundary in zip(panels, BOUNDARIES, strict=True):
-        rows = table[table["boundary"] == boundary]
-        for level in (-0.5, 0.5):
-            # The regime of equal levels is that of the quadrant with this centre.
-            areas = rows[rows["role"] == "area"].groupby(["series", "regime"])
-            centres = areas[["left", "right"]].mean().eq(level).all(axis="columns")
-            regime = centres[centres].index[0][1]
-            colour, text = LOOKS[regime]
-            axes.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
-            look: Look = {"ha": "center", "va": "bottom", "fontsize": 8.0}
-            name = text.replace("\n", " ")
-            axes.annotate(name, (level, 1.02), xycoords=("data", "axes fraction"), **look)
-        draw_runs(axes, rows[rows["role"] == "symmetric"], "gamma")
-    panels[0].set(yscale="log", ylabel=r"$\Gamma = 1$,  $\gamma$")
-    panels[1].set(ylim=(-1.0, 1.0), yticks=[], ylabel=r"$\Gamma = 0$")
-    ticks = (-1, -0.5, 0, 0.5, 1)
-    panels[1].set(xlim=(-1.0, 1.0), xticks=ticks, xlabel=r"pre-stress on both sides $\tau_0$")
-    panel_letter(panels[0], "a")
-
-
 def tint(colour: str) -> tuple[float, ...]:
     """Mix a colour with white."""
     return tuple(1.0 - 0.35 * (1.0 - part) for part in to_rgb(colour))
-
-
-def labels(profiles: list[pd.DataFrame], boundary: str) -> dict[str, str]:
-    """Label of each regime in the plane of a boundary, with the number of its velocity profile."""
-    texts = {regime: text for regime, (_, text) in LOOKS.items()}
-    for number, rows in zip(NUMBERS, profiles, strict=False):
-        if rows["boundary"].iloc[0] == boundary:
-            texts[rows["regime"].iloc[0]] = f"{number} {LOOKS[rows['regime'].iloc[0]][1]}"
-    return texts
 
 
 def draw_plane(axes: Axes, rows: pd.DataFrame, texts: dict[str, str]) -> None:
     """Draw the regimes as areas, and as lines where one level is 0, each with one label."""
     look: Look = {"ha": "center", "va": "center", "fontsize": 8.0, "zorder": 4.0}
     look["linespacing"] = 1.0
+    texts = {regime: text for regime, (_, text) in LOOKS.items()} | texts
     for (role, _), part in rows.groupby(["role", "series"], sort=False):
         regime, corners = part["regime"].iloc[0], part[["left", "right"]].to_numpy()
         (left, right), colour = corners.mean(axis=0), LOOKS[regime][0]

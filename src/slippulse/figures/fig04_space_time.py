@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -22,19 +21,32 @@ NEEDS = {
 }
 
 PANELS = {"displacement": "a", "stress": "b"}
-COLUMNS = ["role", "series", "time", "position", "value"]
+COLUMNS = ["panel", "role", "series", "time", "position", "value"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Rows of `run_rows` for the first run of both sweeps, with exact edges and the transition.
 
-    Role fraction: of |x_minus|, that the left front has covered at T_trans under held stress.
+    Roles measured, paper and last_release (where the left front has one) have both fronts (series)
+    at a time, with the length between them; fraction is that of |x_minus|, which the left front has
+    covered at T_trans under held stress.
     """
     parts = []
     for panel in PANELS:
         name = f"space_time_{panel}"
         run, exact = point(data[name], 0), tables["exact_space_time"].query("simulation == @name")
-        rows = [space_time.run_rows(run), transition_rows(run, tables[name].iloc[0])]
+        rows, numbers = [space_time.run_rows(run)], tables[name].iloc[0]
+        time, length = numbers["transition_time"], numbers["transition_length"]
+        transitions = {"measured": (time, position_at(run, time, "right") - length, length)}
+        length = numbers["paper_transition_length"]
+        transitions["paper"] = (numbers["paper_transition_time"], -0.5 * length, length)
+        if "last_release_time" in numbers:
+            names = ("last_release_time", "last_release_distance", "last_release_length")
+            time, distance, length = numbers[[*names]]
+            transitions["last_release"] = (time, -distance, length)
+        for role, (time, left, length) in transitions.items():
+            ends = {"series": ["left", "right"], "position": [left, left + length]}
+            rows.append(pd.DataFrame(ends).assign(role=role, time=time, value=length))
         for role, column in (("exact_front", "release_time"), ("exact_trailing", "stick_time")):
             edge = {"role": role, "position": exact["position"], "time": exact[column]}
             rows.append(pd.DataFrame(edge).dropna())
@@ -42,32 +54,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             fraction = {"role": "fraction", "value": settings["measure"]["share"]}
             rows.append(pd.DataFrame([fraction]))
         parts.append(pd.concat(rows).assign(panel=panel))
-    return pd.concat(parts, ignore_index=True)[["panel", *COLUMNS]]
-
-
-def transition_rows(run: xr.Dataset, numbers: pd.Series) -> pd.DataFrame:
-    """Both fronts (series) at T_trans, and L_trans, by role: measured, paper, and last_release (the
-    last release on the left, where the run has one).
-    """
-    rows: list[tuple] = []
-
-    def add(role: str, time: float, left: float, right: float, length: float) -> None:
-        rows.append((role, "left", time, left, length))
-        rows.append((role, "right", time, right, length))
-
-    time, length = numbers["transition_time"], numbers["transition_length"]
-    right, half = float(position_at(run, time, "right")), 0.5 * numbers["paper_transition_length"]
-    add("measured", time, right - length, right, length)
-    add("paper", numbers["paper_transition_time"], -half, half, 2.0 * half)
-    if "last_release_time" in numbers:
-        left, length = -numbers["last_release_distance"], numbers["last_release_length"]
-        add("last_release", numbers["last_release_time"], left, length + left, length)
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.concat(parts, ignore_index=True)[COLUMNS]
 
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the figure; a legend entry that is in one panel alone names the panel."""
-    figure = style.new_figure(PAGE, 3.3)
+    figure = Figure(figsize=(PAGE, 3.3))
     figure.set_layout_engine("constrained", wspace=0.01, w_pad=0.03)
     handles: dict[str, Artist] = {}
     # Letters of the panels that have a label.
@@ -102,14 +94,29 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Draw exact edges, T_trans and L_trans, the paper's estimate and the last release."""
+    """Draw exact edges, arrows for T_trans and L_trans, the paper's estimate, the last release."""
     look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
         if role in roles:
             axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
+    time, left, length = roles["measured"][["time", "position", "value"]].iloc[0]
     # A run that is too short for its transition has none to draw.
-    if np.isfinite(roles["measured"]["time"]).all():
-        draw_arrows(axes, roles["measured"].set_index("series"))
+    if np.isfinite(time):
+        low, high = axes.get_ylim()
+        height = high - low
+        low -= 0.04 * height
+        axes.set_ylim(low - 0.06 * height, high)
+        arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
+        arrow |= {"mutation_scale": 8.0, "path_effects": HALO}
+        axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
+        for start, stop in (((0.0, low), (time, low)), ((time, left), (time, left + length))):
+            axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
+        look = {"textcoords": "offset points", "fontsize": 8.5, "path_effects": HALO}
+        # The label of T_trans stands above its arrow, clear of the ticks of the axis.
+        named = rf"$T_\text{{trans}} = {time:#.3g}$"
+        axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)
+        named = rf"$L_\text{{trans}} = {length:#.3g}$"
+        axes.annotate(named, (time, left + 0.5 * length), (4, 0), va="center", zorder=4.0, **look)
     look = {"markeredgewidth": 0.8, "markeredgecolor": BLACK, "markersize": 4.5, "zorder": 5.0}
     paper = roles["paper"]
     axes.plot(paper["time"], paper["position"], "D", color=ORANGE, label="paper's estimate", **look)
@@ -122,24 +129,3 @@ def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
         axes.annotate("$x_-$", (0.0, limit), va="bottom", zorder=4.0, **beside)
         left = roles["last_release"].iloc[:1]
         axes.plot(left["time"], left["position"], "o", color="white", label="last release", **look)
-
-
-def draw_arrows(axes: Axes, ends: pd.DataFrame) -> None:
-    """Draw T_trans as an arrow below the lowest position that slips, L_trans between the fronts."""
-    time, length = float(ends["time"].iloc[0]), float(ends["value"].iloc[0])
-    left, right = float(ends.loc["left", "position"]), float(ends.loc["right", "position"])
-    low, high = axes.get_ylim()
-    height = high - low
-    low -= 0.04 * height
-    axes.set_ylim(low - 0.06 * height, high)
-    arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
-    arrow |= {"mutation_scale": 8.0, "path_effects": HALO}
-    axes.plot([time, time], [low, left], color=BLACK, linewidth=0.6, linestyle=":", zorder=3.0)
-    for start, stop in (((0.0, low), (time, low)), ((time, left), (time, right))):
-        axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
-    look: Look = {"textcoords": "offset points", "fontsize": 8.5, "path_effects": HALO}
-    # The label of T_trans stands above its arrow, clear of the ticks of the axis.
-    named = rf"$T_\text{{trans}} = {time:#.3g}$"
-    axes.annotate(named, (0.0, low), (6, 3), va="bottom", zorder=4.0, **look)
-    named = rf"$L_\text{{trans}} = {length:#.3g}$"
-    axes.annotate(named, (time, 0.5 * (left + right)), (4, 0), va="center", zorder=4.0, **look)

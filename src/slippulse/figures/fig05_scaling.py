@@ -7,7 +7,7 @@ from .shared import scaling
 from .shared.pulses import prestress_inset
 from .shared.scaling import DRAWN, OTHER, QUANTITIES, run_colours, transition_table
 from .shared.selection import spread_values
-from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, new_panels
+from .style import LEVEL, PAGE, SMALL, SYMBOLS, Look, colour_scale, new_panels
 
 NEEDS = {
     "measured": ["scaling_displacement", "scaling_stress"],
@@ -19,7 +19,7 @@ BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the collapse, a row a quantity and a column a boundary; insets have the ratio."""
-    figure, panels = new_panels(PAGE, 5.6, 2, 2)
+    figure, panels = new_panels(PAGE, 5.6, "ab;cd")
     for column, (boundary, title) in enumerate(BOUNDARIES.items()):
         runs, other = table[table["boundary"] == boundary], OTHER[boundary]
         few = runs[runs[other].isin(spread_values(runs[other], DRAWN))]
@@ -34,7 +34,10 @@ def draw(table: pd.DataFrame) -> Figure:
         levels = list(run_colours(narrow, "left"))
         prestress_inset(panels[column], (0.68, 0.17, 0.28, 0.22), narrow, levels, 6.0)
         panels[column].set_title(title, fontsize=9)
-        for kind in ("left", other):
+        for quantity in (LEVEL[boundary], other):
             look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
-            scaling.colour_bar(figure, panels[column::2], boundary, kind, **look)
+            # The scale of tau_l is stretched, and ticks at equal distances would overlap.
+            look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if quantity == "tau_l" else None
+            bar = figure.colorbar(colour_scale(quantity), ax=panels[column::2], **look)
+            bar.set_label(f"${SYMBOLS[quantity]}$")
     return figure

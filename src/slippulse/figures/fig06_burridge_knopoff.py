@@ -11,7 +11,7 @@ from matplotlib.ticker import MultipleLocator
 
 from ..data.points import point
 from ..model.prestress import prestress_from
-from .style import BLACK, BLUE, GREY, ORANGE, Look, entry, legend_below, new_figure, panel_letter
+from .style import BLACK, BLUE, GREY, ORANGE, Look, entry, legend_below, panel_letter
 
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
 
@@ -22,6 +22,8 @@ SHOWN, BEYOND = 18, 2
 # Width and height of a block, and height of the plate above the ground, in spacings.
 BLOCK, HEIGHT = 0.5, 0.44
 PLATE = 1.12
+# Height of the points of a coil spring.
+COIL = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
 # Largest drawn displacement over a spacing, and shortest spring over its length.
 FARTHEST, SHORTEST = 0.85, 0.35
 # Inches of the width, of a spacing's height and of the strip with the pre-stress. The width is
@@ -43,28 +45,30 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     Source: the paper's discussion of the Burridge-Knopoff model.
     """
-    parts = [panel_rows(point(data[f"burridge_knopoff_{name}"], 0), name) for name in PITCH]
-    return pd.concat(parts, ignore_index=True)
-
-
-def panel_rows(run: xr.Dataset, name: str) -> pd.DataFrame:
-    """Rows of a run, with one more block on each side than is shown, whose springs reach in."""
-    low, high = window(run)
-    shown, parts = run.sel(sample_position=slice(low - 1.5, high + 1.5)), []
-    x, times = shown["sample_position"].values, shown["sample_time"].values
-    tau = prestress_from(run.attrs)(x)
-    for row, (instant, sample) in enumerate(instants(run)):
-        slip, velocity = (shown[key].values[sample] for key in ("sample_slip", "sample_velocity"))
-        frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity, "prestress": tau})
-        state = np.where(slip > 0.0, "stuck after sliding", "at rest")
-        frame["state"] = np.where(velocity > 0.0, "sliding", state)
-        parts.append(frame.assign(row=row, instant=instant, time=times[sample]))
-    rows = pd.concat(parts, ignore_index=True)
-    closer = float(-rows.groupby("row")["slip"].diff().min())
-    rows["scale"] = min(FARTHEST / rows["slip"].max(), (1.0 - SHORTEST) * (1.0 - BLOCK) / closer)
-    rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
-    parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
-    return rows.assign(panel=name, **parameters)
+    panels = []
+    for name in PITCH:
+        run = point(data[f"burridge_knopoff_{name}"], 0)
+        parts: list[pd.DataFrame] = []
+        low, high = window(run)
+        # The springs of one more block on each side reach into view.
+        shown = run.sel(sample_position=slice(low - 1.5, high + 1.5))
+        x = shown["sample_position"].values
+        for row, (instant, sample) in enumerate(instants(run)):
+            now = shown.isel(sample_time=sample)
+            slip, velocity = now["sample_slip"].values, now["sample_velocity"].values
+            frame = pd.DataFrame({"x": x, "slip": slip, "slip_velocity": velocity})
+            frame["prestress"] = prestress_from(run.attrs)(x)
+            state = np.where(slip > 0.0, "stuck after sliding", "at rest")
+            frame["state"] = np.where(velocity > 0.0, "sliding", state)
+            parts.append(frame.assign(row=row, instant=instant, time=float(now["sample_time"])))
+        rows = pd.concat(parts, ignore_index=True)
+        closer = float(-rows.groupby("row")["slip"].diff().min())
+        largest = (1.0 - SHORTEST) * (1.0 - BLOCK) / closer
+        rows["scale"] = min(FARTHEST / rows["slip"].max(), largest)
+        rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
+        parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
+        panels.append(rows.assign(panel=name, **parameters))
+    return pd.concat(panels, ignore_index=True)
 
 
 def arresting_block(run: xr.Dataset) -> float:
@@ -106,16 +110,24 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw a panel a boundary condition: pre-stress, and rows of blocks with time downwards."""
     counts = table.groupby("panel")["row"].nunique()
-    heights = [UNIT * (PITCH[name] * counts[name] + 0.12) for name in PITCH]
-    ratios = [STRIP, heights[0], STRIP, heights[1]]
-    figure = new_figure(WIDTH, sum(ratios) + 1.75)
+    ratios: list[float] = []
+    for name, pitch in PITCH.items():
+        ratios += [STRIP, UNIT * (pitch * counts[name] + 0.12)]
+    figure = Figure(figsize=(WIDTH, sum(ratios) + 1.75), layout="constrained")
     grid = figure.add_gridspec(4, 1, height_ratios=ratios)
     for index, (name, letter) in enumerate(zip(PITCH, "ab", strict=True)):
         rows = table[table["panel"] == name]
         axes = figure.add_subplot(grid[2 * index + 1])
         draw_rows(axes, rows, name)
-        strip = figure.add_subplot(grid[2 * index], sharex=axes)
-        draw_prestress(strip, rows[rows["row"] == 0])
+        strip, first = figure.add_subplot(grid[2 * index], sharex=axes), rows[rows["row"] == 0]
+        strip.axhline(0.0, color=BLACK, linewidth=0.6)
+        strip.bar(first["x"], first["prestress"], width=BLOCK, color=GREY)
+        strip.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
+        lowest, ticks = min(0.0, first["prestress"].min()), {0.0, 1.0, first["left"].iloc[0]}
+        strip.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
+        strip.tick_params(axis="x", length=0, labelbottom=False)
+        strip.tick_params(axis="y", labelsize=7)
+        strip.spines[["right", "top", "bottom"]].set_visible(False)
         strip.set_title(TITLES[name].format(**rows.iloc[0]), fontsize=9)
         panel_letter(strip, letter)
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
@@ -126,18 +138,6 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def draw_prestress(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw the pre-stress of each block as a bar."""
-    axes.axhline(0.0, color=BLACK, linewidth=0.6)
-    axes.bar(rows["x"], rows["prestress"], width=BLOCK, color=GREY)
-    axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    lowest, ticks = min(0.0, rows["prestress"].min()), {0.0, 1.0, rows["left"].iloc[0]}
-    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted(ticks))
-    axes.tick_params(axis="x", length=0, labelbottom=False)
-    axes.tick_params(axis="y", labelsize=7)
-    axes.spines[["right", "top", "bottom"]].set_visible(False)
-
-
 def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     """Draw blocks, coil springs and leaf springs of one run, one line an instant."""
     low, high = rows["x"].min() + 0.35, rows["x"].max() - 0.35
@@ -146,19 +146,30 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
         state = state.sort_values("x")
         base, rest = -pitch * row, state["x"].to_numpy()
         centre = rest + (state["scale"] * state["slip"]).to_numpy()
-        axes.add_collection(coils(centre, base + 0.5 * HEIGHT))
+        x = np.linspace(centre[:-1] + 0.5 * BLOCK, centre[1:] - 0.5 * BLOCK, COIL.size, axis=1)
+        coils = [*np.stack(np.broadcast_arrays(x, base + 0.5 * HEIGHT + COIL), axis=-1)]
+        look: Look = {"colors": "0.35", "linewidths": 0.6, "gid": "coil springs"}
+        axes.add_collection(LineCollection(coils, **look))
         axes.plot([low, high], [base, base], color=BLACK, linewidth=0.8)
         axes.vlines(rest, base - 0.09, base, color="0.4", linewidth=0.6)
         if leaf:
             axes.plot([low, high], [base + PLATE] * 2, color=BLACK, linewidth=1.8)
-            axes.add_collection(leaves(rest, centre, base))
-        for x, block in zip(centre, state.itertuples(), strict=True):
+            # A leaf is clamped upright at the plate above the position at rest, and at the block.
+            along, plate = np.linspace(0.0, 1.0, 15), base + PLATE
+            x = rest[:, None] + (centre - rest)[:, None] * along**2 * (3.0 - 2.0 * along)
+            y = plate + (base + HEIGHT - plate) * along
+            leaves = [*np.stack(np.broadcast_arrays(x, y), axis=-1)]
+            look = {"colors": BLUE, "linewidths": 0.9, "gid": "leaf springs"}
+            axes.add_collection(LineCollection(leaves, **look))
+        for middle, block in zip(centre, state.itertuples(), strict=True):
             colour, width = (BLACK, 1.8) if block.arresting_block else ("0.2", 0.5)
-            patch = Rectangle((x - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state)
+            patch = Rectangle(
+                (middle - 0.5 * BLOCK, base), BLOCK, HEIGHT, zorder=3, gid=block.state
+            )
             patch.set(facecolor=COLOURS[block.state], edgecolor=colour, linewidth=width)
             axes.add_patch(patch)
         text = rf"$t = {state['time'].iloc[0]:.1f}$" + "\n" + state["instant"].iloc[0]
-        look: Look = {"ha": "right", "va": "center", "fontsize": 8.0, "linespacing": 0.95}
+        look = {"ha": "right", "va": "center", "fontsize": 8.0, "linespacing": 0.95}
         axes.text(low - 0.2, base + 0.5 * HEIGHT, text, **look)
     top = (PLATE if leaf else HEIGHT) + 0.08
     axes.set(xlim=(low, high), ylim=(-pitch * rows["row"].max() - 0.2, top), yticks=[])
@@ -166,23 +177,3 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.set_xlabel(f"position $x$ at rest; displacement drawn: {scale}")
     axes.xaxis.set_major_locator(MultipleLocator(2))
     axes.spines[["left", "right", "top"]].set_visible(False)
-
-
-def coils(centres: np.ndarray, y: float) -> LineCollection:
-    """Coil springs between neighbouring blocks."""
-    offset = np.pad(0.1 * (-1.0) ** np.arange(9), 1)
-    ends = np.linspace(centres[:-1] + 0.5 * BLOCK, centres[1:] - 0.5 * BLOCK, offset.size, axis=1)
-    lines = [np.column_stack([x, y + offset]) for x in ends]
-    return LineCollection(lines, colors="0.35", linewidths=0.6, gid="coil springs")
-
-
-def leaves(rest: np.ndarray, centres: np.ndarray, base: float) -> LineCollection:
-    """Leaf springs, clamped upright, from the plate above the positions at rest to the blocks."""
-    along = np.linspace(0.0, 1.0, 15)
-    plate = base + PLATE
-    y = plate + (base + HEIGHT - plate) * along
-    lines = []
-    for top, bottom in zip(rest, centres, strict=True):
-        x = top + (bottom - top) * along**2 * (3.0 - 2.0 * along)
-        lines.append(np.column_stack([x, y]))
-    return LineCollection(lines, colors=BLUE, linewidths=0.9, gid="leaf springs")

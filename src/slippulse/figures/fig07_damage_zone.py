@@ -19,7 +19,7 @@ WIDTH, ORIGIN = 4.2, 1.95
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the sketch above, and below it the stress drop against G/G_r with its limit."""
-    figure, (above, axes) = new_panels(COLUMN, 4.1, 2, 1, height_ratios=[1.0, 1.1])
+    figure, (above, axes) = new_panels(COLUMN, 4.1, "a;b", height_ratios=[1.0, 1.1])
     draw_sketch(above, table[table["role"] == "before"], table[table["role"] == "after"])
     curves = table[table["role"] == "curve"]
     groups = curves.groupby("thickness_ratio")

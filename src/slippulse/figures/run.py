@@ -64,10 +64,10 @@ def _draw(run: xr.Dataset) -> Picture:
     from .shared import space_time
     from .style import BLUE, PAGE, by_role
 
-    front, trailing = space_time.edges(run)
-    roles = {"prestress": space_time.prestress_profile(run), "front": front, "trailing": trailing}
     figure = Picture(figsize=(PAGE, 2.8), layout="constrained")
     profile, times, slip = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
+    roles = {"prestress": space_time.prestress_profile(run)}
+    roles["front"], roles["trailing"] = space_time.edges(run)
     space_time.draw_profile(profile, roles["prestress"])
     sampled = run.sizes.get("sample_time", 0) > 1 and run.sizes.get("sample_position", 0) > 1
     if sampled and (run["sample_velocity"] > 0.0).any():

@@ -7,20 +7,19 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import Figure
 
 from ..data.numerals import MOST, number, with_uncertainty
 from .shared import space_time
 from .shared.numbers import with_symbols
 from .shared.selection import spaced_indices
-from .style import BLUE, DASHES, GREY, ORANGE, PAGE, Look, by_role, new_figure, panel_letter
+from .style import BLUE, DASHES, GREY, ORANGE, PAGE, Look, by_role, panel_letter
 
 # The number of blocks drawn of a profile.
 PROFILE_POINTS = 400
 FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
-# The size of a steady pulse that is the largest value of each field, and each side's prefix of it.
+# The size of a steady pulse that is the largest value of each field.
 LARGEST = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
-PREFIXES = {"left": "exact_left", "right": "exact"}
 
 
 def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str) -> pd.DataFrame:
@@ -40,12 +39,13 @@ def table(run: xr.Dataset, numbers: pd.DataFrame, theory: pd.Series, title: str)
         rows = {"role": "profile", "series": name, "position": x[kept], "value": values[kept]}
         parts.append(pd.DataFrame(rows))
     # The right pulse is measured; on the left there is one once blocks stick.
-    shown = {"left": math.isfinite(run.attrs["first_stick_time"])}
-    shown["right"] = theory["pulse_state"] not in ("none", "stopped")
-    steady = []
-    for name, (side, end) in product(FIELDS, {"left": lower, "right": upper}.items()):
-        if shown[side]:
-            steady.append((name, end, theory[f"{PREFIXES[side]}_{LARGEST[name]}"]))
+    ends = {} if theory["pulse_state"] in ("none", "stopped") else {"exact": upper}
+    if math.isfinite(run.attrs["first_stick_time"]):
+        ends = {"exact_left": lower} | ends
+    steady = [
+        (name, end, theory[f"{prefix}_{LARGEST[name]}"])
+        for name, (prefix, end) in product(FIELDS, ends.items())
+    ]
     rows = pd.DataFrame(steady, columns=["series", "position", "value"])
     parts.append(rows.assign(role="steady").dropna())
     parts.append(numbers.rename(columns={"quantity": "series"}).assign(role="number"))
@@ -60,36 +60,31 @@ def number_text(value: float, uncertainty: float, theory: float) -> str:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the figure from its table."""
-    roles = by_role(table)
-    numbers = roles.get("number", table.iloc[:0])
+    """Draw pre-stress and map, both fields at the end with exact steady pulses, and numbers."""
+    roles, none = by_role(table), table.iloc[:0]
+    numbers, steady = roles.get("number", none), roles.get("steady", none)
     rows = math.ceil(len(numbers) / 2)
-    figure = new_figure(PAGE, 4.9 + 0.16 * rows)
+    figure = Figure(figsize=(PAGE, 4.9 + 0.16 * rows), layout="constrained")
     heights = (3.1, 1.6, 0.2 + 0.16 * rows)
     upper, lower, text = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
-    draw_space_time(upper, roles)
+    profile, axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
+    space_time.draw_profile(profile, roles["prestress"])
+    image = space_time.draw_map(axes, roles)
+    axes.legend(loc="upper left")
+    upper.colorbar(image, ax=axes, pad=0.015, aspect=25).set_label(r"slip velocity $\dot u$")
+    panel_letter(profile, "a")
+    title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
+    spacing = roles["parameter"].set_index("series").loc["dx", "value"]
+    parameters = rf"{space_time.description(roles)}, $\Delta x = {spacing:g}$"
+    upper.suptitle(f"{title}\n{parameters}", fontsize=9.0)
     for axes, letter, field in zip(lower.subplots(1, 2), "bc", FIELDS, strict=True):
-        draw_end(axes, roles["profile"], roles.get("steady", table.iloc[:0]), field)
+        draw_end(axes, roles["profile"], steady, field)
         panel_letter(axes, letter)
     for index, row in enumerate(numbers.itertuples()):
         line = f"{with_symbols(row.label)}: {number_text(row.value, row.uncertainty, row.theory)}"
         height = 1.0 - (index // 2 + 0.6) / (rows + 0.4)
         text.text(0.06 + 0.48 * (index % 2), height, line, va="center", fontsize=8.0)
     return figure
-
-
-def draw_space_time(figure: SubFigure, roles: dict[str, pd.DataFrame]) -> None:
-    """Draw pre-stress and map, under title and parameters."""
-    profile, axes = figure.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
-    space_time.draw_profile(profile, roles["prestress"])
-    image = space_time.draw_map(axes, roles)
-    axes.legend(loc="upper left")
-    figure.colorbar(image, ax=axes, pad=0.015, aspect=25).set_label(r"slip velocity $\dot u$")
-    panel_letter(profile, "a")
-    title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
-    spacing = roles["parameter"].set_index("series").loc["dx", "value"]
-    parameters = rf"{space_time.description(roles)}, $\Delta x = {spacing:g}$"
-    figure.suptitle(f"{title}\n{parameters}", fontsize=9.0)
 
 
 def draw_end(axes: Axes, profile: pd.DataFrame, steady: pd.DataFrame, field: str) -> None:

@@ -5,11 +5,12 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.figure import Figure
 
 from ..data.files import write_whole
 from .shared.selection import spaced_indices
 from .shared.space_time import limits
-from .style import BLUE, GREY, ORANGE, new_figure
+from .style import BLUE, GREY, ORANGE
 
 FRAMES, PER_SECOND = 61, 12
 DOTS_PER_INCH = 90
@@ -25,9 +26,8 @@ def animate(run: xr.Dataset, title: str) -> FuncAnimation:
     x, times = run["sample_position"].values, run["sample_time"].values
     inside = (x >= lower) & (x <= upper)
     frames = spaced_indices(times.size, FRAMES)
-    figure = new_figure(6.4, 3.6)
+    figure, lines = Figure(figsize=(6.4, 3.6), layout="constrained"), []
     panels = figure.subplots(2, 1, sharex=True)
-    lines = []
     for axes, (name, (label, colour)) in zip(panels, FIELDS.items(), strict=True):
         values = run[name].values[:, inside]
         axes.axhline(0.0, color=GREY, linewidth=0.5)

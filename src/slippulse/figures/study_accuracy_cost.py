@@ -9,11 +9,8 @@ from .style import BLACK, BLUE, GREY, HALO, ORANGE, PAGE, Look, entry, new_panel
 
 NEEDS = {"studies": ["accuracy_cost"]}
 
-PANELS = {
-    "front_speed": "front speed",
-    "peak_velocity": "peak slip velocity",
-    "transition_time": r"$T_\text{trans}$",
-}
+PANELS = {"front_speed": "front speed", "peak_velocity": "peak slip velocity"}
+PANELS["transition_time"] = r"$T_\text{trans}$"
 LOOKS: dict[str, Look] = {
     "textbook": {"color": BLACK, "marker": "x", "linestyle": "-", "linewidth": 0.6},
     "best": {"color": GREY, "drawstyle": "steps-post"},
@@ -45,31 +42,27 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw three errors against the work, and the speed of the front against the step."""
-    figure, axes = new_panels(PAGE, 5.0, 2, 2)
-    for panel, (name, title) in zip(axes, PANELS.items(), strict=False):
-        _draw_trade(panel, table[table["quantity"] == name])
-        panel.set(ylabel=f"relative error of {title}", xlabel="stencil passes over a block")
-        panel.set_title(r"$\Gamma = 1$", loc="right")
-    _draw_locking(axes[3], table[table["part"] == "locking"])
+    figure, (*trades, speeds) = new_panels(PAGE, 5.0, "ab;cd")
+    # The names of the presets stand on the side that is empty.
+    name: Look = {"textcoords": "offset points", "fontsize": 8.0, "path_effects": HALO}
+    for axes, (quantity, title) in zip(trades, PANELS.items(), strict=True):
+        rows = table[table["quantity"] == quantity]
+        for role, look in LOOKS.items():
+            part = rows[rows["role"] == role].sort_values("work")
+            work, error = part["work"].to_list(), part["error"].to_list()
+            if role == "best":
+                # More work need not have a larger error.
+                work, error = [*work, rows["work"].max()], [*error, error[-1]]
+            axes.plot(work, error, gid=role, **look)
+        for preset in rows[rows["role"] == "preset"].itertuples():
+            axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
+        axes.set(xscale="log", yscale="log", ylabel=f"relative error of {title}")
+        axes.set_xlabel("stencil passes over a block")
+        axes.set_title(r"$\Gamma = 1$", loc="right")
+    _draw_locking(speeds, table[table["part"] == "locking"])
     handles = [entry(NAMES[role], **look) for role, look in LOOKS.items()]
     figure.legend(handles=handles, loc="outside upper center", ncols=3, columnspacing=1.5)
     return figure
-
-
-def _draw_trade(axes: Axes, rows: pd.DataFrame) -> None:
-    """Draw presets with their names, the textbook scheme over its steps, and the envelope."""
-    for role, look in LOOKS.items():
-        part = rows[rows["role"] == role].sort_values("work")
-        work, error = part["work"].to_list(), part["error"].to_list()
-        if role == "best":
-            # More work need not have a larger error.
-            work, error = [*work, rows["work"].max()], [*error, error[-1]]
-        axes.plot(work, error, gid=role, **look)
-    # The names of the presets stand on the side that is empty.
-    name: Look = {"textcoords": "offset points", "fontsize": 8.0, "path_effects": HALO}
-    for preset in rows[rows["role"] == "preset"].itertuples():
-        axes.annotate(preset.preset, (preset.work, preset.error), (4, 5), **name)
-    axes.set(xscale="log", yscale="log")
 
 
 def _draw_locking(axes: Axes, rows: pd.DataFrame) -> None:

@@ -47,7 +47,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the rest of the way, (b) the times of the fraction and of the last release."""
-    figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, 1, 2)
+    figure, (path_axes, spacing_axes) = style.new_panels(PAGE, 3.1, "ab")
     longest = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     handles: list[Artist] = []
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):

@@ -60,7 +60,7 @@ def _interpolated(
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw maps without and with damping above; below curves with the estimate, and convergence."""
-    figure, (*maps, curve_axes, convergence_axes) = style.new_panels(PAGE, 5.4, 2, 2)
+    figure, (*maps, curve_axes, convergence_axes) = style.new_panels(PAGE, 5.4, "ab;cd")
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ends = fine["exact"].min(), fine["exact"].max()

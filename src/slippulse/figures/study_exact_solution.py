@@ -21,7 +21,7 @@ MARKERS = {"release": "o", "stick": "s", "slip": "^", "velocity": "D"}
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the map, (b) both edges, (c) the slip, (d) the difference over the spacing."""
-    figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(PAGE, 5.4, 2, 2)
+    figure, (map_axes, edge_axes, slip_axes, difference_axes) = style.new_panels(PAGE, 5.4, "ab;cd")
     _draw_map(figure, map_axes, table[table["scene"] == next(iter(SCENES))])
     scenes = table[table["role"] == "scene"]
     for scene, colour in SCENES.items():

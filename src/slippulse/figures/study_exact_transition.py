@@ -37,7 +37,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) distributions of errors, (c) refined lattices, (d) exact T_trans alone."""
-    figure, (*distributions, refined_axes, last) = style.new_panels(PAGE, 5.0, 2, 2)
+    figure, (*distributions, refined_axes, last) = style.new_panels(PAGE, 5.0, "ab;cd")
     for axes, quantity in zip(distributions, QUANTITIES, strict=True):
         _draw_distributions(axes, table[table["role"] == "sweep"], quantity)
     _draw_refinement(refined_axes, table[table["role"] == "refinement"])

@@ -22,7 +22,7 @@ COLOURS = (SKY, BLUE)
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes (a) of bounded laws of slip rate, (b, c) of slip weakening; (d) front speeds."""
-    figure, (*planes, speeds) = style.new_panels(PAGE, 5.2, 2, 2)
+    figure, (*planes, speeds) = style.new_panels(PAGE, 5.2, "ab;cd")
     roles = style.by_role(table)
     runs = roles["plane"]
     for axes, (laws, (label, title)) in zip(planes, PLANES.items(), strict=True):

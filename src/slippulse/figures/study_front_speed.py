@@ -69,7 +69,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) both release rules against tau_0, (c) leaf springs, (d) refined lattices."""
-    figure, grid = style.new_panels(PAGE, 5.2, 2, 2)
+    figure, grid = style.new_panels(PAGE, 5.2, "ab;cd")
     panels = {str(panel): rows for panel, rows in table.groupby("panel")}
     for axes, rule in zip(grid, RULES, strict=False):
         _draw_prestress(axes, panels["prestress"][panels["prestress"]["release"] == rule])

@@ -1,7 +1,6 @@
 """Pulses of the layer in the plane, and one dimension over the plane against their width."""
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import style
@@ -10,12 +9,8 @@ from .style import BLACK, GREY, OPEN, PAGE, Look, entry
 NEEDS = {"studies": ["layer"]}
 
 # Measured numbers, with their names.
-QUANTITIES = {
-    "speed": "front speed",
-    "pulse_width": "width",
-    "pulse_slip": "slip",
-    "first_stick": "first stick",
-}
+QUANTITIES = {"speed": "front speed", "pulse_width": "width", "pulse_slip": "slip"}
+QUANTITIES["first_stick"] = "first stick"
 # Numbers of one dimension by the prefix of their columns: how they are drawn, and what they are.
 LOOKS: dict[str, Look] = {
     "paper": {"linestyle": "-", "marker": "o", "label": "formula of the paper"},
@@ -46,12 +41,21 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) the velocity over the layer, (b-e) ratios of one dimension to the plane."""
-    figure, panels = style.new_mosaic(PAGE, 3.9, "aaaa;bcde", height_ratios=(1.0, 2.9))
-    _draw_field(panels["a"], table[table["part"] == "field"])
+    figure, (map_axes, *panels) = style.new_panels(PAGE, 3.9, "aaaa;bcde", height_ratios=(1.0, 2.9))
+    field = table[table["part"] == "field"]
+    grid = field.pivot(index="y", columns="x", values="velocity")
+    brightest = BRIGHT * float(grid.to_numpy().max())
+    look: Look = {"cmap": "RdBu_r", "vmin": -brightest, "vmax": brightest, "shading": "gouraud"}
+    image = map_axes.pcolormesh(grid.columns, grid.index, grid, rasterized=True, **look)
+    bar = figure.colorbar(image, ax=map_axes, aspect=6, pad=0.01, extend="max")
+    bar.set_label(r"$\dot u_x$")
+    map_axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
+    time, tau0, gamma = field[["time", "tau0", "gamma"]].iloc[0]
+    numbers = style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time)
+    map_axes.set_title(numbers, loc="right")
     ratios = table[table["part"] == "ratio"]
     ends = 0.8 * ratios["ratio"].min(), 1.25 * ratios["ratio"].max()
-    for letter, (quantity, name) in zip("bcde", QUANTITIES.items(), strict=True):
-        axes = panels[letter]
+    for axes, (quantity, name) in zip(panels, QUANTITIES.items(), strict=True):
         for (source, tau0), line in ratios[ratios["quantity"] == quantity].groupby(KEYS):
             line, colour = line.sort_values("pulse_width"), style.colour("tau_0", tau0)
             axes.plot(line["pulse_width"], line["ratio"], color=colour, **LOOKS[source])
@@ -60,24 +64,9 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set_title(name, loc="right")
         style.few_ticks(axes.xaxis, (2.0, 4.0, 8.0))
         style.few_ticks(axes.yaxis, (0.2, 0.5, 1.0, 2.0, 5.0))
-    panels["b"].set_ylabel("one dimension / plane")
+    panels[0].set_ylabel("one dimension / plane")
     handles = [entry(color=GREY, **look) for look in LOOKS.values()]
     for tau0 in ratios["tau0"].unique():
         handles.append(entry(rf"$\tau_0 = {tau0:g}$", color=style.colour("tau_0", tau0)))
     style.legend_below(figure, handles, 4)
     return figure
-
-
-def _draw_field(axes: Axes, field: pd.DataFrame) -> None:
-    """Draw the horizontal velocity over the layer, to scale."""
-    grid = field.pivot(index="y", columns="x", values="velocity")
-    x, y = grid.columns.to_numpy(), grid.index.to_numpy()
-    brightest = BRIGHT * float(grid.to_numpy().max())
-    look: Look = {"cmap": "RdBu_r", "vmin": -brightest, "vmax": brightest, "shading": "gouraud"}
-    image = axes.pcolormesh(x, y, grid.to_numpy(), rasterized=True, **look)
-    bar = axes.figure.colorbar(image, ax=axes, aspect=6, pad=0.01, extend="max")
-    bar.set_label(r"$\dot u_x$")
-    axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
-    time, tau0, gamma = field[["time", "tau0", "gamma"]].iloc[0]
-    numbers = style.conditions(True, tau_0=tau0, gamma=round(gamma, 3), time=time)
-    axes.set_title(numbers, loc="right")

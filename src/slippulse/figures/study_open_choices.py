@@ -45,7 +45,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw deviation over tolerance, a claim a row, the largest deviation above."""
     table = table.fillna({"choice": "", "release": ""})
     farthest = table.groupby(["id", "label"])["over"].max().sort_values()
-    figure = style.new_figure(COLUMN, 1.1 + 0.17 * len(farthest))
+    figure = Figure(figsize=(COLUMN, 1.1 + 0.17 * len(farthest)), layout="constrained")
     axes = figure.subplots()
     axes.axvspan(1.0 / BAND, BAND, color=GREY, alpha=0.15, linewidth=0)
     axes.axvline(1.0, color=BLACK, linewidth=0.8)

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..measurement.inference import curve, likely
-from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_mosaic
+from .style import BLACK, BLUE, GREY, ORANGE, PAGE, Look, few_ticks, new_panels
 
 NEEDS = {
     "studies": ["published_figure"],
@@ -45,21 +45,29 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw chi-square and regions over the damping ratio above, and residuals below."""
-    figure, axes = new_mosaic(PAGE, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
-    _draw_chi2(axes["a"], table)
-    _draw_region(axes["b"], table, "tau0", r"pre-stress $\tau_0$")
-    _draw_region(axes["c"], table, "gamma", r"elasticity ratio $\gamma$")
-    _draw_pulls(axes["d"], table)
+    figure, (*upper, pulls) = new_panels(PAGE, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
+    _draw_chi2(upper[0], table)
+    _draw_region(upper[1], table, "tau0", r"pre-stress $\tau_0$")
+    _draw_region(upper[2], table, "gamma", r"elasticity ratio $\gamma$")
+    for axes in upper:
+        axes.set(xscale="log", xlabel=r"damping ratio $b$")
+        few_ticks(axes.xaxis, (0.05, 0.1, 0.2, 0.3))
+    pulls.axhspan(-1.0, 1.0, color="0.92")
+    pulls.axhline(0.0, color=BLACK, linewidth=0.6)
+    for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
+        rows = _select(table, "best", release)
+        pulls.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
+    edges = {name: rf"edge, $t = {name.rpartition('_')[2]}$" for name in rows["reading"]}
+    labels = [NAMES.get(name, edge) for name, edge in edges.items()]
+    turned: Look = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
+    pulls.set_xticks(np.arange(len(labels)), labels, **turned)
+    pulls.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
+    pulls.legend(title="released by", loc="upper right", ncols=2)
     return figure
 
 
 def _select(table: pd.DataFrame, part: str, release: str) -> pd.DataFrame:
     return table[(table["part"] == part) & (table["release"] == release)]
-
-
-def _ratio_axis(axes: Axes) -> None:
-    axes.set(xscale="log", xlabel=r"damping ratio $b$")
-    few_ticks(axes.xaxis, (0.05, 0.1, 0.2, 0.3))
 
 
 def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
@@ -85,7 +93,6 @@ def _draw_chi2(axes: Axes, table: pd.DataFrame) -> None:
     axes.axhline(accepted, color=BLACK, linewidth=0.7, linestyle=":")
     look = {"transform": axes.get_yaxis_transform(), "fontsize": 7.0, "ha": "right", "va": "bottom"}
     axes.text(0.98, accepted, f"5 % at {dof} degrees of freedom", **look)
-    _ratio_axis(axes)
     axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
     axes.legend(loc="upper left", handletextpad=0.4, handlelength=1.4, borderaxespad=0.2)
 
@@ -109,19 +116,4 @@ def _draw_region(axes: Axes, table: pd.DataFrame, name: str, label: str) -> None
         for level, alpha in zip(LEVELS, (0.6, 0.25), strict=True):
             axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
         axes.legend(loc="upper left")
-    _ratio_axis(axes)
     axes.set(xlim=(0.045, 0.3), ylabel=label)
-
-
-def _draw_pulls(axes: Axes, table: pd.DataFrame) -> None:
-    """Draw what the best fits leave of each reading, in units of its error."""
-    axes.axhspan(-1.0, 1.0, color="0.92")
-    axes.axhline(0.0, color=BLACK, linewidth=0.6)
-    for (release, (colour, marker, label)), shift in zip(LOOKS.items(), (-0.12, 0.12), strict=True):
-        rows = _select(table, "best", release)
-        axes.plot(np.arange(len(rows)) + shift, rows["pull"], marker, color=colour, label=label)
-    edges = {name: rf"edge, $t = {name.rpartition('_')[2]}$" for name in rows["reading"]}
-    labels = [NAMES.get(name, edge) for name, edge in edges.items()]
-    axes.set_xticks(np.arange(len(labels)), labels, rotation=35, ha="right", rotation_mode="anchor")
-    axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
-    axes.legend(title="released by", loc="upper right", ncols=2)

@@ -40,7 +40,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a to c) each quantity over the paper's formula, (d) refined lattices."""
-    figure, (*grid, refined_axes) = style.new_panels(PAGE, 4.6, 2, 2)
+    figure, (*grid, refined_axes) = style.new_panels(PAGE, 4.6, "ab;cd")
     for axes, (quantity, label) in zip(grid, QUANTITIES.items(), strict=True):
         _draw_quantity(axes, table[table["quantity"] == quantity])
         gamma = table.loc[table["role"] == "simulation", "gamma"].iloc[0]

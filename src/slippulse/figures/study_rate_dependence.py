@@ -19,7 +19,7 @@ RATE = r"$\alpha/\sqrt{\gamma}$"
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) regimes, (b) width and slip of pulses, (c) maps of both regimes, (d) Gamma = 0."""
-    figure, (plane, pulses, maps, arrest) = style.new_panels(PAGE, 5.4, 2, 2)
+    figure, (plane, pulses, maps, arrest) = style.new_panels(PAGE, 5.4, "ab;cd")
     table = table.assign(over=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     roles = style.by_role(table)
     _draw_plane(plane, roles["lattice"], roles["limit"])

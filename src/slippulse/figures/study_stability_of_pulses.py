@@ -60,7 +60,7 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) slip across the step, (b) its distance from the new steady slip, (c) velocity."""
-    figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE, 3.2, 1, 3)
+    figure, (slip_axes, rest_axes, velocity_axes) = style.new_panels(PAGE, 3.2, "abc")
     slip = table[table["role"].isin(["exact", "lattice"])]
     for level, rows in slip.groupby("level"):
         _draw_level(slip_axes, rest_axes, rows.sort_values("x"), level)

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from string import ascii_lowercase
 from textwrap import fill
 from typing import Any, NamedTuple, TypeAlias
 
@@ -132,20 +131,15 @@ def as_given(data: Mapping, tables: Mapping, settings: Mapping) -> pd.DataFrame:
     return table
 
 
-def new_figure(width: float, height: float) -> Figure:
-    """Make an empty figure in the house style, ``width`` by ``height`` inches."""
-    return Figure(figsize=(width, height), layout="constrained")
-
-
 def new_panels(
-    width: float, height: float, rows: int, columns: int, **options: Any
+    width: float, height: float, letters: str, **options: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make an empty figure with lettered panels in the order of reading, and return both."""
-    figure = new_figure(width, height)
-    panels = list(figure.subplots(rows, columns, squeeze=False, **options).flat)
-    for axes, letter in zip(panels, ascii_lowercase, strict=False):
+    """Make a figure with lettered panels, as wide as in rows of letters such as "aab;ccc"."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    panels = figure.subplot_mosaic(letters, **options)
+    for letter, axes in panels.items():
         panel_letter(axes, letter)
-    return figure, panels
+    return figure, [*panels.values()]
 
 
 def small_inset(axes: Axes, box: Box, title: str) -> Axes:
@@ -154,17 +148,6 @@ def small_inset(axes: Axes, box: Box, title: str) -> Axes:
     inset.tick_params(labelsize=SMALL, length=1.5, pad=1.5)
     inset.set_title(title, fontsize=SMALL, pad=2.5)
     return inset
-
-
-def new_mosaic(
-    width: float, height: float, rows: str, **options: Any
-) -> tuple[Figure, dict[str, Axes]]:
-    """Make an empty figure whose panels are as wide as their letters in ``rows`` say."""
-    figure = new_figure(width, height)
-    panels = figure.subplot_mosaic(rows, **options)
-    for letter, axes in panels.items():
-        panel_letter(axes, letter)
-    return figure, panels
 
 
 def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
@@ -228,34 +211,25 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> Non
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, **look)
 
 
-def add_note(figure: Figure, note: str) -> None:
-    """Write a note below a figure, which gets higher by its lines; nothing if it is empty."""
-    if not note:
-        return
-    width, height = figure.get_size_inches()
-    text = fill(note, int(width * NOTE_DENSITY))
-    added = NOTE_GAP + NOTE_LINE * (1 + text.count("\n"))
-    figure.set_size_inches(width, height + added)
-    bottom = added / (height + added)
-    engine = figure.get_layout_engine()
-    if isinstance(engine, ConstrainedLayoutEngine):
-        engine.set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
-    look: Look = {"ha": "right", "va": "bottom", "fontsize": 7.0, "color": ORANGE}
-    figure.text(0.995, 0.005, text, **look).set_in_layout(False)
-
-
 def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = "") -> None:
-    """Write PNG and PDF with no clock in them; the layout is found once, for the PNG.
-
-    note : what an altered configuration changed, written below the figure
-    """
-    add_note(figure, note)
+    """Write PNG and PDF with no clock in them, and below the figure what ``note`` has to say."""
+    if note:
+        width, height = figure.get_size_inches()
+        text = fill(note, int(width * NOTE_DENSITY))
+        added = NOTE_GAP + NOTE_LINE * (1 + text.count("\n"))
+        figure.set_size_inches(width, height + added)
+        bottom = added / (height + added)
+        engine = figure.get_layout_engine()
+        if isinstance(engine, ConstrainedLayoutEngine):
+            engine.set(rect=(0.0, bottom, 1.0, 1.0 - bottom))
+        look: Look = {"ha": "right", "va": "bottom", "fontsize": 7.0, "color": ORANGE}
+        figure.text(0.995, 0.005, text, **look).set_in_layout(False)
     # A spine ends where its axes do, and the layout asks the axes.
     for axes in figure.axes:
         axes.spines[:].set_in_layout(False)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    # With a layout engine the PDF would be drawn twice.
+    # The layout is that of the PNG: with an engine the PDF would be drawn twice.
     figure.set_layout_engine(None)
     made_by = f"configuration {configuration()}" if configuration() else None
     vectors = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": made_by}

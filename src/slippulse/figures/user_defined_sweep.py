@@ -20,7 +20,7 @@ AXES = {
     "release": "release rule",
     "dx": r"$\Delta x$",
 }
-PANELS, ROWS = 6, 2
+ROWS = "abc;def"
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
@@ -63,8 +63,8 @@ def _text(value: float | str) -> str:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel a quantity; markers are runs (open: flagged), lines exact theory."""
     table = table.assign(series=table["series"].astype(object).fillna(""))
-    quantities = list(dict.fromkeys(table["quantity"]))[:PANELS]
-    figure, panels = new_panels(PAGE, 4.2, ROWS, PANELS // ROWS)
+    figure, panels = new_panels(PAGE, 4.2, ROWS)
+    quantities = list(dict.fromkeys(table["quantity"]))[: len(panels)]
     for axes, quantity in zip(panels, quantities, strict=False):
         draw_quantity(axes, table[table["quantity"] == quantity])
     for axes in panels[len(quantities) :]:

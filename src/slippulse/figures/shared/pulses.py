@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -30,8 +29,6 @@ FIELDS = {
     },
 }
 DISTANCE = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
-
-
 # The level gives a run its colour, and another column its line style.
 STYLED = {"displacement": "damping_ratio", "stress": "width"}
 STYLES = ("-", "--", ":", "-.")
@@ -54,55 +51,37 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     velocity over that width, since the exact acceleration has no bound.
     """
     window = settings["measure"]["front_window"]
-    profiles = tables["pulse_profiles"].groupby("simulation")
-    parts = [
-        _sweep_rows(sweep, tables[name], profiles.get_group(name), window)
-        for name, sweep in data.items()
-    ]
+    profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
+    parts = []
+    for name, sweep in data.items():
+        runs = tables[name]
+        boundary = str(runs["boundary"].iloc[0])
+        runs = runs[runs["left"].isin(spread_values(runs["left"], LEVELS[boundary]))]
+        rows = [runs[PARAMETERS].assign(role="run", run=runs.index)]
+        for index, numbers in runs.iterrows():
+            exact = profiles.get_group((name, index)).assign(role="exact")
+            if boundary == "displacement":
+                length = numbers["exact_pulse_width"]
+                extent = -(1.0 + BEHIND) * length, AHEAD * length
+                kinds = ("width", "slip", "peak_velocity", "acceleration")
+                units = [numbers[f"paper_pulse_{kind}"] for kind in kinds]
+            else:
+                length = float(np.ptp(exact["x"]))
+                extent = -length, AHEAD * length
+                width, peak = numbers["width"], numbers["exact_largest_velocity"]
+                units = [width, exact["slip"].max(), peak, peak / width]
+            run = point(sweep, int(index))
+            pulse = leading_pulse(run, window)
+            profile = pd.DataFrame(comoving(run, pulse))
+            inside = profile[profile["xi"].between(*extent)]
+            simulated = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
+            x = simulated["xi"] - (pulse.peak_distance - pulse.front)
+            both = pd.concat([simulated.assign(role="simulation", x=x), exact])
+            curves = (both[["x", *FIELDS]] / units).round(DECIMALS)
+            curves.insert(0, "role", both["role"])
+            rows.append(curves.assign(run=index))
+        parts.append(pd.concat(rows).assign(panel=boundary))
     return pd.concat(parts, ignore_index=True)
-
-
-def _sweep_rows(
-    sweep: xr.Dataset, runs: pd.DataFrame, profiles: pd.DataFrame, window: float
-) -> pd.DataFrame:
-    boundary = runs["boundary"].iloc[0]
-    runs = runs[runs["left"].isin(spread_values(runs["left"], LEVELS[boundary]))]
-    parts = [runs[PARAMETERS].assign(role="run", run=runs.index)]
-    for index, numbers in runs.iterrows():
-        exact = profiles[profiles["run"] == index].assign(role="exact")
-        simulated = _simulated_pulse(point(sweep, int(index)), window, _extent(numbers, exact))
-        both = pd.concat([simulated.assign(role="simulation"), exact])
-        units = zip(("x", *FIELDS), _units(numbers, exact), strict=True)
-        curves = {name: (both[name] / unit).round(DECIMALS) for name, unit in units}
-        parts.append(pd.DataFrame({"role": both["role"], "run": index, **curves}))
-    return pd.concat(parts, ignore_index=True).assign(panel=boundary)
-
-
-def _simulated_pulse(run: xr.Dataset, window: float, extent: tuple[float, float]) -> pd.DataFrame:
-    """Fields of the leading pulse of a run over x, thinned to POINTS."""
-    pulse = leading_pulse(run, window)
-    profile = pd.DataFrame(comoving(run, pulse))
-    inside = profile[profile["xi"].between(*extent)]
-    thinned = inside.iloc[:: int(np.ceil(len(inside) / POINTS))]
-    return thinned.assign(x=thinned["xi"] - (pulse.peak_distance - pulse.front))
-
-
-def _extent(numbers: pd.Series, exact: pd.DataFrame) -> tuple[float, float]:
-    """First and last distance from the front at which a simulated pulse is drawn."""
-    if numbers["boundary"] == "displacement":
-        length = numbers["exact_pulse_width"]
-        return -(1.0 + BEHIND) * length, AHEAD * length
-    length = float(np.ptp(exact["x"]))
-    return -length, AHEAD * length
-
-
-def _units(numbers: pd.Series, exact: pd.DataFrame) -> list[float]:
-    """Units of x and of the fields of a run, as `pulse_table` explains them."""
-    if numbers["boundary"] == "displacement":
-        kinds = ("width", "slip", "peak_velocity", "acceleration")
-        return [numbers[f"paper_pulse_{kind}"] for kind in kinds]
-    width, peak = numbers["width"], numbers["exact_largest_velocity"]
-    return [width, exact["slip"].max(), peak, peak / width]
 
 
 def run_looks(table: pd.DataFrame) -> dict[int, tuple[Any, str]]:
@@ -130,7 +109,7 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
 
 def plot_fields(table: pd.DataFrame) -> Figure:
     """Draw figures 8 and 9: the three fields of the pulses of one boundary."""
-    figure, panels = style.new_panels(PAGE, 2.8, 1, 3)
+    figure, panels = style.new_panels(PAGE, 2.8, "abc")
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
     panels[1].set_title(title(table))

@@ -1,6 +1,5 @@
 """T_trans and L_trans of every run over the paper's formulas, with exact theory as lines."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -28,8 +27,8 @@ SHORT = 40.0
 def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """One row a run: parameters, length and time as measured, by the paper, and exact."""
     runs = pd.concat(tables.values(), ignore_index=True)
-    kept = ["boundary", "left", "right", "width", "gamma"]
-    kept += ["damping_ratio", "beta", "dx", "run_flags"]
+    kept = ["boundary", "left", "right", "width", "gamma", "damping_ratio", "beta", "dx"]
+    kept.append("run_flags")
     for name in QUANTITIES:
         kept += [f"transition_{name}", f"paper_transition_{name}", f"exact_transition_{name}"]
     return runs[kept].rename(columns=lambda column: column.replace("transition_", ""))
@@ -102,20 +101,9 @@ def coloured(boundary: str, column: str) -> str:
     return LEVEL[boundary] if column == "left" else column
 
 
-def colour_bar(
-    figure: Figure, axes: Iterable[Axes], boundary: str, column: str, **options: Any
-) -> None:
-    """Add the bar of the colours of a column: the level (left), gamma or W."""
-    quantity = coloured(boundary, column)
-    # The scale of tau_l is stretched, and ticks at equal distances would overlap.
-    ticks = [-2.0, -1.0, -0.5, 0.0] if quantity == "tau_l" else None
-    bar = figure.colorbar(style.colour_scale(quantity), ax=list(axes), ticks=ticks, **options)
-    bar.set_label(f"${SYMBOLS[quantity]}$")
-
-
 def damping_figure(table: pd.DataFrame) -> Figure:
     """Draw figures 10 and 11: the collapse in colours of b, and in insets the ratio against b."""
-    boundary = table["boundary"].iloc[0]
+    boundary, ratios = table["boundary"].iloc[0], np.sort(table["damping_ratio"].unique())
     other = OTHER[boundary]
     middle = spread_values(table[other], DRAWN)[1]
     few = table[(table[other] == middle) & table["left"].isin(spread_values(table["left"], DRAWN))]
@@ -123,25 +111,22 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     colours = {"c": run_colours(runs, "damping_ratio"), "edgecolors": np.ones((len(runs), 4))}
     spacing = runs["dx"] / runs["width"]
     spacings = rf"$\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
-    figure, panels = style.new_panels(PAGE, 3.5, 1, 2)
+    figure, panels = style.new_panels(PAGE, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, runs, quantity, colours)
         axes.set_title(rf"$\Gamma = {int(boundary == 'displacement')}$, {spacings}")
         # The runs lie above equality, so that the corner below it is free.
         inset = ratio_inset(axes, BELOW, few, quantity, "damping_ratio", "left")
-        _damping_axis(inset, np.sort(table["damping_ratio"].unique()))
-    shown = runs.drop_duplicates("damping_ratio")
-    pairs = zip(shown["damping_ratio"], run_colours(shown, "damping_ratio"), strict=True)
-    handles = [entry(f"$b = {ratio:g}$", marker="o", color=colour) for ratio, colour in pairs]
+        # The axis of the damping ratio has 0.
+        inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
+        style.few_ticks(inset.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
+        inset.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
+        inset.set_xlabel("$b$", fontsize=SMALL, labelpad=0.0)
+    handles = []
+    for ratio in ratios:
+        colour = style.colour("damping_ratio", ratio)
+        handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
     name = f"exact, ${SYMBOLS[other]}$ = {middle:g} (insets)"
     handles.append(entry(name, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure
-
-
-def _damping_axis(axes: Axes, ratios: np.ndarray) -> None:
-    """Scale and tick the axis of the damping ratio, which has 0."""
-    axes.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
-    style.few_ticks(axes.xaxis, ratios[:: 2 if len(ratios) > 4 else 1])
-    axes.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
-    axes.set_xlabel("$b$", fontsize=SMALL, labelpad=0.0)
