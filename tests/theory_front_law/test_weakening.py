@@ -5,10 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from slippulse.theory.weakening import (
-    undamped_weakening_slip,
-    weakening_pulse,
-)
+from slippulse.theory import undamped_weakening_slip, weakening_pulse
 
 GAMMA = 2.0 / 3.0
 # tau_0^2/(gamma d_c) at which the front runs at the wave speed, and below which nothing sticks.

@@ -18,8 +18,7 @@ from ..model.prestress import Prestress
 from ..model.scene import Scene
 from ..simulation.sweep import recorded
 from ..solver.fixed_step import solve_by_scheme
-from ..theory.rate_dependent import rate_pulse
-from ..theory.weakening import weakening_pulse
+from ..theory.friction_laws import rate_pulse, weakening_pulse
 from .right_side import CRACK, CREEPING, STICKING, pulse_at, right_of_centre, sliding_part
 
 NEEDS = {"settings": ["measure"]}

@@ -15,7 +15,7 @@ from ..theory.closed_pulse import (
     paper_transition_displacement,
     paper_transition_stress,
 )
-from ..theory.weakening import undamped_weakening_slip, weakening_pulse
+from ..theory.friction_laws import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {"settings": ()}
 

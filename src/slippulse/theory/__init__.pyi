@@ -11,6 +11,10 @@ from .dimensional import damage_zone_stress_drop as damage_zone_stress_drop
 from .exact_transition import ExactTransition as ExactTransition
 from .exact_transition import exact_transition_displacement as exact_transition_displacement
 from .exact_transition import uniform_transition_time as uniform_transition_time
+from .friction_laws import SteadyRupture as SteadyRupture
+from .friction_laws import rate_pulse as rate_pulse
+from .friction_laws import undamped_weakening_slip as undamped_weakening_slip
+from .friction_laws import weakening_pulse as weakening_pulse
 from .front_motion import SteadyFront as SteadyFront
 from .front_motion import steady_front as steady_front
 from .front_speeds import continuum_front_speed as continuum_front_speed
@@ -22,11 +26,6 @@ from .fronts import Fronts as Fronts
 from .fronts import slip_velocity as slip_velocity
 from .pulse import critical_rate_strengthening as critical_rate_strengthening
 from .pulse import steady_pulse as steady_pulse
-from .rate_dependent import RatePulse as RatePulse
-from .rate_dependent import rate_pulse as rate_pulse
 from .rupture import FrontEnd as FrontEnd
 from .rupture import Limit as Limit
 from .rupture import Rupture as Rupture
-from .weakening import SteadyRupture as SteadyRupture
-from .weakening import undamped_weakening_slip as undamped_weakening_slip
-from .weakening import weakening_pulse as weakening_pulse

@@ -1,5 +1,7 @@
 """A crack under a stress boundary, in closed form: its left front meets negative pre-stress."""
 
+from functools import partial
+
 import numpy as np
 
 from ..model.balance import prestress_balance_position
@@ -58,16 +60,10 @@ class ArrestingCrack:
         float : e, to the right of x*
         """
         check_number("position", position, above=self.balance_position, at_most=self.zero)
-        last = self.end - 1e-9
-        if self.prestress.integral(position, last) <= 0.0:
-            allowed = (
-                f"farther from x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
-            )
-            raise ValueError(f"position: {position!r}; allowed: {allowed}")
-
-        def balance(entry: float) -> float:
-            return self.prestress.integral(position, entry)
-
+        last, balance = self.end - 1e-9, partial(self.prestress.integral, position)
+        if balance(last) <= 0.0:
+            limit = f"x_minus = {self.balance_position:.10g}, for entries <= {last:g}"
+            raise ValueError(f"position: {position!r}; allowed: farther from {limit}")
         return root_between(balance, self.zero, last, xtol=1e-13)
 
     def time_at(self, position: float) -> float:
@@ -112,9 +108,8 @@ class ArrestingCrack:
         -------
         float
         """
-        time = self.time_at_fraction(fraction)
-        last = float(self.fronts.curve.edges[-1])
-        last_time = float(self.fronts.curve.edge_times[-1])
+        time, curve = self.time_at_fraction(fraction), self.fronts.curve
+        last, last_time = float(curve.edges[-1]), float(curve.edge_times[-1])
         right = last + time - last_time if time >= last_time else self.fronts.reached(time, 1.0)
         return right - fraction * self.balance_position
 
@@ -135,9 +130,8 @@ class ArrestingCrack:
         tuple of arrays : x - t of the characteristics, and du/dt on them
         """
         check_number("count", count, integer=True, at_least=2, at_most=10_000)
-        right = np.linspace(2.0 * self.reach, 0.0, count)
-        left = np.linspace(0.0, self.zero, count)[1:]
-        entries = np.concatenate([right, left])
+        right, left = np.linspace(2.0 * self.reach, 0.0, count), np.linspace(0.0, self.zero, count)
+        entries = np.concatenate([right, left[1:]])
         delay = entries - self.fronts.arrival(entries)
         # Denser towards x_minus, which is never reached.
         fraction = 1.0 - np.geomspace(1.0, 1e-9, count)[1:]

@@ -117,7 +117,16 @@ class FastFront:
 
     def between(self, level: float, start: Point, end: float) -> list[Panel]:
         """Panels of a front that goes right from a point over a part of one piece."""
-        edges = self._first_edges(level, start.x, end)
+        longest = self.longest(level)
+        if (end - start.x) * self.refinement > MOST_PANELS * longest:
+            raise self._too_many(level, end - start.x)
+        # Edges of panels that are short enough for the waves, with one at each feature.
+        inner = self.features[(self.features > start.x) & (self.features < end)]
+        rough = np.concatenate([[start.x], inner, [end]])
+        count = self.refinement * np.ceil(np.diff(rough) / longest).astype(int)
+        parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
+        edges = np.unique(np.concatenate(parts))
+        edges[0], edges[-1] = start.x, end
         while True:
             half = 0.5 * np.diff(edges)[:, None]
             x = edges[:-1, None] + half * (1.0 + NODES)
@@ -135,19 +144,6 @@ class FastFront:
         within = times[:-1, None] + (half * slowness) @ CUMULATIVE.T
         columns = x, within, tau * half, pairwise(edges), pairwise(times)
         return [Panel(*row) for row in zip(*columns, strict=True)]
-
-    def _first_edges(self, level: float, start: float, end: float) -> np.ndarray:
-        """Edges of panels that are short enough for the waves, with one at each feature."""
-        longest = self.longest(level)
-        if (end - start) * self.refinement > MOST_PANELS * longest:
-            raise self._too_many(level, end - start)
-        inner = self.features[(self.features > start) & (self.features < end)]
-        rough = np.concatenate([[start], inner, [end]])
-        count = self.refinement * np.ceil(np.diff(rough) / longest).astype(int)
-        parts = [np.linspace(a, b, n + 1) for (a, b), n in zip(pairwise(rough), count, strict=True)]
-        edges = np.unique(np.concatenate(parts))
-        edges[0], edges[-1] = start, end
-        return edges
 
     def _too_many(self, level: float, distance: float) -> ValueError:
         return ValueError(

@@ -70,7 +70,12 @@ def _changes(
 ) -> tuple[bool, list[float]]:
     """Tell whether tau >= value at the left end, and where that changes: twice at a contact."""
     left, right, level = interval
-    x = _samples(prestress, left, right)
+    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
+    x = np.concatenate([centre + width * fine for centre, width in gaussians(prestress)])
+    # Beyond every Gaussian a side has its last level.
+    first = left if np.isfinite(left) else min(float(x.min()), right) - 1.0
+    last = right if np.isfinite(right) else max(float(x.max()), left) + 1.0
+    x = np.unique(np.concatenate([x[(x > left) & (x < right)], [first, last]]))
 
     def excess(position: float) -> float:
         return float(analytic(prestress, level, np.asarray(position))) - value
@@ -87,13 +92,3 @@ def _changes(
         else:
             changes.append(root_between(excess, x[k], x[k + 1], xtol=1e-14))
     return bool(above[0]), changes
-
-
-def _samples(prestress: Prestress, left: float, right: float) -> np.ndarray:
-    """Positions of an interval that show each sign change, with both ends or far positions."""
-    fine = np.linspace(-EXTENT, EXTENT, int(2 * EXTENT * SAMPLES) + 1)
-    x = np.concatenate([centre + width * fine for centre, width in gaussians(prestress)])
-    # Beyond every Gaussian a side has its last level.
-    first = left if np.isfinite(left) else min(float(x.min()), right) - 1.0
-    last = right if np.isfinite(right) else max(float(x.max()), left) + 1.0
-    return np.unique(np.concatenate([x[(x > left) & (x < right)], [first, last]]))

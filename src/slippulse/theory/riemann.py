@@ -20,7 +20,6 @@ import math
 from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import accumulate
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -86,22 +85,12 @@ def _decaying(k: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) ->
     return (np.array(starts[:-1])[:, None] + (source * within) @ CUMULATIVE.T) / within
 
 
-class Sources(NamedTuple):
-    """The curve as points behind it see it, with one row a point and one column a node.
-
-    d_xi is xi - g and d_eta is eta - h; kernel(order) is K or a derivative of it.
-    """
-
-    d_xi: np.ndarray
-    d_eta: np.ndarray
-    kernel: Callable[[int], np.ndarray]
-    panels: slice
-
-
 class Past:
     """The domains of dependence of points (y, time), flat arrays, behind a curve.
 
-    gamma may differ from point to point for du/dt.
+    gamma may differ from point to point for du/dt. An integrand along some panels of the curve is a
+    function of xi - g and eta - h, with one row a point and one column a node; of a function of the
+    order, K or a derivative of it; and of the slice of these panels.
     """
 
     def __init__(
@@ -120,7 +109,7 @@ class Past:
     def slip_velocity(self) -> np.ndarray:
         """du/dt."""
         source = self.curve.source
-        return 0.5 * self._along(lambda sources: sources.kernel(0) * source[sources.panels].ravel())
+        return 0.5 * self._along(lambda _, __, kernel, panels: kernel(0) * source[panels].ravel())
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of du/dt by t - y and by t + y, from its ends and its kernel."""
@@ -139,9 +128,9 @@ class Past:
             return -0.5 * left - lag, 0.5 * right - lag
         source, k = self.curve.source, self.stiffness
 
-        def integrand(sources: Sources) -> np.ndarray:
-            growth = sources.kernel(1) * source[sources.panels].ravel()
-            return np.stack([growth * sources.d_eta, growth * sources.d_xi])
+        def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
+            growth = kernel(1) * source[panels].ravel()
+            return np.stack([growth * d_eta, growth * d_xi])
 
         by_xi, by_eta = self._along(integrand, (2,))
         return 0.5 * (k * by_xi - left) - lag, 0.5 * (k * by_eta + right) - lag
@@ -150,13 +139,11 @@ class Past:
         """u."""
         k, alpha = self.stiffness, self.alpha
 
-        def integrand(sources: Sources) -> np.ndarray:
-            p, slope, d_time, d_early, d_late = rest.on(sources.panels)
-            out = sources.kernel(0) * (-slope * d_time - 0.25 * alpha * p * (d_late - d_early))
-            if k:
-                sides = sources.d_eta * (k * p * d_early) - sources.d_xi * (k * p * d_late)
-                out += sources.kernel(1) * sides
-            return out
+        def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
+            p, slope, d_time, d_early, d_late = rest.on(panels)
+            push = -slope * d_time - 0.25 * alpha * p * (d_late - d_early)
+            sides = d_eta * (k * p * d_early) - d_xi * (k * p * d_late)
+            return kernel(0) * push + kernel(1) * sides
 
         return self._less_ends(rest, 0) + 0.5 * self._along(integrand)
 
@@ -167,10 +154,10 @@ class Past:
         if k == alpha == 0.0:
             return out
 
-        def integrand(sources: Sources) -> np.ndarray:
-            p, slope, d_time, d_early, d_late = rest.on(sources.panels)
-            d_xi, d_eta, first = sources.d_xi, sources.d_eta, sources.kernel(1)
-            growth = k**2 * sources.kernel(2) * (d_eta * (p * d_early) - d_xi * (p * d_late))
+        def integrand(d_xi, d_eta, kernel, panels) -> np.ndarray:
+            p, slope, d_time, d_early, d_late = rest.on(panels)
+            first = kernel(1)
+            growth = k**2 * kernel(2) * (d_eta * (p * d_early) - d_xi * (p * d_late))
             sides = first * (k * p * (d_early + d_late))
             push = k * (slope * d_time + 0.25 * alpha * p * (d_late - d_early))
             return (d_eta - d_xi) * (first * push - growth) + sides
@@ -201,7 +188,7 @@ class Past:
         return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
 
     def _along(
-        self, integrand: Callable[[Sources], np.ndarray], components: tuple[int, ...] = ()
+        self, integrand: Callable[..., np.ndarray], components: tuple[int, ...] = ()
     ) -> np.ndarray:
         """Integrals over each domain of an integrand, per unit of the parameter of the panels."""
         curve, out = self.curve, np.empty((*components, self.xi.size))
@@ -222,7 +209,7 @@ class Past:
             z *= d_eta
             # It is the sign of k that counts here: gamma may vary for alpha = 0 only.
             kernel = kernel_of(stiffness[0, 0], z, z.reshape(low.size, -1, COUNT)[ends])
-            values = integrand(Sources(d_xi, d_eta, kernel, panels))
+            values = integrand(d_xi, d_eta, kernel, panels)
             if self.alpha:
                 values = values * decay(self.alpha, d_xi, d_eta)
             boxes = values.reshape(*components, low.size, -1, COUNT)

@@ -243,8 +243,8 @@ class SlowFront:
         entries = self.curve.evaluate("x", np.full(COUNT, chunk.panel), chunk.parameters())
         start = np.array([chunk.panel]), np.array([chunk.start])
         first, source = (float(self.curve.evaluate(name, *start)[0]) for name in ("x", "source"))
-        slope = float(self.curve.evaluate("x", *start, order=1)[0])
-        at_entry, here = source / slope, float(self.tau(np.array(self.x0)))
+        at_entry = source / float(self.curve.evaluate("x", *start, order=1)[0])
+        here = float(self.tau(np.array(self.x0)))
         pace = at_entry / -here if here < -1e-6 and at_entry > 0.0 else 1.0
         return self.x0 + min(max(pace, 1e-3), 10.0) * (first - entries)
 

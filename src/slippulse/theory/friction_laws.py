@@ -1,6 +1,6 @@
-"""Steady ruptures under friction that weakens linearly with slip, in the damped continuum.
+"""Steady ruptures under other laws of friction: U(xi), xi = x - v t <= 0, behind a front.
 
-Behind a front of speed v, U(xi) with xi = x - v t <= 0 obeys
+Under friction that weakens linearly with slip, in the damped continuum, at speed v,
 
     beta v U''' + (v^2 - 1) U'' + gamma U = tau_0 - max(0, 1 - U/d_c)
 
@@ -8,6 +8,11 @@ with U = U' = U'' = 0 at the front: damping keeps slip velocity and its slope co
 pulse sticks U' = U'' = 0 too. On either side of U = d_c the equation is linear, and U is a sum of
 three exponentials. One of them grows behind the front; the speed is the one at which the pulse
 sticks, or at which the growing exponential is absent.
+
+Friction f(V) that depends on slip rate, V = -v U', is 0 at rest: a front does not feel it. In the
+limit dx -> 0 at fixed beta/dx
+
+    (v^2 - 1) U'' + gamma U = tau_0 - f(V),   U(0) = U'(0) = 0.
 """
 
 import math
@@ -16,9 +21,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.balance import root_to_last_bit
-from ..model.checks import check_number
+from ..model.checks import check_number, short_repr
+from ..model.friction_laws.law import Friction
 from ..model.roots import root_between
 from .domains import check_domains
+from .front_speeds import front_speed
 
 # Speeds between which that of the rupture is looked for.
 SLOWEST, FASTEST = 0.05, 50.0
@@ -29,6 +36,9 @@ FASTER = 1.1
 NEAREST, FARTHEST, FACTOR = 1e-2, 60.0, 1.01
 # Below this fraction of the bounded exponentials the growing one is rounding.
 ABSENT = 1e-6
+# Half-periods of leaf springs in which slip under laws of slip rate must stop, or it creeps, and
+# steps in each of them, so that no stop is missed.
+HALF_PERIODS, STEPS = 12.0, 100
 
 
 @dataclass(frozen=True)
@@ -36,11 +46,13 @@ class SteadyRupture:
     """Steady rupture under a law of friction: speed (wave speeds), width (H), and slip (U).
 
     One that does not stick is a crack with a decaying tail, of infinite width and slip tau_0/gamma.
+    `rate_pulse` alone finds the largest slip velocity.
     """
 
     speed: float
     width: float
     slip: float
+    peak_velocity: float = math.nan
 
     @property
     def sticks(self) -> bool:
@@ -173,3 +185,59 @@ def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> floa
     check_domains(tau0=tau0, gamma=gamma)
     check_number("weakening", weakening, at_least=0.0, at_most=tau0**2 / gamma)
     return float((tau0 + math.sqrt(tau0**2 - gamma * weakening)) / gamma)
+
+
+def rate_pulse(
+    tau0: float, gamma: float, damping_ratio: float, friction: Friction
+) -> SteadyRupture:
+    """Steady pulse in uniform pre-stress under friction that depends on slip rate alone.
+
+    Source: derived in the supplement, section on friction that depends on slip rate.
+    Raises ValueError: outside the domain.
+
+    Parameters
+    ----------
+    tau0, gamma, damping_ratio : floats, pre-stress, in (0, 1), gamma > 0, and beta/dx, >= 0
+    friction : Friction, a law that is 0 at rest and does not depend on slip
+
+    Returns
+    -------
+    SteadyRupture : of infinite width and slip tau_0/gamma where slip creeps on
+
+    Examples
+    --------
+    >>> law = sp.friction("bounded_rate", limit=0.3, v_0=1.0)
+    >>> round(rate_pulse(0.5, 2 / 3, 0.1, law).slip, 4)
+    1.1605
+    """
+    # Slow to load.
+    from scipy.integrate import solve_ivp
+
+    check_domains(tau0=tau0, gamma=gamma)
+    constants = friction.constants
+    if friction.friction(0.0, 0.0, *constants) != 0.0:
+        allowed = "laws that depend on slip rate alone"
+        raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
+    v = float(front_speed(tau0, damping_ratio))
+    inertia = (v - 1.0) * (v + 1.0)
+    half_period = math.pi * math.sqrt(inertia / gamma)
+
+    def slopes(distance: float, state: np.ndarray) -> list[float]:
+        slip, strain = state
+        resistance = friction.friction(slip, v * strain, *constants)
+        return [strain, (tau0 - resistance - gamma * slip) / inertia]
+
+    def strain(distance: float, state: np.ndarray) -> float:
+        return state[1]
+
+    def curvature(distance: float, state: np.ndarray) -> float:
+        return slopes(distance, state)[1]
+
+    strain.terminal, strain.direction = True, -1.0  # type: ignore[attr-defined]
+    accuracy = {"rtol": 1e-10, "atol": 1e-12, "max_step": half_period / STEPS}
+    span = (0.0, HALF_PERIODS * half_period)
+    path = solve_ivp(slopes, span, [0.0, 0.0], events=[strain, curvature], **accuracy)
+    peak = v * max(float(state[1]) for state in path.y_events[1])
+    if path.status != 1:
+        return SteadyRupture(v, math.inf, tau0 / gamma, peak)
+    return SteadyRupture(v, float(path.t[-1]), float(path.y[0, -1]), peak)
