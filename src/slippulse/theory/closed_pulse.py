@@ -55,17 +55,15 @@ class SteadyPulse:
         """
         xi = as_numbers("xi", xi)
         p, q = self.growth, self.wavenumber
-        v = self.speed
         inside = (xi <= 0.0) & (xi >= -self.width)
         y = np.where(inside, xi, 0.0)
-        size = v * self.tau0 * (p**2 + q**2) / (self.gamma * q)
-        decay = np.exp(p * y)
         sine, cosine = np.sin(q * y), np.cos(q * y)
-        offset = self.tau0 / self.gamma
-        slip = np.where(inside, offset * (1.0 - decay * (cosine - p / q * sine)), 0.0)
-        slip = np.where(xi < -self.width, self.slip, slip)
+        decay = np.exp(p * y)
+        slip = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
+        slip = np.select([inside, xi < -self.width], [slip, self.slip])
+        size = self.speed * self.tau0 * (p**2 + q**2) / (self.gamma * q)
         velocity = np.where(inside, -size * decay * sine, 0.0)
-        acceleration = np.where(inside, v * size * decay * (p * sine + q * cosine), 0.0)
+        acceleration = np.where(inside, self.speed * size * decay * (p * sine + q * cosine), 0.0)
         return slip, velocity, acceleration
 
 

@@ -174,13 +174,14 @@ class SlowFront:
             if chunk.start - chunk.stop < SHORTEST:
                 return self.straight(mark)
             x = self.solve(chunk)
-            returns = x is not None and _goes_back(x)
-            # This close to a mark rounding may send a front back.
-            if x is None or (returns and mark - self.x0 < NEAR_MARK * self.size):
+            if x is not None and _goes_back(x):
+                if mark - self.x0 >= NEAR_MARK * self.size:
+                    return Advance(None, "dead")
+                # This close to a mark rounding may send a front back.
+                x = None
+            if x is None:
                 chunk, corrections = chunk.half(), 0
                 continue
-            if returns:
-                return Advance(None, "dead")
             s, stop = _first_event(x, mark, BEYOND if corrections else 1.0)
             near = AT_END if corrections <= MANY else NEAR_END
             if s < np.inf and (corrections == 0 or abs(s - 1.0) >= near):
