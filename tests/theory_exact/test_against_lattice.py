@@ -24,11 +24,8 @@ RICHARDSON = 1e-4
 
 def lattice_run(profile, gamma, ratio, duration, dx, samples=None, alpha=0.0):
     boundary = "displacement" if gamma else "stress"
-    values = {
-        "gamma": gamma,
-        "beta": ratio * dx,
-        "friction": sp.friction("linear_rate", alpha=alpha),
-    }
+    friction = sp.friction("linear_rate", alpha=alpha)
+    values = {"gamma": gamma, "beta": ratio * dx, "friction": friction}
     scene = sp.Scene(boundary, profile, duration, dx, max_step=0.5, order=8, **values)
     return sp.simulate(scene, samples=samples)
 
@@ -41,13 +38,11 @@ def nearest(run, x, *quantities):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_lattices_tend_to_the_exact_rupture_at_first_order(name):
-    *scene, positions, alpha = (*SCENES[name], 0.0)[:6]
-    profile, gamma, ratio, duration = scene
-    x = np.array(positions)
-    exact = Rupture(profile, gamma, ratio, "total", duration, rate_strengthening=alpha)
+    *scene, duration, x, alpha = (*SCENES[name], 0.0)[:6]
+    exact = Rupture(*scene, "total", duration, rate_strengthening=alpha)
     truth = np.array([exact.release_time(x), exact.stick_time(x), exact.final_slip(x)])
     assert np.all(np.isfinite(truth))
-    runs = (lattice_run(*scene, dx, alpha=alpha) for dx in (0.02, 0.01, 0.005))
+    runs = (lattice_run(*scene, duration, dx, alpha=alpha) for dx in (0.02, 0.01, 0.005))
     errors = [nearest(run, x, "release_time", "stick_time", "slip") - truth for run in runs]
     coarse, middle, fine = errors
     for quantity in range(3):
@@ -79,14 +74,11 @@ def test_slow_fronts_and_fields_of_lattices_tend_to_the_exact_ones(gamma, alpha,
     for dx in (0.02, 0.01):
         run = lattice_run(*scene, 5.0, dx, sp.Samples(times, x), alpha)
         pairs = (("sample_velocity", "slip_velocity"), ("sample_slip", "slip"))
-        errors.append(
-            [np.max(np.abs(run[sampled].values - fields[name])) for sampled, name in pairs]
-        )
-        arrival.append(
-            np.max(np.abs(nearest(run, slow, "release_time") - exact.release_time(slow)))
-        )
+        differences = [run[sampled].values - fields[name] for sampled, name in pairs]
+        errors.append([np.max(np.abs(difference)) for difference in differences])
+        late = nearest(run, slow, "release_time") - exact.release_time(slow)
+        arrival.append(np.max(np.abs(late)))
     for coarse, fine in zip(*errors, strict=True):
-        assert fine < 0.62 * coarse
-        assert fine < 0.015
+        assert fine < 0.62 * coarse and fine < 0.015
     # A slow front goes from block to block by jerks, of the order of dx themselves.
     assert arrival[1] < 0.65 * arrival[0] < 0.05

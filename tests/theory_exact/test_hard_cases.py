@@ -13,7 +13,7 @@ END, LATTICE = 8.72, 0.01
 SAME = 1e-6
 
 
-def a_front_that_rests_goes_on():
+def test_a_front_that_rests_goes_on():
     """The characteristic that comes to it next entered where the pre-stress is positive."""
     bump = (3.27, 1.25, 0.715)
     for refinement in (1, 2, 3):
@@ -23,7 +23,7 @@ def a_front_that_rests_goes_on():
         assert right.x == pytest.approx(END, abs=LATTICE)
 
 
-def slip_is_never_negative_before_a_limit():
+def test_slip_is_never_negative_before_a_limit():
     """Next to a front that has stopped du/dt is below 0 for a short while only."""
     profile = Prestress(-0.854, 0.417, 30.0, 1.0, ((114.0, -0.189),), ((26.7, 0.269, 4.96),))
     for refinement in (1, 2):
@@ -35,7 +35,7 @@ def slip_is_never_negative_before_a_limit():
         assert np.nanmin(rupture.slip(x, 110.0)) >= -1e-9
 
 
-def the_first_stick_is_the_first():
+def test_the_first_stick_is_the_first():
     """A dip of the trailing edge that is much narrower than the rupture."""
     profile = Prestress(0.4314, 0.4314, 4.43, steps=((7.21, 0.893), (-6.456, -1.177)))
     for refinement in (1, 2):
@@ -46,7 +46,7 @@ def the_first_stick_is_the_first():
         assert rupture.first_stick.time <= rupture.limit.time
 
 
-def a_first_stick_at_the_centre_of_symmetry():
+def test_a_first_stick_at_the_centre_of_symmetry():
     """There the pace of the trailing edge is rounding, of either sign."""
     bump = -0.8827475088463022, 0.43810831317438026
     bumps = (11.132018776746689, *bump), (-11.132018776746689, *bump)
@@ -56,7 +56,7 @@ def a_first_stick_at_the_centre_of_symmetry():
     assert rupture.first_stick == pytest.approx((11.290149, 0.0), abs=SAME)
 
 
-def mirrored_parts_that_have_not_met():
+def test_mirrored_parts_that_have_not_met():
     """A scene that misses symmetry by less than rounding is solved on both sides."""
     profile = Prestress(-0.3, -0.3, bumps=((10.0, 1.5, 1.0), (-10.0, 1.5, 1.0)))
     other = replace(profile, bumps=(*profile.bumps, (50.0, 1e-14, 1.0)))
@@ -70,17 +70,3 @@ def mirrored_parts_that_have_not_met():
         assert one.stick_time(x) == pytest.approx(two.stick_time(x), abs=SAME, nan_ok=True)
         for name, values in one.map([0.7 * duration, duration], x).items():
             assert values == pytest.approx(two.map([0.7 * duration, duration], x)[name], abs=SAME)
-
-
-CASES = [
-    mirrored_parts_that_have_not_met,
-    a_front_that_rests_goes_on,
-    slip_is_never_negative_before_a_limit,
-    the_first_stick_is_the_first,
-    a_first_stick_at_the_centre_of_symmetry,
-]
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
-def test_what_was_wrong_is_right_or_flagged(case):
-    case()

@@ -60,9 +60,8 @@ def barrier_depth(
     check_number("tau_barrier", tau_barrier, at_least=-STRONGEST, at_most=-WEAKEST * tau0)
     check_domains(gamma=gamma, damping_ratio=damping_ratio)
     speed = float(front_speed(tau0, damping_ratio, release))
-    check_number(
-        f"front speed at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}", speed, at_most=FASTEST
-    )
+    place = f"at tau0 = {tau0!r}, damping_ratio = {damping_ratio!r}"
+    check_number(f"front speed {place}", speed, at_most=FASTEST)
     # The depth is found at gamma = 1, behind a front as far back as its pulse remembers.
     memory = MEMORY * steady_pulse(tau0, 1.0, speed=speed).width / (speed - 1.0) * speed
     proper = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
@@ -77,8 +76,8 @@ def barrier_depth(
             panels.append(panel)
     if stop != "dead":
         raise ValueError(
-            f"tau_barrier: {tau_barrier!r}, where the front is {stop} at tau0 = {tau0!r},"
-            f" damping_ratio = {damping_ratio!r}; allowed: levels on which it is resolved"
+            f"tau_barrier: {tau_barrier!r}, where the front is {stop} {place};"
+            " allowed: levels on which it is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)
 

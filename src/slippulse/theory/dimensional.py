@@ -32,13 +32,8 @@ def damage_zone_stress_drop(slip, shear_modulus, rock_shear_modulus, thickness, 
     >>> damage_zone_stress_drop(1.0, 1e9, 3e10, 100.0, 3000.0) / 1e6
     5.0
     """
-    given = {
-        "slip": slip,
-        "shear_modulus": shear_modulus,
-        "rock_shear_modulus": rock_shear_modulus,
-        "thickness": thickness,
-        "rock_thickness": rock_thickness,
-    }
+    moduli = {"shear_modulus": shear_modulus, "rock_shear_modulus": rock_shear_modulus}
+    given = {"slip": slip, **moduli, "thickness": thickness, "rock_thickness": rock_thickness}
     domains = dict.fromkeys(given, POSITIVE)
     domains["slip"] = {"at_least": -LARGEST, "at_most": LARGEST}
     domains["rock_thickness"] = {"at_least": 0.0, "at_most": LARGEST}

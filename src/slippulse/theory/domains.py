@@ -35,6 +35,5 @@ def broadcast_numbers(
         return np.broadcast_arrays(*arrays.values())
     except ValueError:
         shapes = " and ".join(str(array.shape) for array in arrays.values())
-        raise ValueError(
-            f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast"
-        ) from None
+        text = f"{', '.join(arrays)}: shapes {shapes}; allowed: shapes that broadcast"
+        raise ValueError(text) from None

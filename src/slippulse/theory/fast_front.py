@@ -74,9 +74,8 @@ class FastFront:
         steps = tuple((-position, level) for position, level in profile.steps)
         bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
         turned = replace(profile, left=profile.right, right=profile.left, steps=steps, bumps=bumps)
-        return FastFront(
-            turned, self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
-        )
+        law = self.gamma, self.damping_ratio, self.release, self.refinement, self.alpha
+        return FastFront(turned, *law)
 
     def slowness(self, tau: np.ndarray) -> np.ndarray:
         """1/v at each pre-stress."""

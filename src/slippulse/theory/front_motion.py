@@ -93,9 +93,8 @@ def steady_front(
     period = np.linalg.matrix_power(step, SUBSTEPS)
     # A period later each block is one position farther behind, and a block at rest leads.
     shift = np.kron(np.eye(2), np.eye(count, k=-1))
-    state = np.linalg.solve(
-        np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size]
-    )
+    matrix, load = np.eye(size) - shift @ period[:size, :size], shift @ period[:size, size]
+    state = np.linalg.solve(matrix, load)
     states = [np.append(state, 1.0)]
     for _ in range(SUBSTEPS):
         states.append(step @ states[-1])
@@ -105,9 +104,6 @@ def steady_front(
     ahead = 1.0 + slip[:, 0] + gain * velocity[:, 0]
     tau = 1.0 / ahead[-1]
     trusted = count // 2
-    return SteadyFront(
-        prestress=float(tau),
-        distance=np.arange(trusted * SUBSTEPS) / SUBSTEPS,
-        velocity=tau * velocity[:-1, :trusted].T.ravel(),
-        ahead=tau * ahead,
-    )
+    distance = np.arange(trusted * SUBSTEPS) / SUBSTEPS
+    velocity = tau * velocity[:-1, :trusted].T.ravel()
+    return SteadyFront(float(tau), distance, velocity, tau * ahead)

@@ -102,9 +102,8 @@ def slip_velocity(fronts: Fronts, gamma, y, time):
     float or array, 0 where no front has been
     """
     check_kind("fronts", fronts, Fronts)
-    stiffness, y, time = broadcast_numbers(
-        {"gamma": {"at_least": 0.0}}, gamma=gamma, y=y, time=time
-    )
+    domains = {"gamma": {"at_least": 0.0}}
+    stiffness, y, time = broadcast_numbers(domains, gamma=gamma, y=y, time=time)
     released = fronts.curve.arrival(y) < time
     past = Past(fronts.curve, stiffness[released], y[released], time[released])
     if not np.all(past.left.known & past.right.known):

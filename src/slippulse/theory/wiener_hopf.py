@@ -164,12 +164,10 @@ def nodes(panels: int, angle: float) -> Nodes:
     ray, ray_weight = _panels(edges)
     inner, inner_weight = _panels(np.array([0.0, np.exp(edges[0])]))
     leg, leg_weight = _panels(LEG_EDGES)
-    turn = np.exp(-1j * angle)
-    size = np.exp(ray)
+    turn, size = np.exp(-1j * angle), np.exp(ray)
     z = np.concatenate([inner * turn, size * turn, REACH * turn + leg * LEG_DIRECTION])
-    weight = np.concatenate(
-        [inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION]
-    )
+    weights = inner_weight * turn, size * turn * ray_weight, leg_weight * LEG_DIRECTION
+    weight = np.concatenate(weights)
     return Nodes(z, weight, np.expm1(1j * z), _exp_beyond(1j * z))
 
 
