@@ -110,11 +110,8 @@ class Curve:
         restarts_right: Iterable[float] = (),
     ) -> None:
         self.panels = panels
-        self.x = np.array([panel.x for panel in panels])
-        self.time = np.array([panel.time for panel in panels])
-        self.source = np.array([panel.source for panel in panels])
-        x_ends = np.array([panel.x_ends for panel in panels])
-        time_ends = np.array([panel.time_ends for panel in panels])
+        columns = map(np.array, zip(*panels, strict=True))
+        self.x, self.time, self.source, x_ends, time_ends = columns
         self.edges = np.append(x_ends[:, 0], x_ends[-1, 1])
         self.edge_times = np.append(time_ends[:, 0], time_ends[-1, 1])
         self.late, self.early = self.time + self.x, self.time - self.x
